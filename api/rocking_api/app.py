@@ -32,6 +32,7 @@ from rocking_api.routers import (
     identify,
     metadata,
     metrics,
+    object_page,
     objects_page,
     overturning,
     pages,
@@ -51,7 +52,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
-    *(assess, identify, pulses, metadata, suites, objects_page),
+    *(assess, identify, pulses, metadata, suites, objects_page, object_page),
     *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
 )
 

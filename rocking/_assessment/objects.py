@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
-from rocking._model.body import AbstractBody, Edge, checked_vertices
+from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
 
@@ -26,13 +26,6 @@ LENGTHS = 1e-4, 1e3
 
 STEP = 15
 """Between the directions around an object [degrees]."""
-
-LONG_SIDE = 0.1
-"""Length over the perimeter from which on a side of a footprint has a direction of its own [-].
-
-A body turns about a long side at a smaller distance than in directions beside that. Those across shorter sides, as of a
-round base, are rounded to multiples of `STEP`.
-"""
 
 CYLINDER = 0.75
 """12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]."""
@@ -248,6 +241,13 @@ class Plane:
     base_share: float
     inertia: float
 
+    @classmethod
+    def of(cls, found: PolygonProperties) -> Plane:
+        """The plane of a body with these edges and this radius of gyration."""
+        base = found.left + found.right
+        inertia = 12.0 * found.gyration**2 / (base**2 + found.top**2)
+        return cls(base, 0.5 * (found.left - found.right), found.top, found.height, 1.0, inertia)
+
 
 @dataclass(frozen=True)
 class MeshObject(Object):
@@ -267,12 +267,18 @@ class MeshObject(Object):
 
     @cached_property
     def planes(self) -> dict[str, Plane]:
-        angles = sorted({*map(float, range(0, 180, STEP)), *directions_across(self.footprint)})
+        angles = sorted({*map(float, range(0, 180, STEP)), *self._across})
         return {f"{angle:g} deg": self._plane_at(angle) for angle in angles}
 
     @property
     def planes_around(self) -> dict[float, Plane]:
-        return {angle: self._plane_at(angle) for angle in directions_across(self.footprint)}
+        return {angle: self._plane_at(angle) for angle in self._across}
+
+    @property
+    def _across(self) -> list[float]:
+        from rocking._dimensional.mesh import directions_across  # noqa: PLC0415  (trimesh is an extra)
+
+        return directions_across(self.footprint, STEP)
 
     def _plane_at(self, angle: float) -> Plane:
         return plane_of(RigidBody.from_mesh(self.path, math.radians(angle), unit=self.unit))
@@ -329,21 +335,8 @@ class OutlineObject(Object):
 
 def plane_of(body: RigidBody) -> Plane:
     """A rigid body as a plane of an object."""
-    left, right, height, gyration, top = (
-        float(body.parameters[name]) for name in ("left", "right", "height", "gyration", "top_height")
-    )
-    base = left + right
-    inertia = 12.0 * gyration**2 / (base**2 + top**2)
-    return Plane(base, 0.5 * (left - right), top, height, 1.0, inertia)
-
-
-def directions_across(footprint: Array) -> list[float]:
-    """Directions across the sides of a convex footprint, 0 to below 180 [degrees]; see `LONG_SIDE`."""
-    sides = np.roll(footprint, -1, axis=0) - footprint
-    length = np.hypot(*sides.T)
-    across = np.degrees(np.arctan2(-sides[:, 0], sides[:, 1]))
-    rounded = np.where(length >= LONG_SIDE * length.sum(), np.round(across, 2), STEP * np.round(across / STEP))
-    return [float(angle) for angle in np.unique(rounded % 180.0)]
+    names = "left", "right", "height", "gyration", "top_height"
+    return Plane.of(PolygonProperties(*(float(body.parameters[name]) for name in names)))
 
 
 @dataclass(frozen=True, eq=False)

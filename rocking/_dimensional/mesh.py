@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 from functools import lru_cache
 from pathlib import Path
@@ -17,6 +18,13 @@ from rocking._model.body import PolygonProperties
 
 FOOTPRINT = 1e-3
 """Height above the lowest point up to which vertices belong to the footprint, over the height of the mesh [-]."""
+
+LONG_SIDE = 0.1
+"""Length over the perimeter from which on a side of a footprint has a direction of its own [-].
+
+A body turns about a long side at a smaller distance than in directions beside that. Those across shorter sides, as of a
+round base, are rounded.
+"""
 
 
 def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[PolygonProperties, bool]:
@@ -83,6 +91,15 @@ def mesh_footprint(path: str | Path, unit: str) -> NDArray[np.float64]:
     return np.asarray(points[corners] * UNITS["m"][one_of("unit", unit, UNITS["m"])])
 
 
+def directions_across(footprint: NDArray[np.float64], step: float) -> list[float]:
+    """Directions across the sides of a convex footprint, those of short sides in steps, 0 to below 180 [degrees]."""
+    sides = np.roll(footprint, -1, axis=0) - footprint
+    length = np.hypot(*sides.T)
+    across = np.degrees(np.arctan2(-sides[:, 0], sides[:, 1]))
+    rounded = np.where(length >= LONG_SIDE * length.sum(), np.round(across, 2), step * np.round(across / step))
+    return [float(angle) for angle in np.unique(rounded % 180.0)]
+
+
 def _footprint(mesh: trimesh.Trimesh) -> NDArray[np.float64]:
     """Vertices on which a mesh stands, from its centre of mass; array (points, 2)."""
     vertices = np.asarray(mesh.vertices)
@@ -105,7 +122,9 @@ def _mesh(path: str | Path) -> trimesh.Trimesh:
 @lru_cache(maxsize=1)
 def _loaded(path: Path, _changed: int, _size: int) -> trimesh.Trimesh:
     """The mesh of a file, kept for the other directions: loading it and its inertia take most of the time."""
-    return trimesh.load_mesh(path, process=True)
+    # from its bytes: a file that holds all of its mesh is given no way to name others
+    source = path if path.suffix.lower() == ".gltf" else io.BytesIO(path.read_bytes())
+    return trimesh.load_mesh(source, file_type=path.suffix[1:].lower(), process=True, skip_materials=True)
 
 
 def _horizontal(direction: float) -> NDArray[np.float64]:

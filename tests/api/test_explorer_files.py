@@ -8,11 +8,14 @@ from pathlib import Path
 import pytest
 import rocking_api
 from rocking_api.execution.executor import BusyError
+from rocking_api.routers.object_page import SHAPES, fields_of, page_of
 from rocking_api.routers.objects_page import DEFAULTS
 from rocking_api.routers.pages import PAGES, html
 
 STATIC = Path(rocking_api.__file__).parent / "static"
 TEXTS = {one.path: html(one.template, one.title, one.path) for one in PAGES if one.template and one.path != "/docs"}
+for shape in SHAPES:
+    TEXTS[f"/object?shape={shape}"] = page_of(fields_of({"shape": shape})).body.decode()
 TEXTS["/objects"] = html("objects.html", "", "/objects", given=DEFAULTS | {"table": ""}, found=None)
 SHARED = {"page.js"}  # looks for a form that only one page has
 RENDERED = {"ranking", "filter", "verdict", "more", "count"}  # parts of a result, which the service renders later

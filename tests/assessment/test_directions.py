@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._assessment.objects import directions_across
+from rocking._dimensional.mesh import directions_across
 
 SITE = rocking.Site(pga="0.4 g", pgv="0.4 m/s", shapes=["sine", "cosine", "ricker"])
 OUTLINE = [(0.0, 0.0), (0.3, 0.0), (0.3, 1.0), (0.1, 1.2), (0.0, 1.0)]
@@ -121,10 +121,10 @@ def turned_corners(width, depth, degrees):
 
 
 def test_directions_across_long_sides_are_exact_and_others_are_steps():
-    assert directions_across(turned_corners(0.4, 0.3, 10.0)) == [10.0, 100.0]
+    assert directions_across(turned_corners(0.4, 0.3, 10.0), 15) == [10.0, 100.0]
     angle = np.radians(np.arange(0.0, 360.0, 0.5))
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    assert directions_across(circle) == [15.0 * k for k in range(12)]
+    assert directions_across(circle, 15) == [15.0 * k for k in range(12)]
 
 
 def test_an_outline_rocks_in_its_plane_and_its_mirror_image_the_other_way():

@@ -6,7 +6,6 @@ import io
 import zipfile
 from datetime import UTC, datetime
 from pathlib import PurePath
-from typing import Any
 from urllib.parse import parse_qs
 
 from fastapi import APIRouter, Request, Response
@@ -16,7 +15,6 @@ from rocking._assessment.assess import assess
 from rocking._assessment.columns import VERDICTS
 from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
-from rocking._assessment.site import Site
 from rocking._assessment.tables import ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
@@ -25,6 +23,7 @@ from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
 from rocking_api.models.assess import numbers
 from rocking_api.routers.assess import MAX_BODY, check_table
+from rocking_api.routers.object_page import SITE, address_of, site_of
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
 from rocking_api.service import Service, ServiceDep
 
@@ -34,21 +33,9 @@ MAX_SHEET = 32 * 1024 * 1024
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
 
-MAX_MODES_TEXT = 200
-"""Longest list of periods or of participations of a building [characters]."""
-
 PATH = "/objects"
 
-DEFAULTS = {
-    "table": "",
-    "pga": "0.3",
-    "pga_unit": "g",
-    "pgv": "30",
-    "pgv_unit": "cm/s",
-    "floor_periods": "",
-    "floor_participation": "1",
-    "title": "Objects at a site",
-}
+DEFAULTS = SITE | {"table": "", "title": "Objects at a site"}
 
 router = APIRouter(prefix=PATH, include_in_schema=False)
 
@@ -124,8 +111,7 @@ async def _form(request: Request, service: Service) -> dict[str, str]:
 
 
 async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
-    pga, pgv = (f"{given[name].replace(',', '.')} {given[f'{name}_unit']}" for name in ("pga", "pgv"))
-    site = Site(pga, pgv, **_floor(given))
+    site = site_of(given)
     table = await service.run_parser(lambda _: objects_of_csv(given["table"]), request, large=True)
     check_table(table, "table")
 
@@ -134,17 +120,6 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
 
     await service.kernels.wait()
     return table, await service.executor.run(run, request)
-
-
-def _floor(given: dict[str, str]) -> dict[str, Any]:
-    """Modes of the building of which the objects are on a floor; none on the ground."""
-    if not given["floor_periods"].strip():
-        return {}
-    modes = {name: given[name] for name in ("floor_periods", "floor_participation")}
-    for name, text in modes.items():
-        if len(text) > MAX_MODES_TEXT:
-            raise InvalidArgumentError(name, f"{len(text)} characters", f"at most {MAX_MODES_TEXT}")
-    return {name: numbers(name, text) for name, text in modes.items()}
 
 
 def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
@@ -157,5 +132,6 @@ def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Ass
         table=table,
         found=found,
         verdicts=VERDICTS,
+        address=address_of,
     )
     return HTMLResponse(text, headers={"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"})

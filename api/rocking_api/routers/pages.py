@@ -51,6 +51,7 @@ class Page:
 PAGES = (
     Page("/", "Explorer", "Does the block overturn?", "explorer.html"),
     Page("/objects", "Objects", "Which objects overturn?", ""),  # objects_page.py
+    Page("/object", "One object", "In which direction does it overturn?", ""),  # object_page.py
     Page("/records", "Records", "A block under a record", "records.html"),
     Page("/suites", "Suites", "Suites of records", "suites.html"),
     Page("/datasets", "Data sets", "Data sets", "datasets.html"),

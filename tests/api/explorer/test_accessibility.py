@@ -5,6 +5,7 @@ from playwright.sync_api import expect
 
 from tests.api.explorer import axe
 from tests.api.explorer.reading import BLOCK, POINT, settle
+from tests.api.explorer.test_object import HEADSTONE, SLAB
 from tests.api.explorer.test_records import choose, short_record
 
 
@@ -52,6 +53,15 @@ def test_the_page_of_objects_is_accessible(open_page, scheme):
     page.locator("#table").fill("object;width [cm];height [cm]\nvase;22;55\nslab;5;60\njug;wide;40")
     page.locator("#ask").click()
     expect(page.locator("#bad")).to_be_visible()
+    assert axe.violations(page) == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("path", [SLAB, HEADSTONE, SLAB.replace("width=40", "width=-1"), "/object?shape=mesh"])
+def test_the_page_of_one_object_is_accessible(open_page, path, scheme):
+    page = open_page(path, color_scheme=scheme)
+    if page.locator("details").count():
+        page.locator("details summary").click()
     assert axe.violations(page) == []
 
 

@@ -4,6 +4,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.api.explorer.reading import BLOCK, POINT, settle
+from tests.api.explorer.test_object import HEADSTONE, SLAB
 from tests.api.explorer.test_records import choose, short_record
 
 OVERLAPS = """() => {
@@ -41,7 +42,7 @@ def test_nothing_overlaps_on_the_explorer(open_page, path):
     assert overlaps_by_width(page) == {}
 
 
-@pytest.mark.parametrize("path", ["/objects", "/records", "/suites", "/datasets", "/state"])
+@pytest.mark.parametrize("path", [SLAB, HEADSTONE, "/objects", "/records", "/suites", "/datasets", "/state"])
 def test_nothing_overlaps_on_the_other_pages(open_page, path):
     page = open_page(path, viewport={"width": 320, "height": 900})
     if path == "/records":
@@ -54,6 +55,8 @@ def test_nothing_overlaps_on_the_other_pages(open_page, path):
         page.locator("#table").fill("object;width [cm];height [cm]\nvase;22;55\njug;wide;40")
         page.locator("#ask").click()
         expect(page.locator("#ranking")).to_be_visible()
+    elif path in (SLAB, HEADSTONE):
+        page.locator("details summary").click()
     else:
         expect(page.locator("#status")).not_to_contain_text("…")
     assert overlaps_by_width(page) == {}

@@ -3,6 +3,7 @@
 import pytest
 
 from tests.api.explorer.hands import PHONE
+from tests.api.explorer.test_object import HEADSTONE, SLAB
 
 NETWORK = {"offline": False, "latency": 150, "downloadThroughput": 1.6e6 / 8, "uploadThroughput": 750e3 / 8}
 """Round trip [ms] and bytes per second of a slow mobile connection, as audits of pages take them."""
@@ -27,6 +28,8 @@ OBSERVE = """() => {
 DONE: dict[str, str] = {
     "/": "() => document.querySelector('#spectrum-chart canvas') && document.querySelector('.headline')",
     "/objects?sample=1": "() => document.getElementById('ranking')",
+    SLAB: "() => document.querySelector('.dial svg')",
+    HEADSTONE: "() => document.querySelector('#drawing circle')",
     "/records": "() => document.querySelector('#rotation canvas')",
     "/datasets": "() => document.querySelector('#groups h3')",
     "/suites": "() => document.querySelector('#suite-report canvas')",

@@ -1,0 +1,248 @@
+"""The page of one object as the service renders it: numbers of the package, meshes, damaged and hostile files."""
+
+import io
+import json
+import re
+import struct
+import threading
+import time
+from html import unescape
+from urllib.parse import parse_qsl, urlsplit
+
+import numpy as np
+import pytest
+from rocking_api import mesh_process, mesh_reader
+from rocking_api.dial import RADIUS, dial_of, worst_directions
+from rocking_api.routers import object_page
+
+import rocking
+from tests.api.conftest import assert_problem
+
+trimesh = pytest.importorskip("trimesh")
+
+SITE = {"pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s"}
+BUST = {"shape": "rectangle", "name": "<b>bust</b>", "width": "38", "depth": "25", "height": "120", "offset_width": "5"}
+OUTLINE = "0, 0\n30, 0\n30 100; 10 120\n0, 100"
+
+
+def directions_of(one):
+    return rocking.assess(one, rocking.Site(pga="0.3 g", pgv="30 cm/s"), sensitivity=False).directions()
+
+
+def table(text):
+    """Cells of the table of factors by direction, as text."""
+    body = re.search(r'<table id="factors">.*?<tbody>(.*?)</tbody>', text, re.DOTALL)[1]
+    return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>(.*?)</tr>", body)]
+
+
+def assert_table_of(text, found):
+    rows = table(text)
+    assert [float(re.match(r"[\d.]+", row[0])[0]) for row in rows] == found["direction"].values.tolist()
+    for row, factor in zip(rows, found["factor"].values, strict=True):
+        assert row[1] == ("above 10" if np.isnan(factor) else f"{factor:.3g}")
+    assert [float(re.match(r"[\d.]+", row[0])[0]) for row in rows if "worst" in row[0]] == worst_directions(found)
+
+
+def posted(client, content, name, **fields):
+    return client.post("/object", params=SITE | {"file": name} | fields, content=content)
+
+
+@pytest.fixture(scope="module")
+def slab():
+    """A slab that is turned, in millimetres."""
+    mesh = trimesh.creation.box((400.0, 150.0, 1200.0))
+    mesh.apply_transform(trimesh.transformations.rotation_matrix(np.radians(20.0), (0.0, 0.0, 1.0)))
+    return mesh
+
+
+def test_factors_are_those_of_the_package_and_the_worst_is_marked(client):
+    text = client.get("/object", params=BUST | SITE).text
+    found = directions_of(rocking.Object("bust", width=0.38, depth=0.25, height=1.2, offset_width=0.05))
+    assert_table_of(text, found)
+    (worst,) = worst_directions(found)
+    assert f"Worst direction: {worst:g}°" in re.search(r'id="worst">(.*?)<', text)[1]
+    assert text.count('class="diamond"') == 1
+    assert "&lt;b&gt;bust&lt;/b&gt; at 0.3 g" in text
+    assert "<b>" not in text
+
+
+def test_round_bases_and_outlines(client):
+    drum = {"shape": "round", "diameter": "0,35", "diameter_unit": "m", "height": "120", "restitution": "0.9"}
+    text = client.get("/object", params=drum | SITE).text
+    assert_table_of(text, directions_of(rocking.Object("drum", diameter=0.35, height=1.2, restitution=0.9)))
+    assert "all are alike" in text
+    text = client.get("/object", params={"shape": "outline", "vertices": OUTLINE} | SITE).text
+    corners = [(0.0, 0.0), (0.3, 0.0), (0.3, 1.0), (0.1, 1.2), (0.0, 1.0)]
+    assert_table_of(text, directions_of(rocking.Object.from_outline(corners)))
+
+
+def test_an_object_that_nothing_overturns_has_no_dial(client):
+    text = client.get("/object", params={"width": "300", "depth": "300", "height": "50"} | SITE).text
+    assert "No factor up to 10" in text
+    assert "<figure" not in text
+
+
+def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
+    given = {"table": "object;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
+    text = client.post("/objects", data=given | {"floor_periods": "0.5"}).text
+    (address, _) = (unescape(one) for one in re.findall(r'href="(/object\?[^"]*)"', text))
+    fields = dict(parse_qsl(urlsplit(address).query, keep_blank_values=True))
+    assert (fields["name"], fields["width"], fields["restitution"]) == ("vase & jug", "22.5", "0.9")
+    page = client.get(address).text
+    factors = {row[0].split()[0]: row[1] for row in table(page)}
+    row = r'</a></th>\s*<td>(\w+)</td>.*?<td data-value="[^"]*">([\d.]+)<'
+    ranked = re.findall(row, text.partition("<tbody>")[2], re.DOTALL)
+    for name, angle in (("width", "0°"), ("depth", "90°")):
+        assert factors[angle] == dict(ranked)[name]
+    assert "on a floor of a building of 0.5 s" in page
+
+
+@pytest.mark.parametrize(
+    ("fields", "name"),
+    [({"height": "-3"}, "height"), ({"height": ""}, "height"), ({"width": ""}, "width"), ({"width": "wide"}, "width"),
+     ({"offset_width": "30"}, "offset_width"), ({"pga": "much"}, "pga"), ({"pgv": "1e9"}, "pgv"),
+     ({"restitution": "2"}, "restitution"), ({"restitution": "much"}, "restitution"),
+     ({"floor_periods": "0," * 200}, "floor_periods"),
+     ({"width": "9" * 5000}, "width"), ({"width_unit": "furlong"}, "width"),
+     ({"shape": "outline", "vertices": "0, 0\nwide"}, "vertices"),
+     ({"shape": "outline", "vertices": "0, 0\n1, 1\n1, 0\n0, 1"}, "vertices"),
+     ({"shape": "outline", "vertices": ""}, "vertices"),
+     ({"shape": "outline", "vertices": "0 0\n" * 201}, "vertices"),
+     ({"shape": "outline", "vertices": " " * 10_001}, "vertices")],
+)  # fmt: skip
+def test_what_is_wrong_is_said_beside_its_field(client, fields, name):
+    response = client.get("/object", params=BUST | SITE | fields)
+    assert response.status_code == 422
+    (words,) = re.findall(rf'<p class="wrong" id="{name}-problem"[^>]*>([^<]+)<', response.text)
+    assert "allowed" in words
+    assert re.search(rf'id="{name}"[^>]*aria-invalid="true"', response.text)
+    assert "see the field marked in red" in response.text
+
+
+def test_other_faults_of_an_address(client):
+    assert_problem(client.get("/object", params={"shape": "sphere"}), 422, "shape")
+    assert_problem(client.get("/object?shape=mesh&shape=outline"), 422, "shape")
+    assert client.get("/object?shape=mesh&pga=0.3").status_code == 200
+    assert client.put("/object").status_code == 405
+    for shape in object_page.SHAPES:
+        assert 'aria-current="page"' in client.get("/object", params={"shape": shape}).text
+
+
+@pytest.mark.parametrize("ending", ["stl", "ply", "obj", "glb"])
+def test_a_mesh_is_the_object_that_it_shows(client, slab, ending):
+    content = slab.export(file_type=ending)
+    if ending == "glb":  # y upwards in that format is z here, as trimesh reads it
+        assert trimesh.load_mesh(io.BytesIO(content), file_type="glb").extents[2] == pytest.approx(1200.0)
+    response = posted(client, content, f"slab.{ending}", unit="mm")
+    assert response.status_code == 200
+    plain = directions_of(rocking.Object("slab", width=0.4, depth=0.15, height=1.2))
+    lowest = float(plain["factor"].min())
+    assert f"From {lowest:.3g} times" in response.text
+    assert "110° and 290°" in response.text
+    assert "is not closed" not in response.text
+
+
+def test_an_open_mesh_is_doubted(client, slab):
+    gap = slab.copy()
+    gap.update_faces(np.arange(len(gap.faces)) > 0)
+    assert "The mesh is not closed" in posted(client, gap.export(file_type="stl"), "gap.stl", unit="mm").text
+
+
+def glb(tree, binary=b""):
+    """A GLB file of a tree and a binary part."""
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(body)) + body
+
+
+def scene(count, **parts):
+    """The tree of a GLB file with one mesh of some vertices."""
+    mesh = {"primitives": [{"attributes": {"POSITION": 0}}]}
+    start = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]}
+    accessor = {"bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3"}
+    views = {"bufferViews": [{"buffer": 0, "byteLength": 12 * count}], "buffers": [{"byteLength": 12 * count}]}
+    return start | {"meshes": [mesh], "accessors": [accessor]} | views | parts
+
+
+TRIANGLE = np.eye(3, dtype="<f4").tobytes()
+AXES = b"".join(b"property float %s\n" % axis for axis in (b"x", b"y", b"z"))
+HEADER = b"ply\nformat %s 1.0\nelement vertex 99999999999\n" + AXES + b"end_header\n"
+HOSTILE = {
+    "empty.stl": b"",
+    "text.ply": b"no mesh",
+    "count.stl": bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(50),
+    "count.ply": HEADER % b"binary_little_endian" + bytes(100),
+    "ascii.ply": HEADER % b"ascii" + b"0 0 0\n",
+    "index.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999\n",
+    "nan.obj": b"v nan 0 0\nv 1 0 0\nv 0 1 inf\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
+    "point.obj": b"v 0 0 0\nv 1 0 1\nv 0 1 1\nv 1 1 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
+    "zeros.glb": glb(scene(3, accessors=[{"componentType": 5126, "count": 10**10, "type": "VEC3"}])),
+    "other.glb": glb(scene(75, buffers=[{"uri": "/etc/passwd", "byteLength": 900}])),
+    "twice.glb": glb(scene(3, nodes=[*({"children": [k + 1, k + 1]} for k in range(40)), {"mesh": 0}]), TRIANGLE),
+    "cycle.glb": glb(scene(3, nodes=[{"children": [0], "mesh": 0}]), TRIANGLE),
+    "nested.glb": struct.pack("<IIIII", 0x46546C67, 2, 100_020, 100_000, 0x4E4F534A) + b"[" * 100_000,
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_damaged_and_hostile_meshes_are_refused(client, name):
+    problem = assert_problem(posted(client, HOSTILE[name], name), 422, "mesh")
+    assert problem["value"] == name
+    assert "/tmp" not in problem["detail"]
+
+
+def test_meshes_of_other_formats_units_and_sizes_are_refused(client, slab, monkeypatch):
+    content = slab.export(file_type="stl")
+    assert_problem(posted(client, content, "slab.gltf"), 415, "mesh")
+    assert_problem(posted(client, content, "slab"), 415, "mesh")
+    assert_problem(posted(client, content, "slab.stl", unit="furlong"), 422, "unit")
+    assert_problem(posted(client, content, "slab.stl", pga="much"), 422, "pga")
+    assert_problem(posted(client, content, "slab.stl", restitution="2"), 422, "restitution")
+    assert_problem(posted(client, bytes(object_page.MAX_MESH + 1), "slab.stl"), 413, "body")
+    monkeypatch.setattr(mesh_reader, "find_spec", lambda _: None)
+    assert "rocking[mesh]" in assert_problem(posted(client, content, "slab.stl"), 415, "mesh")["detail"]
+    assert "rocking[mesh]" in client.get("/object?shape=mesh").text
+
+
+def test_health_answers_while_a_mesh_takes_long_and_its_process_ends_at_the_limit(client, monkeypatch):
+    monkeypatch.setattr(client.app.state.service.parser, "_seconds", 1.0)
+    command = ["python", "-c", "import time; time.sleep(60)"]
+    run = mesh_reader._run
+    ended = threading.Event()
+
+    def slow(_, stop):
+        try:
+            return run(command, stop)
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(mesh_reader, "_run", slow)
+    answers = []
+    thread = threading.Thread(target=lambda: answers.append(posted(client, b"", "a.stl")))
+    began = time.monotonic()
+    thread.start()
+    while thread.is_alive():
+        assert client.get("/health").status_code == 200
+        time.sleep(0.05)
+    assert_problem(answers[0], 504)
+    assert ended.wait(10)
+    assert time.monotonic() - began < 20
+
+
+def test_a_process_that_exceeds_its_memory_or_fails_is_an_error_of_the_file(client, monkeypatch):
+    monkeypatch.setattr(mesh_reader, "_run", lambda *_: (-9, b""))
+    problem = assert_problem(posted(client, b"", "a.stl"), 422, "mesh")
+    assert f"within {mesh_process.SECONDS} s" in problem["detail"]
+
+
+def test_the_dial_has_the_worst_nearest_to_the_middle():
+    found = directions_of(rocking.Object("slab", width=1.0, depth=0.1, height=1.5))
+    dial = dial_of(found, np.array([(-0.5, -0.05), (0.5, -0.05), (0.5, 0.05), (-0.5, 0.05)]))
+    distance = [float(np.hypot(mark.x, mark.y)) for mark in dial.marks]
+    assert min(distance) == pytest.approx(np.hypot(dial.worst[0].x, dial.worst[0].y))
+    assert [mark.inside for mark in dial.marks] == [r < RADIUS - 1e-9 for r in distance]
+    assert (dial.worst[0].x, dial.worst[0].y) == (pytest.approx(0.0, abs=1e-9), pytest.approx(-RADIUS / 3.0))
+    np.testing.assert_allclose(
+        np.array(distance)[[2, 4]] / min(distance), found["factor"].values[[2, 4]] / float(found["factor"].min())
+    )
