@@ -4,6 +4,8 @@ import io
 import json
 import re
 import struct
+import subprocess
+import sys
 import threading
 import time
 from html import unescape
@@ -234,6 +236,17 @@ def test_a_process_that_exceeds_its_memory_or_fails_is_an_error_of_the_file(clie
     monkeypatch.setattr(mesh_reader, "_run", lambda *_: (-9, b""))
     problem = assert_problem(posted(client, b"", "a.stl"), 422, "mesh")
     assert f"within {mesh_process.SECONDS} s" in problem["detail"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
+@pytest.mark.parametrize("limit", ["SECONDS = 0", "MEMORY = 2**20"])
+def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path, limit):
+    path = tmp_path / "slab.stl"
+    slab.subdivide_loop(7).export(path)  # 196,608 triangles, of 50 bytes each
+    code = f"from rocking_api import mesh_process as m; m.{limit}; m.main({str(path)!r}, 'mm', '15')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
+    assert b"planes" not in done.stdout
+    assert done.returncode or b"allowed" in done.stdout
 
 
 def test_the_dial_has_the_worst_nearest_to_the_middle():
