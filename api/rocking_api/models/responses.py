@@ -190,14 +190,23 @@ class DatasetSummary(BaseModel):
     metadata: str = Field(description="path of its description")
     netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
     version_url: str = Field(description="path of this version of the file; immutable")
-    zarr: str = Field(description="path for xarray.open_dataset(..., engine='zarr')")
+    zarr: str = Field(description="path for xarray.open_zarr(...)")
     links: list[Link] = Field(description="the same paths with relation and media type")
+
+
+class PulseCubes(BaseModel):
+    """The spectrum cubes of one pulse, which are also one zarr store."""
+
+    name: str = Field(description="folder of the cubes, and name of the store")
+    restitution: list[float] = Field(description="coefficients of restitution of the cubes, ascending [-]")
+    zarr: str = Field(description="path for xarray.open_zarr(...), over the dimension restitution too")
 
 
 class DatasetCatalogue(Answer):
     """All data sets."""
 
     datasets: list[DatasetSummary] = Field(description="in the order of their names")
+    pulses: list[PulseCubes] = Field(description="the spectrum cubes by pulse, in the order of their names")
 
 
 class VariableDescription(BaseModel):

@@ -23,8 +23,16 @@ from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import Params
-from rocking_api.models.responses import DatasetCatalogue, DatasetDescription, DatasetSummary, Link, VariableDescription
+from rocking_api.models.responses import (
+    DatasetCatalogue,
+    DatasetDescription,
+    DatasetSummary,
+    Link,
+    PulseCubes,
+    VariableDescription,
+)
 from rocking_api.service import Service, ServiceDep
+from rocking_api.zarr_store import SPECTRA, is_metadata
 
 router = APIRouter(prefix="/v1/datasets", tags=["datasets"], route_class=ParamsRoute)
 
@@ -52,7 +60,8 @@ async def get_datasets(request: Request, service: ServiceDep) -> Response:
         return found
 
     summaries = await service.run_io(work)
-    catalogue = DatasetCatalogue(datasets=[DatasetSummary(**_summary(summary)) for summary in summaries])
+    listed = [DatasetSummary(**_summary(summary)) for summary in summaries]
+    catalogue = DatasetCatalogue(datasets=listed, pulses=_pulses(summaries))
     return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
 
 
@@ -114,17 +123,17 @@ async def get_netcdf(
 async def get_zarr(name: DatasetName, key: ZarrKey, request: Request, service: ServiceDep) -> Response:
     """The keys of a zarr store (format 2, consolidated) with the same content.
 
-    `xarray.open_dataset(".../{name}.zarr", engine="zarr")` reads it.
+    `xarray.open_zarr(".../{name}.zarr")` reads it. `spectra/PULSE.zarr` has the cubes of a pulse over the dimension
+    `restitution`; those whose axes or variables are not those of most of them are named by its attribute `left_out`.
     """
-    sha256, store = await service.run_io(partial(service.zarr_stores.store, name))
-    if key not in store:
+    sha256, value = await service.run_io(partial(service.zarr_stores.value, name, key))
+    if value is None:
         raise HTTPException(404, f"the zarr store of `{name}` has no key `{key}`")
     unchanged = not_modified(request, sha256)
     if unchanged is not None:
         return unchanged
-    is_json = key.rpartition("/")[2].startswith(".z")
-    media_type = "application/json" if is_json else "application/octet-stream"
-    return Response(store[key], media_type=media_type, headers=validators(sha256))
+    media_type = "application/json" if is_metadata(key) else "application/octet-stream"
+    return Response(value, media_type=media_type, headers=validators(sha256))
 
 
 @router.get("/{name:path}", summary="Description", response_model=DatasetDescription)
@@ -177,10 +186,22 @@ def _summary(found: Summary) -> dict[str, Any]:
         Link(rel="version", href=paths["version_url"], type="application/x-netcdf"),
         Link(rel="zarr", href=paths["zarr"], type="application/vnd+zarr"),
     ]
-    if product.name.startswith("spectra/"):
+    if product.name.startswith(f"{SPECTRA}/"):
         links.append(Link(rel="subset", href=f"{path}/subset", type="application/x-netcdf"))
     told = {"title": found.title, "pulse": found.pulse, "restitution": found.restitution, "extent": found.extent}
     return {"name": product.name, "size": product.size, "sha256": product.sha256, **told, **paths, "links": links}
+
+
+def _pulses(summaries: list[Summary]) -> list[PulseCubes]:
+    restitutions: dict[str, list[float]] = {}
+    for summary in summaries:
+        folder = summary.product.name.rpartition("/")[0]
+        if folder.startswith(f"{SPECTRA}/") and summary.restitution is not None:
+            restitutions.setdefault(folder, []).append(summary.restitution)
+    return [
+        PulseCubes(name=folder, restitution=sorted(values), zarr=f"/v1/datasets/{folder}.zarr")
+        for folder, values in restitutions.items()
+    ]
 
 
 def _variable(variable: xr.DataArray) -> VariableDescription:

@@ -24,7 +24,8 @@ def test_data_sets_are_listed_and_filtered(open_page):
     page.locator("#pulse").select_option(label="One full cosine")
     page.locator("#eta").select_option("0.9")
     expect(status).to_contain_text(f"1 of {len(NAMES)} data sets")
-    row = page.locator("#groups tbody tr:visible")
+    expect(page.locator("#groups tr.folder:visible")).to_have_text("One full cosineall η as one store xarray")
+    row = page.locator("#groups tbody tr:not(.folder):visible")
     expect(row).to_contain_text("spectra/cosine/eta-0.90")
     expect(row).to_contain_text("ω 0.5 to 12")
     with page.expect_download() as waiting:

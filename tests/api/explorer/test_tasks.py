@@ -130,12 +130,18 @@ def test_the_spectrum_of_a_restitution_goes_into_xarray(open_page, address, by):
     hand = by(page)
     hand.choose("#eta", "0.9")
     expect(page.locator("#status")).to_contain_text("1 of")
-    hand.press("tr:not([hidden]) button")
+    hand.press("tr:not([hidden]) td button")
     expect(page.locator("#status")).to_have_text("Copied the line for spectra/cosine/eta-0.90.")
     line = page.evaluate("navigator.clipboard.readText()")
-    assert line == f'xarray.open_dataset("{address}/v1/datasets/spectra/cosine/eta-0.90.zarr", engine="zarr")'
-    with xr.open_dataset(re.search(r'"(.*?)"', line)[1], engine="zarr") as cube:
+    assert line == f'xarray.open_zarr("{address}/v1/datasets/spectra/cosine/eta-0.90.zarr")'
+    with xr.open_zarr(re.search(r'"(.*?)"', line)[1]) as cube:
         assert cube.peak_rotation.sizes["slenderness"] == 91
+    hand.press("tbody:not([hidden]) .folder button")
+    expect(page.locator("#status")).to_have_text("Copied the line for spectra/cosine.")
+    line = page.evaluate("navigator.clipboard.readText()")
+    assert line == f'xarray.open_zarr("{address}/v1/datasets/spectra/cosine.zarr")'
+    with xr.open_zarr(re.search(r'"(.*?)"', line)[1]) as cubes:
+        assert cubes.restitution.values.tolist() == [0.9]
 
 
 def test_a_report_is_printed(open_page, by):

@@ -15,10 +15,12 @@ const filter = document.getElementById("filter");
 const choices = { pulse: document.getElementById("pulse"), restitution: document.getElementById("eta") };
 
 let datasets = []; // of the catalogue, each with its row
+let stores = {}; // of the cubes of one pulse, by the folder of these
 
 async function show() {
   try {
     const found = await ask("/v1/datasets", {}, new AbortController().signal);
+    stores = Object.fromEntries(found.pulses.map((one) => [one.name, one]));
     datasets = found.datasets.map((one) => ({ ...one, row: row(one), kind: one.name.split("/")[0] }));
     for (const [name, select] of Object.entries(choices)) {
       const values = [...new Set(datasets.map((one) => one[name]).filter((value) => value !== null))].sort();
@@ -33,22 +35,41 @@ async function show() {
   }
 }
 
-/** The table of one kind, sorted by pulse and restitution. */
+/** The table of one kind, by pulse and restitution. */
 function group(kind) {
   const own = datasets.filter((one) => one.kind === kind);
   if (!own.length) return null;
   const heads = ["Title", "η", "Extent", "Get it"].map((text) => element("th", text, { scope: "col" }));
-  const table = element("table", [element("thead", [element("tr", heads)]), element("tbody", own.map((one) => one.row))]);
+  const folders = [...new Set(own.map(folderOf))];
+  const bodies = folders.map((folder) => element("tbody", [...folderRow(folder), ...own.filter((one) => folderOf(one) === folder).map((one) => one.row)]));
+  const table = element("table", [element("thead", [element("tr", heads)]), ...bodies]);
   const title = GROUPS[kind] ?? kind;
   return element("section", [element("h3", title), element("div", [table], { class: "table", tabindex: "0", role: "group", "aria-label": title })]);
 }
 
-function row(one) {
+function folderOf({ name }) {
+  return name.slice(0, name.lastIndexOf("/"));
+}
+
+/** The heading of the data sets of one folder, with the store of all restitutions of a pulse; none for a kind of one folder. */
+function folderRow(folder) {
+  const [, inner] = folder.split("/");
+  if (!inner) return [];
+  const store = stores[folder];
+  const copy = store ? [element("span", ["all η as one store ", xarrayButton(store)], { class: "downloads" })] : [];
+  return [element("tr", [element("th", [PULSES[inner] ?? inner, ...copy], { scope: "rowgroup", colspan: "4" })], { class: "folder" })];
+}
+
+function xarrayButton(one) {
   const copy = element("button", "xarray", { type: "button", "aria-label": `copy the line that opens ${one.name} in xarray` });
   copy.addEventListener("click", () => copyLine(one));
+  return copy;
+}
+
+function row(one) {
   const links = [
     element("a", `netCDF, ${size(one.size)}`, { href: one.netcdf, "aria-label": `netCDF, ${size(one.size)}: ${one.name}` }),
-    copy,
+    xarrayButton(one),
     element("a", "about", { href: one.metadata, "aria-label": `about ${one.name}` }),
   ];
   const subset = one.links.find(({ rel }) => rel === "subset");
@@ -59,7 +80,7 @@ function row(one) {
 }
 
 async function copyLine({ name, zarr }) {
-  const line = `xarray.open_dataset("${location.origin}${zarr}", engine="zarr")`;
+  const line = `xarray.open_zarr("${location.origin}${zarr}")`;
   try {
     await navigator.clipboard.writeText(line);
     setStatus(status, `Copied the line for ${name}.`);
@@ -104,7 +125,7 @@ function chosen() {
 function select() {
   const left = chosen();
   for (const one of datasets) one.row.hidden = !left.includes(one);
-  for (const section of groups.children) section.hidden = !section.querySelector("tbody tr:not([hidden])");
+  for (const part of groups.querySelectorAll("section, tbody")) part.hidden = !part.querySelector("tr:not([hidden]) > td");
   setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${sizeOf(left)}` : "There is no data set yet: make reproduce makes them.");
 }
 
