@@ -17,11 +17,16 @@ export function scale(low, high, from, to, log = false) {
 /** Round values between `low` and `high` whose positions lie at least `apart` from each other. */
 export function ticks(low, high, place, apart) {
   const wanted = high / low > 4 && low > 0 ? decades(low, high) : even(low, high, place, apart);
+  return spread(wanted, place, apart).sort((x, y) => x - y);
+}
+
+/** Those of some values, the rounder ones first, whose positions lie at least `apart` from each other. */
+export function spread(values, place, apart) {
   const kept = [];
-  for (const value of wanted.sort((x, y) => weight(x) - weight(y))) {
+  for (const value of [...values].sort((x, y) => weight(x) - weight(y))) {
     if (kept.every((other) => Math.abs(place(other) - place(value)) >= apart)) kept.push(value);
   }
-  return kept.sort((x, y) => x - y);
+  return kept;
 }
 
 function decades(low, high) {

@@ -25,7 +25,7 @@ const outputs = { eta: document.getElementById("eta-value"), alpha: document.get
 export function wireForm(look, set, edit) {
   for (const [name, words] of Object.entries(PULSES)) pulse.append(element("option", words, { value: name }));
   pulse.append(element("option", "Own samples", { value: OWN }));
-  for (const name of Object.keys(SYSTEMS)) units.append(element("option", name));
+  units.append(element("option", "as given", { value: "", hidden: "" }), ...Object.keys(SYSTEMS).map((name) => element("option", name)));
   for (const name of QUANTITIES) {
     const field = form.elements[name];
     field.addEventListener("input", () => (problems(form, QUANTITIES).length ? edit() : set(block(), false)));

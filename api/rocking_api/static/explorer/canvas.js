@@ -3,11 +3,13 @@
 import { onTheme, themed } from "./colours.js";
 import { frameAt, horizontalExtent } from "./trajectory.js";
 import { length, number } from "./labels.js";
+import { fontOf, onTextSize, textScale } from "./text.js";
 
 const canvas = document.getElementById("stage");
 const MAX_GROUND_TRAVEL = 7; // half diagonals; for a larger ground displacement the view moves with the ground
 
 const MARGIN = 0.6;
+const FOOT = 40; // [px] below the ground, of text that is usually 16 px
 
 let shown = null;
 
@@ -36,8 +38,8 @@ function draw() {
 
   // all in half diagonals R from here on: x to the right, y upwards from the ground
   const [left, right] = extent;
-  const unit = Math.min(canvas.width / (right - left + MARGIN), (canvas.height - 46 * ratio) / 2.25);
-  const base = canvas.height - 40 * ratio;
+  const unit = Math.min(canvas.width / (right - left + MARGIN), (canvas.height - (FOOT * textScale() + 6) * ratio) / 2.25);
+  const base = canvas.height - FOOT * textScale() * ratio;
   const centre = (left + right) / 2 + (followsGround ? ground : 0);
   context.setTransform(unit, 0, 0, -unit, canvas.width / 2 - centre * unit, base);
   const half = canvas.width / 2 / unit;
@@ -94,11 +96,11 @@ function drawBar(context, unit, size, ratio) {
   const metres = size ? size.R : 1;
   const bar = roundLength((70 * ratio * metres) / unit);
   const text = size ? length(bar) : `${number(bar)} R`;
-  const [x, y] = [12 * ratio, canvas.height - 10 * ratio];
+  const [x, y] = [12 * ratio, canvas.height - 10 * textScale() * ratio];
   context.strokeStyle = context.fillStyle = themed("ink");
   context.lineWidth = 2 * ratio;
   stroke(context, [x, y], [x + (bar * unit) / metres, y]);
-  context.font = `${12 * ratio}px system-ui, sans-serif`;
+  context.font = fontOf(12, ratio);
   context.textBaseline = "middle";
   context.fillText(text, x + (bar * unit) / metres + 7 * ratio, y);
 }
@@ -117,3 +119,4 @@ function stroke(context, from, to) {
 
 new ResizeObserver(draw).observe(canvas);
 onTheme(draw);
+onTextSize(draw);

@@ -5,8 +5,9 @@ import { canvasOf } from "./chart.js";
 import { themed } from "./colours.js";
 import { drawLegend } from "./legend.js";
 import { save, setStatus } from "./page.js";
+import { fontOf, textScale } from "./text.js";
 
-const FOOT = 34;
+const FOOT = 34; // [px] of text that is usually 16 px
 
 /** Set the links of one part of the page, `urls` by format; a link without one, or under samples, is removed. */
 export function setLinks(part, urls) {
@@ -35,7 +36,7 @@ export function wireDownloads(caption) {
 
 /** One picture: rows of canvases below each other, those of a row on top of each other, the caption at the foot. */
 function savePicture(part, rows, caption) {
-  const ratio = devicePixelRatio;
+  const ratio = devicePixelRatio * textScale();
   const legend = part === "map" ? 24 : 0;
   const made = document.createElement("canvas");
   made.width = Math.max(...rows.map(([first]) => first.width));
@@ -50,7 +51,7 @@ function savePicture(part, rows, caption) {
   }
   if (legend) drawLegend(context, 12 * ratio, y + 8 * ratio, Math.min(ratio, made.width / 820));
   context.fillStyle = themed("ink");
-  context.font = `${12 * ratio}px system-ui, sans-serif`;
+  context.font = fontOf(12, devicePixelRatio);
   context.textBaseline = "middle";
   context.fillText(caption, 12 * ratio, made.height - (FOOT / 2) * ratio, made.width - 24 * ratio);
   made.toBlob((blob) => save(blob, `${part}.png`));

@@ -3,9 +3,10 @@
 import { ask, pause, urlOf } from "./api.js";
 import { scale } from "./axes.js";
 import { onTheme, themed } from "./colours.js";
-import { MARGIN, MARGIN_OF_BLOCK, drawFrame } from "./map_frame.js";
+import { drawFrame, marginOf } from "./map_frame.js";
 import { drawPicture } from "./map_picture.js";
 import { once, pane } from "./pane.js";
+import { onTextSize } from "./text.js";
 import { shown } from "./units.js";
 
 const COARSE = { columns: 120, rows: 90 };
@@ -113,8 +114,8 @@ function groupsOf(scenario) {
 }
 
 function layout(ratio) {
-  const margin = drawn.scenario.size ? MARGIN_OF_BLOCK : MARGIN;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const margin = marginOf(drawn.scenario.size, width);
   const frame = {
     left: margin.left * ratio,
     top: margin.top * ratio,
@@ -198,3 +199,4 @@ function strokeIn(context, colour, width) {
 
 new ResizeObserver(draw).observe(canvas);
 onTheme(draw);
+onTextSize(draw);

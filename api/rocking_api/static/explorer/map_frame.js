@@ -3,23 +3,32 @@
 import { ticks } from "./axes.js";
 import { themed } from "./colours.js";
 import { number } from "./labels.js";
+import { fontOf, textScale } from "./text.js";
 import { inShown, shown, written } from "./units.js";
 
-/** Room around the picture [px]. */
-export const MARGIN = { left: 58, right: 58, top: 14, bottom: 44 };
-export const MARGIN_OF_BLOCK = { ...MARGIN, top: 44 };
+const MARGIN = { left: 58, right: 58, top: 14, bottom: 44 }; // [px] of text that is usually 16 px
+const [NARROW, EDGE] = [0.55, 14]; // share of the width that margins may take, else there is no second scale on the right
+
+/** Room around the picture [px] on a canvas of a width, for a block of a `size` or none. */
+export function marginOf(size, width) {
+  const scale = textScale();
+  const right = (MARGIN.left + MARGIN.right) * scale > NARROW * width ? EDGE : MARGIN.right;
+  const top = size ? MARGIN.bottom : MARGIN.top;
+  return { left: MARGIN.left * scale, right: right * scale, top: top * scale, bottom: MARGIN.bottom * scale };
+}
 
 /** Draw ticks and titles; for a block of a `size` period and peak acceleration, with the groups as the second scale. */
-export function drawFrame(context, frame, scales, size, ratio) {
+export function drawFrame(context, frame, scales, size, pixels) {
+  const ratio = pixels * textScale();
   const right = frame.left + frame.width;
   const bottom = frame.top + frame.height;
   const [middle, centre] = [frame.left + frame.width / 2, frame.top + frame.height / 2];
   context.strokeStyle = themed("muted");
   context.fillStyle = themed("ink");
-  context.lineWidth = ratio;
-  context.font = `${12 * ratio}px system-ui, sans-serif`;
+  context.lineWidth = pixels;
+  context.font = fontOf(12, pixels);
   context.strokeRect(frame.left, frame.top, frame.width, frame.height);
-  const tick = { context, ratio };
+  const tick = { context, ratio, pixels };
 
   const below = { at: bottom, side: 1, title: bottom + 34 * ratio };
   const above = { at: frame.top, side: -1, title: frame.top - 30 * ratio };
@@ -43,8 +52,10 @@ export function drawFrame(context, frame, scales, size, ratio) {
   };
   const unit = size ? inShown("acceleration", size.uplift) : 1;
   const words = size ? `peak acceleration [${written(shown.acceleration)}]` : "amplitude  a = a_g/(g tan α)";
-  upwards(size ? beside : left, scales.y.place, scales.y.low, scales.y.high, "slenderness  1/a = g tan α/a_g");
-  upwards(size ? left : beside, (a) => scales.y.place(unit / a), unit / scales.y.high, unit / scales.y.low, words);
+  const narrow = context.canvas.width - right < (MARGIN.right * ratio) / 2;
+  const both = (axis, ...of) => (axis === left || !narrow) && upwards(axis, ...of);
+  both(size ? beside : left, scales.y.place, scales.y.low, scales.y.high, "slenderness  1/a = g tan α/a_g");
+  both(size ? left : beside, (a) => scales.y.place(unit / a), unit / scales.y.high, unit / scales.y.low, words);
 }
 
 function markAcross({ context, ratio }, x, y, side, text) {
@@ -61,20 +72,25 @@ function markBeside({ context, ratio }, x, y, side, text) {
   context.fillText(text, x + 7 * ratio * side, y);
 }
 
-/** A centred title; the letter after an underscore is a subscript. */
-function title({ context, ratio }, x, y, quarters, text) {
+/** A title, centred where that fits on the canvas, smaller if it is longer; the letter after an underscore is a subscript. */
+function title({ context, ratio, pixels }, x, y, quarters, text) {
   const parts = text.split("_").flatMap((part, at) => (at ? [[part[0], true], [part.slice(1), false]] : [[part, false]]));
-  const fontOf = (low) => `${(low ? 9 : 12) * ratio}px system-ui, sans-serif`;
   const widthOf = ([words, low]) => {
-    context.font = fontOf(low);
+    context.font = fontOf(low ? 9 : 12, pixels);
     return context.measureText(words).width;
   };
+  const whole = parts.map(widthOf).reduce((sum, width) => sum + width);
+  const room = quarters ? context.canvas.height : context.canvas.width;
+  const [shrink, middle] = [Math.min(1, room / whole), quarters ? y : x];
+  const half = (shrink * whole) / 2;
+  const inside = Math.min(Math.max(middle, half), room - half);
   context.save();
-  context.translate(x, y);
+  context.translate(quarters ? x : inside, quarters ? inside : y);
   context.rotate((quarters * Math.PI) / 2);
+  context.scale(shrink, shrink);
   context.textAlign = "left";
   context.textBaseline = "middle";
-  let at = -parts.map(widthOf).reduce((sum, width) => sum + width) / 2;
+  let at = -whole / 2;
   for (const part of parts) {
     const width = widthOf(part);
     context.fillText(part[0], at, part[1] ? 4 * ratio : 0);

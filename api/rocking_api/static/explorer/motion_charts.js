@@ -51,21 +51,15 @@ function drawCharts(history, units, dimensional) {
     ? ["time t [s]", "rotation θ [°]", `ground [${written(shown.acceleration)}]`]
     : ["time τ = p t", "rotation θ/α", "ground a f"];
   const marks = { draw: [(u) => drawLines(u, [-units.angle, units.angle]), (u) => drawImpacts(u, impacts)] };
-  charts = [
-    line(containers[0], 220, [axis(null, { size: 24 }), axis(names[1], SMALL)], [time, rotation], marks),
-    line(containers[1], 150, [axis(names[0], { size: 26 }), axis(names[2], SMALL)], [time, acceleration], {
-      draw: [(u) => drawLines(u, [-units.ground, units.ground]), () => (chartsCaption.textContent = lineNames(units))],
-    }),
-  ];
-  for (const one of charts) {
-    one.over.addEventListener("click", (event) => seek(one.posToVal(event.offsetX, "x") / units.time));
-    one.hooks.setSize = [repeat];
-  }
+  const lines = [(u) => drawLines(u, [-units.ground, units.ground]), () => (chartsCaption.textContent = lineNames(units))];
+  charts = [];
+  line(0, 220, [axis(null, { size: 24 }), axis(names[1], SMALL)], [time, rotation], units, marks);
+  line(1, 150, [axis(names[0], { size: 26 }), axis(names[2], SMALL)], [time, acceleration], units, { draw: lines });
 }
 
 /** What the marks of the charts are; only those within the axes. */
 function lineNames(units) {
-  const visible = ({ scales }, height) => scales.y.max >= height || scales.y.min <= -height;
+  const visible = (one, height) => one && (one.scales.y.max >= height || one.scales.y.min <= -height);
   const dashed = [
     ...(visible(charts[0], units.angle) ? ["α, past which its weight turns it over"] : []),
     ...(visible(charts[1], units.ground) ? ["the acceleration that lifts it off"] : []),
@@ -73,11 +67,15 @@ function lineNames(units) {
   return `Circles: impacts. ${dashed.length ? `Dashed: ${dashed.join(", and ")}. ` : ""}Click a chart to go to that time.`;
 }
 
-function line(place, height, axes, data, hooks) {
+function line(at, height, axes, data, units, drawn) {
   const series = [{}, { stroke: () => themed("accent"), width: 2, pxAlign: 0 }];
-  const made = chart(place, { height, axes, series, hooks, scales: { x: { time: false } } }, data);
-  made.over.append(Object.assign(document.createElement("div"), { className: "cursor" }));
-  return made;
+  const ready = (u) => {
+    charts[at] = u;
+    u.over.append(Object.assign(document.createElement("div"), { className: "cursor" }));
+    u.over.addEventListener("click", (event) => seek(u.posToVal(event.offsetX, "x") / units.time));
+    u.hooks.setSize = [repeat];
+  };
+  chart(containers[at], { height, axes, series, hooks: { ...drawn, ready: [ready] }, scales: { x: { time: false } } }, data);
 }
 
 function moveCursor(one, time) {

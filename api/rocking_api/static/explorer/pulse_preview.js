@@ -3,9 +3,10 @@
 import { ask, isSampled } from "./api.js";
 import { onTheme, themed } from "./colours.js";
 import { number } from "./labels.js";
+import { fontOf, onTextSize, textScale } from "./text.js";
 
 const SAMPLES = 65;
-const ROOM = 14; // [px] around the curve, and for the mark of the period
+const ROOM = 14; // [px] of text that is usually 16 px: around the curve, and for the mark of the period
 
 const canvas = document.getElementById("pulse-preview");
 const note = document.getElementById("pulse-note");
@@ -42,15 +43,16 @@ function draw() {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   const span = Math.max(pulse.duration, 1);
   const sign = chosen.startsWith("-") && !isSampled(chosen) ? -1 : 1;
-  const x = (time) => ROOM + (time / span) * (width - 2 * ROOM);
-  const middle = (height - ROOM) / 2;
+  const room = ROOM * textScale();
+  const x = (time) => room + (time / span) * (width - 2 * room);
+  const middle = (height - room) / 2;
   const y = (value) => middle - sign * value * (middle - 5);
   line(context, [[0, middle], [width, middle]], themed("line"), 1);
   const points = pulse.time.map((time, at) => [x(time), y(pulse.acceleration[at])]);
   const ends = [points[0][0], points.at(-1)[0]].map((place) => [place, middle]);
   line(context, [[0, middle], ends[0], ...points, ends[1], [width, middle]], themed("accent"), 2);
   const start = Math.max((pulse.duration - 1) / 2, 0); // the period is marked in the middle of a long pulse
-  drawPeriod(context, x(start), x(start + 1), height - 6);
+  drawPeriod(context, x(start), x(start + 1), height - 6 * textScale());
 }
 
 /** The description of samples over one period, scaled to the peak 1. */
@@ -65,12 +67,13 @@ function drawPeriod(context, from, to, y) {
   const ink = themed("muted");
   line(context, [[from, y], [to, y]], ink, 1);
   for (const end of [from, to]) line(context, [[end, y - 4], [end, y + 4]], ink, 1);
-  context.font = "12px system-ui, sans-serif";
+  context.font = fontOf(12);
   context.textAlign = "center";
   context.textBaseline = "middle";
   const middle = (from + to) / 2;
   context.fillStyle = themed("paper");
-  context.fillRect(middle - 8, y - 6, 16, 12);
+  const [wide, high] = [16 * textScale(), 12 * textScale()];
+  context.fillRect(middle - wide / 2, y - high / 2, wide, high);
   context.fillStyle = themed("ink");
   context.fillText("T", middle, y);
 }
@@ -84,4 +87,4 @@ function line(context, points, colour, width) {
 }
 
 new ResizeObserver(() => known && draw()).observe(canvas);
-onTheme(() => known && draw());
+for (const on of [onTheme, onTextSize]) on(() => known && draw());

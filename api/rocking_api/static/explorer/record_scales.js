@@ -1,6 +1,6 @@
 // The response over the scale of a record: peak rotation, and where the block overturns.
 
-import { axis, chart, markValue } from "./chart.js";
+import { axis, chart, logAxis, markValue } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { number, threshold, thresholds as rounded } from "./labels.js";
 
@@ -18,7 +18,7 @@ export function drawScales(found, answer) {
       height: 260,
       series: [{}, { stroke: () => themed("accent"), width: 2, spanGaps: false, pxAlign: 0 }],
       axes: [
-        axis("factor of the record", { filter: (_, splits) => splits, values: (_, splits) => splits.map(label), size: 30 }),
+        logAxis("factor of the record", { size: 30 }),
         axis("peak rotation θ/α"),
       ],
       scales: {
@@ -75,10 +75,4 @@ function shade(u, { thresholds, scale }) {
     ctx.fillRect(left, bbox.top, right - left, bbox.height);
   });
   ctx.restore();
-}
-
-function label(value) {
-  if (value === null) return "";
-  const digit = value.toExponential().split("e")[0];
-  return ["1", "2", "3", "5", "7"].includes(digit) ? number(value, 3) : "";
 }

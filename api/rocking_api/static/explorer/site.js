@@ -1,11 +1,12 @@
 // The block under pulses of every shape: the verdict at the PGA and PGV of the site, and the chart of those that overturn it.
 
 import { send } from "./api.js";
-import { axis, chart, chartsReady } from "./chart.js";
+import { chart, chartsReady, logAxis } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { acceleration, length, number, pulseName, threshold, velocity } from "./labels.js";
 import { element } from "./page.js";
 import { pane } from "./pane.js";
+import { fontOf } from "./text.js";
 import { inShown, shown, toSI, written } from "./units.js";
 
 const NODES = 25;
@@ -131,8 +132,8 @@ function drawEnvelope({ rows }) {
       height: 300,
       series: [{}, { paths: () => null, points: { show: false } }],
       axes: [
-        axis(`PGV [${shown.velocity}]`, { size: 30, filter: (_, splits) => splits, values: labels }),
-        axis(`PGA [${written(shown.acceleration)}]`, { filter: (_, splits) => splits, values: labels }),
+        logAxis(`PGV [${shown.velocity}]`, { size: 30 }),
+        logAxis(`PGA [${written(shown.acceleration)}]`),
       ],
       scales: { x: log(ranges[0]), y: log(ranges[1]) },
       hooks: { draw: [(u) => drawRegion(u, curve), (u) => drawMarks(u, here, change)] },
@@ -141,10 +142,6 @@ function drawEnvelope({ rows }) {
   );
   place.dataset.curve = JSON.stringify(curve);
   caption.textContent = "Hatched: pulses of at least one shape overturn the block. Ring: the site; diamond: the nearest change along its line.";
-}
-
-function labels(_, splits) {
-  return splits.map((value) => (value !== null && ["1", "2", "5"].includes(value.toExponential().split("e")[0]) ? number(value) : ""));
 }
 
 function drawRegion(u, curve) {
@@ -186,7 +183,7 @@ function drawMarks(u, here, change) {
     trace(ctx, [[cx - 6 * ratio, cy], [cx, cy - 6 * ratio], [cx + 6 * ratio, cy], [cx, cy + 6 * ratio]]);
     ctx.fill();
     const text = verdict.factor > 1 ? `+${percent(verdict.factor)}` : `× ${threshold(verdict.factor)}`;
-    ctx.font = `${12 * ratio}px system-ui, sans-serif`;
+    ctx.font = fontOf(12, ratio);
     ctx.strokeStyle = themed("paper");
     ctx.lineWidth = 4 * ratio;
     ctx.textAlign = "right";

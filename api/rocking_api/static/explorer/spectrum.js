@@ -1,10 +1,11 @@
 // The rocking spectrum at the chosen slenderness: peak against frequency ratio, other restitutions beside it.
 
 import { ask, urlOf } from "./api.js";
-import { axis, chart, chartsReady, markValue } from "./chart.js";
+import { axis, chart, chartsReady, logAxis, markValue } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { pane } from "./pane.js";
 import { number } from "./labels.js";
+import { fontOf, textScale } from "./text.js";
 
 const OTHERS = [0.8, 0.88, 0.96];
 const POINTS = 400;
@@ -62,7 +63,7 @@ function draw(scenario, [chosen, ...others]) {
       height: 300,
       series,
       axes: [
-        axis("frequency ratio ω", { filter: (_, splits) => splits, values: (_, splits) => splits.map(label), size: 30 }),
+        logAxis("frequency ratio ω", { size: 30 }),
         axis("peak rotation θ/α"),
       ],
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, Math.max(1.2, high * 1.2)] } },
@@ -89,12 +90,6 @@ function readoutText({ restitution, point }, chosen, at) {
   );
 }
 
-function label(value) {
-  if (value === null) return "";
-  const digit = value.toExponential().split("e")[0];
-  return ["1", "2", "3", "5", "7"].includes(digit) ? number(value, 3) : "";
-}
-
 /** Hatch the frequency ratios at which the chosen block overturns. */
 function shadeOverturning(u, chosen) {
   const { ctx, bbox } = u;
@@ -119,9 +114,9 @@ function labelOthers(u, others) {
   ctx.fillStyle = themed("ink");
   ctx.strokeStyle = themed("paper");
   ctx.lineWidth = 3 * devicePixelRatio;
-  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.font = fontOf(11, devicePixelRatio);
   ctx.textAlign = "center";
-  const [wide, high] = [44 * devicePixelRatio, 14 * devicePixelRatio];
+  const [wide, high] = [44, 14].map((px) => px * textScale() * devicePixelRatio);
   const taken = [];
   others.forEach(({ frequency_ratio, peak_rotation }, n) => {
     const from = peak_rotation.lastIndexOf(null) + 1;

@@ -1,8 +1,7 @@
 // Fragility of one block: counts with their intervals, the fitted curve, and the counts from the first level on.
 
-import { axis, chart } from "./chart.js";
+import { axis, chart, logAxis } from "./chart.js";
 import { themed } from "./colours.js";
-import { number } from "./labels.js";
 
 /** Draw one limit state of a block of /v1/suites/{name} in `place`. */
 export function drawFragility(place, { intensity, quantity, records }, state) {
@@ -19,7 +18,7 @@ export function drawFragility(place, { intensity, quantity, records }, state) {
         { stroke: () => themed("muted"), width: 1.5, dash: [2, 4], points: { show: false } },
       ],
       axes: [
-        axis(quantity, { filter: (_, splits) => splits, values: (_, splits) => splits.map(label), size: 30 }),
+        logAxis(quantity, { size: 30 }),
         axis("share of the records"),
       ],
       scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: [0, 1.02] } },
@@ -43,9 +42,4 @@ function intervals(u, intensity, { fraction_lower: low, fraction_upper: high }) 
     ctx.stroke();
   });
   ctx.restore();
-}
-
-function label(value) {
-  if (value === null) return "";
-  return ["1", "2", "5"].includes(value.toExponential().split("e")[0]) ? number(value, 3) : "";
 }
