@@ -15,7 +15,9 @@ os.environ.setdefault("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
 GUIDE_URL = os.environ.get("GUIDE_URL", "").rstrip("/")
 """Address of the site whose folders are the guides of all versions; docs/README.md."""
 
-from rocking._base.version import __version__  # noqa: E402  (from this tree)
+from rocking_api.routers.pages import PAGES  # noqa: E402  (from this tree)
+
+from rocking._base.version import __version__  # noqa: E402
 
 project = "rocking"
 author = project_copyright = "The rocking developers"
@@ -75,8 +77,8 @@ warnings.filterwarnings("ignore", message="FigureCanvasAgg is non-interactive") 
 
 html_theme = "furo"
 html_theme_options = {
-    "announcement": '<a href="/">Explorer and other pages of the service</a>'
-}  # which serves the guide; elsewhere guide.js and guide.css leave it out
+    "announcement": " ".join(f'<a href="{page.path}">{page.label}</a>' for page in PAGES)
+}  # the navigation of the service, which serves the guide; elsewhere guide.js and guide.css leave it out
 html_title = f"rocking {release}"
 html_baseurl = f"{GUIDE_URL}/{'.'.join(release.split('.')[:2])}/" if GUIDE_URL else ""  # of this version, for ever
 html_static_path = ["_static"]

@@ -1,2 +1,2 @@
-// The link to the other pages of the service exists only where the service serves the guide, under /guide/.
+// The links to the other pages of the service exist only where the service serves the guide, under /guide/.
 document.documentElement.classList.toggle("served", /^https?:/.test(location.protocol) && location.pathname.startsWith("/guide/"));

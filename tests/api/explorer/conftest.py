@@ -82,17 +82,27 @@ def address(package_service):
 
 
 @pytest.fixture(scope="package")
-def browser():
+def launch():
+    """Starts a browser, with variables of the environment."""
     if os.environ.get("ROCKING_NO_BROWSER"):
         pytest.skip("ROCKING_NO_BROWSER is set")
     found = find()
     if found is None:
         pytest.skip(HOW)
     with sync_playwright() as playwright:
-        environment = {**os.environ, **found.environment}
-        browser = playwright.chromium.launch(executable_path=found.path, args=list(found.flags), env=environment)
-        yield browser
-        browser.close()
+
+        def launched(**environment):
+            environment = {**os.environ, **found.environment, **environment}
+            return playwright.chromium.launch(executable_path=found.path, args=list(found.flags), env=environment)
+
+        yield launched
+
+
+@pytest.fixture(scope="package")
+def browser(launch):
+    browser = launch()
+    yield browser
+    browser.close()
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 import pytest
 
 from tests.api.explorer.reading import BLOCK, settle
+from tests.api.explorer.test_layout import NEXT_FRAME
 from tests.api.explorer.test_records import choose, short_record
 
 RECORD_TEXT = """() => {
@@ -32,11 +33,11 @@ def texts_at(page, width, percent):
     """All texts of one drawing of each canvas, by canvas, with sizes and boxes [px]."""
     page.set_viewport_size({"width": width, "height": 900})
     page.evaluate("size => { document.documentElement.style.fontSize = `${size}%` }", percent)
-    page.wait_for_timeout(300)
+    page.evaluate(NEXT_FRAME)
     page.evaluate("texts.length = 0")
     dark = page.evaluate("matchMedia('(prefers-color-scheme: dark)').matches")
     page.emulate_media(color_scheme="light" if dark else "dark")  # everything is drawn again, once
-    page.wait_for_timeout(300)
+    page.evaluate(NEXT_FRAME)
     found = {}
     for one in page.evaluate(TEXTS):
         found.setdefault(one["canvas"], []).append(one)
@@ -64,8 +65,10 @@ def test_drawings_follow_the_size_of_the_text(open_page, path):
     page.goto(path)
     if path == BLOCK:
         settle(page)
-        page.locator("#spectrum-chart canvas").wait_for()
-        canvases = {"map", "envelope", "rotation", "acceleration-chart", "spectrum-chart", "stage", "pulse-preview"}
+        for place in ("#spectrum-chart", "#envelope", "#rotation"):
+            page.locator(f"{place} canvas").wait_for()
+        canvases = {"map", "map-marks", "envelope", "rotation", "acceleration-chart", "spectrum-chart", "stage"}
+        canvases.add("pulse-preview")
     elif path == "/suites":
         page.locator("#suite-report canvas").first.wait_for()
         canvases = {"suite-report"}

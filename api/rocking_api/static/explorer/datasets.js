@@ -13,6 +13,8 @@ const groups = document.getElementById("groups");
 const status = document.getElementById("status");
 const filter = document.getElementById("filter");
 const choices = { pulse: document.getElementById("pulse"), restitution: document.getElementById("eta") };
+const filters = [filter, ...Object.values(choices)];
+const showAll = element("button", "Show all", { type: "button" });
 
 let datasets = []; // of the catalogue, each with its row
 let stores = {}; // of the cubes of one pulse, by the folder of these
@@ -29,6 +31,7 @@ async function show() {
     const kinds = [...new Set([...Object.keys(GROUPS), ...datasets.map(({ kind }) => kind)])];
     groups.replaceChildren(...kinds.map(group).filter(Boolean));
     document.getElementById("archive").textContent = `All as one archive, ${sizeOf(datasets)}`;
+    recall();
     select();
   } catch (problem) {
     setStatus(status, problem, show);
@@ -122,11 +125,25 @@ function chosen() {
   return datasets.filter((one) => one.row.cells[0].textContent.toLowerCase().includes(words) && fits(one, "pulse") && fits(one, "restitution"));
 }
 
+/** Set the filters to those of the address. */
+function recall() {
+  const given = new URLSearchParams(location.search);
+  for (const field of filters) field.value = given.get(field.id) ?? "";
+}
+
+/** Keep the filters in the address, and show what they leave. */
+function filtered() {
+  const parts = filters.filter(({ value }) => value).map(({ id, value }) => [id, value]);
+  history.replaceState(null, "", parts.length ? `?${new URLSearchParams(parts)}` : location.pathname);
+  select();
+}
+
 function select() {
   const left = chosen();
   for (const one of datasets) one.row.hidden = !left.includes(one);
   for (const part of groups.querySelectorAll("section, tbody")) part.hidden = !part.querySelector("tr:not([hidden]) > td");
   setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${sizeOf(left)}` : "There is no data set yet: make reproduce makes them.");
+  if (datasets.length && !left.length) status.append(" ", showAll);
 }
 
 document.getElementById("sums").addEventListener("click", () => {
@@ -134,6 +151,9 @@ document.getElementById("sums").addEventListener("click", () => {
   save(new Blob(lines), "SHA256SUMS");
   setStatus(status, "The browser saves SHA256SUMS.");
 });
-filter.addEventListener("input", select);
-for (const one of Object.values(choices)) one.addEventListener("change", select);
+for (const field of filters) field.addEventListener("input", filtered);
+showAll.addEventListener("click", () => {
+  for (const field of filters) field.value = "";
+  filtered();
+});
 show();

@@ -44,6 +44,16 @@ export function threshold(value, overturnsAbove = true, digits = 3) {
   return number(figures * 10 ** (Number(power) - digits + 1), digits);
 }
 
+/** A factor on the motion at which the outcome changes, beside its mark: "+70 %", or "× 0.9" below 1. */
+export function factorLabel(factor) {
+  return factor > 1 ? `+${percentMore(factor)}` : `× ${threshold(factor)}`;
+}
+
+/** By how much a factor exceeds 1: "70 %". */
+export function percentMore(factor) {
+  return `${threshold(100 * (factor - 1), true, 2)} %`;
+}
+
 /** Values at which the outcome changes, [value, overturns above] each, with more digits where neighbours would coincide. */
 export function thresholds(changes, digits = 3) {
   for (let more = digits; more < 12; more += 1) {

@@ -15,7 +15,7 @@ import { showPreview } from "./pulse_preview.js";
 import { blockParams, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
 import { showSite } from "./site.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
-import { change, isBlock, onChange, state } from "./state.js";
+import { change, isBlock, onChange, state, stepsBack } from "./state.js";
 import { whole, windowOf } from "./view.js";
 import { number, pulseName } from "./labels.js";
 
@@ -30,12 +30,15 @@ const block = pane({
   clear: () => showAnswer(null),
 });
 
+const undo = document.getElementById("undo");
+
 let scenario = null; // of the state; null while it is unknown
 let view = null; // window of the map
 let turn = 0; // number of changes of the scenario, by which a late response is recognised
 
 /** Show the state. */
 function show() {
+  undo.disabled = !stepsBack();
   clearErrors();
   showPreview(state().pulse);
   resolve();
@@ -117,8 +120,9 @@ function caption() {
 const look = () => ({ state: state(), scenario, view });
 wireForm(look, set, edit);
 wireGestures(look, set);
-wireMap(look, (point, keep) => set(movedTo(state(), scenario, point), keep), set);
+wireMap(look, (point, keep) => set(movedTo(state(), scenario, point), keep), set, () => undo.click());
 wireDownloads(caption);
 document.getElementById("whole").addEventListener("click", () => set(whole()));
+undo.addEventListener("click", () => history.back());
 onChange(show);
 show();

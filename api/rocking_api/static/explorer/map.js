@@ -3,10 +3,11 @@
 import { ask, pause, urlOf } from "./api.js";
 import { scale } from "./axes.js";
 import { onTheme, themed } from "./colours.js";
+import { factorLabel } from "./labels.js";
 import { drawFrame, marginOf } from "./map_frame.js";
 import { drawPicture } from "./map_picture.js";
 import { once, pane } from "./pane.js";
-import { onTextSize } from "./text.js";
+import { fontOf, onTextSize } from "./text.js";
 import { shown } from "./units.js";
 
 const COARSE = { columns: 120, rows: 90 };
@@ -154,7 +155,7 @@ function drawMarks() {
   context.clearRect(0, 0, over.width, over.height);
   if (hovered) drawCross(context, frame, scales, hovered, ratio);
   const { point, change } = drawn.scenario;
-  if (change) drawDiamond(context, frame, scales, { ...point, slenderness: change }, ratio);
+  if (change) drawDiamond(context, frame, scales, point, change, ratio);
   if (point) drawRing(context, frame, scales, point, ratio);
 }
 
@@ -178,9 +179,9 @@ function drawRing(context, frame, scales, point, ratio) {
   for (const [colour, width] of [["#ffffff", 6], ["#111111", 2.4]]) strokeIn(context, colour, width * ratio);
 }
 
-/** The nearest change of the outcome at the period of the point. */
-function drawDiamond(context, frame, scales, point, ratio) {
-  const [x, y] = [scales.x.place(point.frequency_ratio), scales.y.place(point.slenderness)];
+/** The nearest change of the outcome at the period of the point, with the factor on its acceleration. */
+function drawDiamond(context, frame, scales, { frequency_ratio, slenderness }, change, ratio) {
+  const [x, y] = [scales.x.place(frequency_ratio), scales.y.place(change)];
   if (x < frame.left || x > frame.left + frame.width || y < frame.top || y > frame.top + frame.height) return;
   const half = 7 * ratio;
   context.beginPath();
@@ -188,6 +189,16 @@ function drawDiamond(context, frame, scales, point, ratio) {
   for (const [dx, dy] of [[0, -half], [half, 0], [0, half]]) context.lineTo(x + dx, y + dy);
   context.closePath();
   for (const [colour, width] of [["#ffffff", 5], ["#111111", 2]]) strokeIn(context, colour, width * ratio);
+  const onRight = x < frame.left + frame.width / 2;
+  context.font = fontOf(12, ratio);
+  context.textAlign = onRight ? "left" : "right";
+  context.textBaseline = "middle";
+  context.lineWidth = 4 * ratio;
+  context.strokeStyle = "#ffffff";
+  context.fillStyle = "#111111";
+  const text = [factorLabel(slenderness / change), x + (onRight ? 2 : -2) * half, y];
+  context.strokeText(...text);
+  context.fillText(...text);
 }
 
 /** White under black is visible on every colour of the map. */

@@ -32,8 +32,8 @@ const numbers = pane({
   },
 });
 
-/** Wire the map: `look()` gives scenario and view, `choose(point, keep)` and `frame(parts)` change the state. */
-export function wireMap(look, choose, frame) {
+/** Wire the map: `look()` gives scenario and view, `choose(point, keep)` and `frame(parts)` change the state, `undo()` the last change. */
+export function wireMap(look, choose, frame, undo) {
   over.addEventListener("pointermove", (event) => {
     const point = pointAt(event.offsetX, event.offsetY);
     hover(point);
@@ -54,11 +54,13 @@ export function wireMap(look, choose, frame) {
       const [across, up] = ARROWS[event.key].map((sign) => sign * (event.shiftKey ? LARGE_STEP : STEP));
       choose(rounded(scenario.point ? pointBeside(view, about, across, up) : about), false);
     } else if (event.key === "Enter" && scenario) choose(rounded(about), true);
+    else if (event.key === "z" && (event.ctrlKey || event.metaKey)) undo();
     else if (event.key === "+" || event.key === "=") frame(zoomed(view, about, ZOOM));
     else if (event.key === "-") frame(zoomed(view, about, 1 / ZOOM));
     else return;
     event.preventDefault();
   });
+  over.addEventListener("keyup", (event) => event.key in ARROWS && frame({})); // one step to undo
   for (const [id, factor] of [["zoom-in", ZOOM], ["zoom-out", 1 / ZOOM]]) {
     document.getElementById(id).addEventListener("click", () => {
       const { scenario, view } = look();

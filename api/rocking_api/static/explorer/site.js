@@ -3,7 +3,7 @@
 import { send } from "./api.js";
 import { chart, chartsReady, logAxis } from "./chart.js";
 import { hatch, themed } from "./colours.js";
-import { acceleration, length, number, pulseName, threshold, velocity } from "./labels.js";
+import { acceleration, factorLabel, length, number, percentMore, pulseName, threshold, velocity } from "./labels.js";
 import { element } from "./page.js";
 import { pane } from "./pane.js";
 import { fontOf } from "./text.js";
@@ -103,11 +103,7 @@ const upwards = (value, digits = 3) => threshold(value, false, digits);
 function changeOf({ factor, governing }, highest) {
   if (factor === null) return `No factor up to ${number(highest)} on these motions was found to overturn it.`;
   const name = pulseName(governing);
-  return factor > 1 ? `It overturns with ${percent(factor)} more (${name}).` : `The lowest factor that overturns it is ${threshold(factor)} (${name}).`;
-}
-
-function percent(factor) {
-  return `${threshold(100 * (factor - 1), true, 2)} %`;
+  return factor > 1 ? `It overturns with ${percentMore(factor)} more (${name}).` : `The lowest factor that overturns it is ${threshold(factor)} (${name}).`;
 }
 
 /** PGA against PGV: hatched where a pulse of some shape overturns the block. */
@@ -182,7 +178,7 @@ function drawMarks(u, here, change) {
     ctx.stroke();
     trace(ctx, [[cx - 6 * ratio, cy], [cx, cy - 6 * ratio], [cx + 6 * ratio, cy], [cx, cy + 6 * ratio]]);
     ctx.fill();
-    const text = verdict.factor > 1 ? `+${percent(verdict.factor)}` : `× ${threshold(verdict.factor)}`;
+    const text = factorLabel(verdict.factor);
     ctx.font = fontOf(12, ratio);
     ctx.strokeStyle = themed("paper");
     ctx.lineWidth = 4 * ratio;

@@ -57,11 +57,16 @@ export function change(parts, { keep = true } = {}) {
   current = { ...current, ...parts };
   const address = addressOf(current);
   if (keep && address !== step) {
-    history.replaceState(null, "", step);
-    history.pushState(null, "", address);
+    history.replaceState(history.state, "", step);
+    history.pushState({ steps: stepsBack() + 1 }, "", address);
     step = address;
-  } else history.replaceState(null, "", address);
+  } else history.replaceState(history.state, "", address);
   refresh();
+}
+
+/** Number of entries in the history of the browser that this page added before the present one. */
+export function stepsBack() {
+  return history.state?.steps ?? 0;
 }
 
 /** Call `listener(state)` after every change, the back and forward buttons among them. */
