@@ -48,7 +48,8 @@ export function axis(label, more = {}) {
 export function logAxis(label, more = {}) {
   const values = (u, splits, at) => {
     const apart = LABEL_SPACE[at] * textScale();
-    const labelled = spread(splits.filter((value) => value !== null), (value) => u.valToPos(value, "xy"[at]), apart);
+    const round = splits.filter((value) => value !== null && Number(value.toPrecision(1)) === value);
+    const labelled = spread(round, (value) => u.valToPos(value, "xy"[at]), apart);
     return splits.map((value) => (labelled.includes(value) ? number(value, 3) : ""));
   };
   return axis(label, { filter: (_, splits) => splits, values, ...more });

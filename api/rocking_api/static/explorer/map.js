@@ -194,6 +194,7 @@ function drawDiamond(context, frame, scales, { frequency_ratio, slenderness }, c
   context.textAlign = onRight ? "left" : "right";
   context.textBaseline = "middle";
   context.lineWidth = 4 * ratio;
+  context.lineJoin = "round";
   context.strokeStyle = "#ffffff";
   context.fillStyle = "#111111";
   const text = [factorLabel(slenderness / change), x + (onRight ? 2 : -2) * half, y];

@@ -114,6 +114,7 @@ function labelOthers(u, others) {
   ctx.fillStyle = themed("ink");
   ctx.strokeStyle = themed("paper");
   ctx.lineWidth = 3 * devicePixelRatio;
+  ctx.lineJoin = "round";
   ctx.font = fontOf(11, devicePixelRatio);
   ctx.textAlign = "center";
   const [wide, high] = [44, 14].map((px) => px * textScale() * devicePixelRatio);
