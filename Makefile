@@ -88,6 +88,8 @@ newest: ## the same with the newest versions (PRERELEASE=allow: pre-releases, to
 
 # The environments are made below build/; the tools of the tests are the newest. The last line says what failed.
 oldest: RESOLUTION := lowest-direct
+# what our requirements require is the newest there, too, and may deprecate what their old versions call
+oldest: WARNINGS := -W default::DeprecationWarning
 newest: RESOLUTION := highest
 oldest newest: $(UV)
 	$(UV) venv --quiet --clear --python $(PYTHON) build/$@
@@ -96,7 +98,7 @@ oldest newest: $(UV)
 	$(UV) pip install --quiet --python build/$@ --requirement build/$@.txt pytest hypothesis mpmath python-flint
 	$(UV) pip install --quiet --python build/$@ --no-deps --editable .
 	@export VIRTUAL_ENV=build/$@ NUMBA_CACHE_DIR='$(CURDIR)/build/$@/kernels'; \
-	$(UV) run --no-project python -m pytest -q tests/solver >build/$@.log 2>&1; status=$$?; \
+	$(UV) run --no-project python -m pytest -q $(WARNINGS) tests/solver >build/$@.log 2>&1; status=$$?; \
 	echo "$@: $$(tail -n 1 build/$@.log) $$(grep -E '^(FAILED|ERROR) ' build/$@.log | cut -d ' ' -f 2 | tr '\n' ' ')"; \
 	exit $$status
 

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking import precompile
+from rocking._excitation import pulses
 from rocking._excitation.pulses import PULSE_NAMES
-from tests.api.conftest import assert_problem
+from tests.api.conftest import assert_problem, client_of
+from tests.excitation.test_smooth_pulse import CHIRP
 
 
 def test_pulses_are_those_of_the_package(client):
@@ -26,3 +29,17 @@ def test_pulses_are_those_of_the_package(client):
 
 def test_samples_are_limited(client):
     assert_problem(client.get("/v1/pulses", params={"samples": 1}), 422, "samples")
+
+
+def test_a_registered_pulse_is_listed_and_solved(tmp_path, monkeypatch):
+    monkeypatch.setattr(pulses, "_REGISTERED", {})
+    pulses.register(CHIRP)
+    precompile.main()  # the service refuses requests while it compiles
+    groups = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
+    with client_of(tmp_path, cache=tmp_path / "cache") as client:
+        listed = {pulse["name"]: pulse for pulse in client.get("/v1/pulses").json()["pulses"]}
+        assert listed["chirp"]["duration"] == pytest.approx(4.0)
+        response = client.get("/v1/response", params=groups | {"pulse": "chirp", "method": "solver"})
+        assert response.status_code == 200, response.text
+        solved = float(rocking.peak_response(CHIRP, **groups).peak_rotation)
+        assert response.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)

@@ -5,10 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from fastapi.testclient import TestClient
 from flint import arb, arb_series, ctx
-from rocking_api.app import create_app
-from rocking_api.settings import Settings
 from typer.testing import CliRunner
 
 import reference.multiprecision
@@ -16,7 +13,6 @@ import rocking
 from reference.conditioning import integrate_with_conditioning
 from reference.exact_pulses import ExactPulse, _newton
 from reference.exact_response import working_precision
-from rocking import precompile
 from rocking._base.errors import InvalidArgumentError
 from rocking._cli.app import app
 from rocking._excitation import pulses
@@ -136,18 +132,6 @@ def test_registered_by_name():
     assert json.loads(printed.stdout)["peak_rotation"] == pytest.approx(float(found.peak_rotation), rel=1e-12)
     with pytest.raises(InvalidArgumentError, match="name"):
         pulses.register(CHIRP)
-
-
-@pytest.mark.usefixtures("registered")
-def test_registered_in_the_service(tmp_path):
-    precompile.main()  # the service refuses requests while it compiles
-    with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
-        listed = {pulse["name"]: pulse for pulse in client.get("/v1/pulses").json()["pulses"]}
-        assert listed["chirp"]["duration"] == pytest.approx(4.0)
-        response = client.get("/v1/response", params=GROUPS | {"pulse": "chirp", "method": "solver"})
-        assert response.status_code == 200, response.text
-        solved = float(rocking.peak_response(CHIRP, **GROUPS).peak_rotation)
-        assert response.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)
 
 
 def test_many_bodies_solved_together_are_those_solved_alone():
