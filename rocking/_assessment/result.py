@@ -105,7 +105,7 @@ class Assessment(EqualByValue):
         direction is the motion reversed: it has another factor if the centre of mass is not in the middle.
 
         An object turns about a side of its base, for which the component of the motion across that side suffices. A
-        planar base of its extent in an oblique direction, which turns about a corner, would be too safe.
+        planar base of its extent in an oblique direction, which turns about a corner, would overestimate it.
 
         Parameters
         ----------
