@@ -65,6 +65,29 @@ def test_three_blocks_have_three_outcomes():
     assert other.uplift_acceleration > 0.33 * STANDARD_GRAVITY
 
 
+def test_samples_are_drawn_on_the_picture_of_the_pulse(open_page):
+    page = open_page(BLOCK)
+    page.locator("#pulse").select_option("Own samples")
+    expect(page.locator("#samples")).to_have_value("0 1 0")
+    box = page.locator("#pulse-preview").bounding_box()
+    page.mouse.move(box["x"] + 1, box["y"] + 1)  # before the first sample, above the peak
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 1)
+    page.mouse.move(box["x"] + box["width"] - 1, box["y"] + box["height"] - 1)
+    page.mouse.up()
+    page.wait_for_url(lambda url: "pulse=1+1+1" in url)
+    drawn = [float(sample) for sample in page.locator("#samples").input_value().split()]
+    assert drawn[:9] == [1.0] * 9
+    np.testing.assert_allclose(drawn[8:], np.linspace(1.0, -1.0, 9), atol=1e-3)  # of one movement, linear
+    expect(page.locator(".verdict")).to_be_visible()
+    settle(page)
+    found = rocking.Block(0.4, 1.6).response(
+        rocking.SampledPulse(drawn), peak_acceleration=0.4 * STANDARD_GRAVITY, period=0.5
+    )
+    verdict = "It overturns." if found.overturned else "It survives (comes to rest)."
+    expect(page.locator(".verdict")).to_have_text(verdict)
+
+
 def test_the_address_restores_the_block(open_page):
     page = open_page(BLOCK)
     expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")

@@ -5,6 +5,7 @@ import { samplesOf, TRIANGLE } from "./own_pulse.js";
 import { element } from "./page.js";
 import { problems, showErrors } from "./form_errors.js";
 import { number, PULSES } from "./labels.js";
+import { wireDrawing } from "./pulse_preview.js";
 import { isBlock } from "./state.js";
 import { inUnit, MISSING, shown, split, SYSTEMS, toSI, UNITS, written } from "./units.js";
 
@@ -37,6 +38,7 @@ export function wireForm(look, set, edit) {
   });
   pulse.addEventListener("change", () => set({ pulse: pulse.value === OWN ? samplesOf(samples.value || TRIANGLE) : pulse.value }, true));
   samples.addEventListener("change", () => set({ pulse: samplesOf(samples.value) || TRIANGLE }, true));
+  wireDrawing((drawn) => set({ pulse: drawn }, true));
   how.addEventListener("change", () => set({ restitution: how.value === "momentum" ? "momentum" : eta.value }, true));
   units.addEventListener("change", () => set({ ...block(SYSTEMS[units.value]), ...(isBlock(look().state) ? {} : EMPTY) }, true));
   for (const [name, keep] of [["input", false], ["change", true]]) {

@@ -1,4 +1,4 @@
-// The chosen ground motion in the form: its acceleration against time, and what its period T is.
+// The chosen ground motion in the form: its acceleration against time, and what its period T is. Own samples can be drawn.
 
 import { ask, isSampled } from "./api.js";
 import { onTheme, themed } from "./colours.js";
@@ -8,11 +8,14 @@ import { fontOf, onTextSize, textScale } from "./text.js";
 const SAMPLES = 65;
 const ROOM = 14; // [px] of text that is usually 16 px: around the curve, and for the mark of the period
 
+const DRAWN = 17; // samples of a pulse that is drawn; their values are rounded to 1/20 of the peak
+
 const canvas = document.getElementById("pulse-preview");
 const note = document.getElementById("pulse-note");
 
 let known = null; // descriptions of the pulses by name
 let chosen = null;
+let drawn = null; // the samples while they are drawn
 
 /** Show a pulse by its name; an unknown one clears the preview. */
 export async function showPreview(name) {
@@ -30,8 +33,58 @@ async function load() {
   return new Map(pulses.map((one) => [one.name, one]));
 }
 
+/** Let a drag over the picture of own samples change them; `take` is given them as text when it ends. */
+export function wireDrawing(take) {
+  let last = null;
+  const move = (event) => {
+    if (!drawn) return;
+    const box = canvas.getBoundingClientRect();
+    const { room, middle, high } = frame(box.width, box.height);
+    const bounded = (value, from, to) => Math.min(Math.max(value, from), to);
+    const at = Math.round(bounded((event.clientX - box.left - room) / (box.width - 2 * room), 0, 1) * (DRAWN - 1));
+    const value = Math.round(bounded((middle - (event.clientY - box.top)) / high, -1, 1) * 20) / 20;
+    last ??= { at, value };
+    for (let k = Math.min(at, last.at); k <= Math.max(at, last.at); k++) { // a fast drag leaves samples out
+      const part = at === last.at ? 1 : (k - last.at) / (at - last.at);
+      drawn[k] = Number((last.value + part * (value - last.value)).toFixed(3));
+    }
+    last = { at, value };
+    draw();
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    if (!isSampled(chosen)) return;
+    const { time, acceleration } = ownOf(chosen);
+    drawn = Array.from({ length: DRAWN }, (_, k) => Number(linear(time, acceleration, k / (DRAWN - 1)).toFixed(3)));
+    canvas.setPointerCapture(event.pointerId);
+    move(event);
+  });
+  canvas.addEventListener("pointermove", move);
+  for (const end of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(end, () => {
+      if (drawn) take(drawn.join(" "));
+      drawn = last = null;
+    });
+  }
+}
+
+/** Value at a time of what is linear between its samples. */
+function linear(time, values, at) {
+  const after = Math.max(time.findIndex((one) => one >= at), 1);
+  if (values.length === 1) return values[0];
+  const part = (at - time[after - 1]) / (time[after] - time[after - 1]);
+  return values[after - 1] + part * (values[after] - values[after - 1]);
+}
+
+/** Room around the curve, the height of zero, and the height of the peak above it [px]. */
+function frame(width, height) {
+  const room = ROOM * textScale();
+  const middle = (height - room) / 2;
+  return { room, middle, high: middle - 5 };
+}
+
 function draw() {
-  const pulse = isSampled(chosen) ? ownOf(chosen) : known?.get(chosen.replace(/^-/, ""));
+  canvas.classList.toggle("own", isSampled(chosen));
+  const pulse = drawn ? samplesOver(drawn) : isSampled(chosen) ? ownOf(chosen) : known?.get(chosen.replace(/^-/, ""));
   canvas.hidden = !pulse;
   note.textContent = pulse ? `It lasts ${number(pulse.duration)} T. ${pulse.definition}` : "";
   if (!pulse || !canvas.clientWidth) return;
@@ -43,10 +96,9 @@ function draw() {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   const span = Math.max(pulse.duration, 1);
   const sign = chosen.startsWith("-") && !isSampled(chosen) ? -1 : 1;
-  const room = ROOM * textScale();
+  const { room, middle, high } = frame(width, height);
   const x = (time) => room + (time / span) * (width - 2 * room);
-  const middle = (height - room) / 2;
-  const y = (value) => middle - sign * value * (middle - 5);
+  const y = (value) => middle - sign * value * high;
   line(context, [[0, middle], [width, middle]], themed("line"), 1);
   const points = pulse.time.map((time, at) => [x(time), y(pulse.acceleration[at])]);
   const ends = [points[0][0], points.at(-1)[0]].map((place) => [place, middle]);
@@ -59,8 +111,12 @@ function draw() {
 function ownOf(samples) {
   const values = samples.split(" ").map(Number);
   const peak = Math.max(...values.map(Math.abs)) || 1;
-  const time = values.map((_, at) => at / Math.max(values.length - 1, 1));
-  return { time, acceleration: values.map((value) => value / peak), duration: 1, definition: "Linear between the samples." };
+  return samplesOver(values.map((value) => value / peak));
+}
+
+function samplesOver(acceleration) {
+  const time = acceleration.map((_, at) => at / Math.max(acceleration.length - 1, 1));
+  return { time, acceleration, duration: 1, definition: "Linear between the samples. Drag over the picture to draw it." };
 }
 
 function drawPeriod(context, from, to, y) {
