@@ -29,6 +29,7 @@ def start_arcs(pulse: Record, group: Record, sign: float) -> None:
     """Set the coefficients of the flights, all with sgn(theta) = `sign`, from the columns of `flight`."""
     a = 1.0 / load(group.columns, SLENDERNESS)
     store(group.a, 0, a)
+    group.expanded = 0
     store(group.reciprocal_omega, 0, 1.0 / load(group.columns, OMEGA))
     start_particular_solution(pulse, group, sign, a)
     at_uplift = load(group.columns, AT_UPLIFT) > 0.0
@@ -48,7 +49,8 @@ def states_at(pulse: Record, group: Record, h: SimdVector) -> Any:
     w += x0 * sinh + y0 * cosh1
     near = h <= load(group.reach, 0)
     if any_lane(near):
-        expand_start(pulse, group)
+        if not group.expanded:
+            expand_start(pulse, group)
         near_z, near_w = series_states(pulse, group, h)
         z, w = select(near, near_z, z), select(near, near_w, w)
     return z, w
@@ -81,6 +83,7 @@ def expand_start(pulse: Record, group: Record) -> None:
         store(series, n + 2, (load(series, n) - load(series, n + 2)) * (1.0 / ((n + 1.0) * (n + 2.0))))
     for n in range(SERIES_LENGTH - 2, pulse.series_length - 2):
         store(series, n + 2, (load(series, n) - load(series, n + 2)) * (1.0 / ((n + 1.0) * (n + 2.0))))
+    group.expanded = 1
 
 
 @kernel

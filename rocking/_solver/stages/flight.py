@@ -28,7 +28,7 @@ from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, spl
 from rocking._solver.stages.arcs import start_arcs, states_at
 from rocking._solver.stages.cuts import cut_phases, init_cuts
 from rocking._solver.stages.excitation import restoring_acceleration, set_angles, set_end_angles
-from rocking._solver.stages.roots import hermite_roots, locate_impacts, locate_peaks
+from rocking._solver.stages.roots import locate_impacts, locate_peaks, quintic_roots
 from rocking._solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
 from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 
@@ -142,7 +142,7 @@ def follow_part(
         escapes = fill_mask(False)
         hits, undecided = destabilised_events(pulse, group, falling_back, left_h, left_z, left_w, h, z, w)
     if any_lane(hits):
-        bracket_impacts(group, hits, left_h, left_z, left_w, h, z, w)
+        bracket_impacts(group, hits, left_h, left_z, left_w, h, z, w, q)
     # 4. How each flight goes on
     ended = select(escapes, splat(float(PULSE_END)), load(group.ended, 0))
     ended = select(hits, splat(float(IMPACT)), ended)
@@ -216,7 +216,7 @@ def restored_events(
     if any_lane(peaks):
         if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
             flush_peaks(pulse, group, peaks)
-        guess = left_h + hermite_roots(left_w, left_slope, w, slope, duration)
+        guess = left_h + quintic_roots(True, left_z, left_w, left_slope, z, w, slope, duration)
         store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
         store(group.peak_low, 0, select(peaks, left_h, load(group.peak_low, 0)))
         store(group.peak_high, 0, select(peaks, h, load(group.peak_high, 0)))
@@ -262,15 +262,18 @@ def bracket_impacts(
     h: SimdVector,
     z: SimdVector,
     w: SimdVector,
+    q: SimdVector,
 ) -> None:
     """Set the bracket of the impact: the part, or its left end and the dip that `find_dips` has set."""
     store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
     store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
     store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
+    store(group.impact_low_slope, 0, select(hits, left_z - load(group.left_q, 0), load(group.impact_low_slope, 0)))
     at_end = hits & (z <= 0.0)  # otherwise at the dip
     store(group.impact_high, 0, select(at_end, h, load(group.impact_high, 0)))
     store(group.impact_high_z, 0, select(at_end, z, load(group.impact_high_z, 0)))
     store(group.impact_high_w, 0, select(at_end, w, load(group.impact_high_w, 0)))
+    store(group.impact_high_slope, 0, select(at_end, z - q, load(group.impact_high_slope, 0)))
 
 
 @kernel
@@ -299,14 +302,16 @@ def find_dips(
         h = select(todo, h, splat(FAR))
         set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
         z, w = states_at(pulse, group, h)
+        second = z - restoring_acceleration(pulse, group)
         v, slope = z, w
         if of_w != 0.0:
-            v, slope = w * of_w, (z - restoring_acceleration(pulse, group)) * of_w
+            v, slope = w * of_w, second * of_w
         found = todo & (v <= 0.0)
         dips = dips | found
         store(group.impact_high, 0, select(found, h, load(group.impact_high, 0)))
         store(group.impact_high_z, 0, select(found, z, load(group.impact_high_z, 0)))
         store(group.impact_high_w, 0, select(found, w, load(group.impact_high_w, 0)))
+        store(group.impact_high_slope, 0, select(found, second, load(group.impact_high_slope, 0)))
         falls = slope < 0.0
         low, high = select(falls, h, low), select(falls, high, h)
         v_low, v_high = select(falls, v, v_low), select(falls, v_high, v)

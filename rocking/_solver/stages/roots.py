@@ -1,4 +1,4 @@
-"""First guesses of zeros by cubics, and peaks and impacts of `LANES` flights inside their brackets.
+"""First guesses of zeros by polynomials, and peaks and impacts of `LANES` flights inside their brackets.
 
 Each iteration evaluates the exact arc, and continues by reversion of the Taylor series of fourth order there. With
 y = -v/v', b_n = v^(n)/(n! v') the zero of v is y - b_2 y^2 + (2 b_2^2 - b_3) y^3 + (5 b_2 b_3 - 5 b_2^3 - b_4) y^4,
@@ -34,6 +34,41 @@ def hermite_roots(f0: SimdVector, d0: SimdVector, f1: SimdVector, d1: SimdVector
     return x * length
 
 
+@kernel
+def quintic_roots(
+    of_w: bool,
+    z0: SimdVector,
+    w0: SimdVector,
+    slope0: SimdVector,
+    z1: SimdVector,
+    w1: SimdVector,
+    slope1: SimdVector,
+    length: SimdVector,
+) -> Any:
+    """Guess of the zero of z in [0, length], or of w = dz/dtau, from z, w and dw/dtau at both ends.
+
+    Two Newton steps on the quintic through these, from the zero of the cubic through the function and its slopes: the
+    quintic is more accurate by two orders, and an arc costs as much as ten of these steps.
+    """
+    w0, w1 = w0 * length, w1 * length
+    slope0, slope1 = slope0 * (length * length), slope1 * (length * length)
+    c2 = 0.5 * slope0
+    rest, rest_w, rest_slope = (z1 - z0) - (w0 + c2), w1 - (w0 + slope0), 0.5 * (slope1 - slope0)
+    c3 = 10.0 * rest - 4.0 * rest_w + rest_slope
+    c4 = 7.0 * rest_w - 15.0 * rest - 2.0 * rest_slope
+    c5 = 6.0 * rest - 3.0 * rest_w + rest_slope
+    one = splat(1.0)
+    x = hermite_roots(w0, slope0, w1, slope1, one) if of_w else hermite_roots(z0, w0, z1, w1, one)
+    for _ in range(2):
+        w = w0 + x * (slope0 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5))))
+        if of_w:
+            better = x - w / (slope0 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5))))
+        else:
+            better = x - (z0 + x * (w0 + x * (c2 + x * (c3 + x * (c4 + x * c5))))) / w
+        x = select((better > 0.0) & (better < 1.0), better, x)
+    return x * length
+
+
 MAX_ARCS = 24
 """Evaluations of the arc after which a search gives up and leaves the cell to the general solver. Nearly all need two
 or three."""
@@ -48,7 +83,11 @@ def locate_peaks(pulse: Record, group: Record) -> None:
     pending = load(group.peak_pending, 0) > 0.0
     low, high, h = load(group.peak_low, 0), load(group.peak_high, 0), load(group.peak_guess, 0)
     max_rate = load(group.max_rate, 0)
-    found_h, found_z = load(group.found_peak_h, 0), load(group.found_peak_z, 0)
+    found_h, found_z, found_slope = (
+        load(group.found_peak_h, 0),
+        load(group.found_peak_z, 0),
+        load(group.found_peak_slope, 0),
+    )
     todo = pending
     h = select(todo, h, splat(FAR))
     for _ in range(MAX_ARCS):
@@ -68,12 +107,14 @@ def locate_peaks(pulse: Record, group: Record) -> None:
         done = done | tight
         peak = z + step * (w + step * (0.5 * second + step * (third * (1.0 / 6.0) + step * fourth * (1.0 / 24.0))))
         found_h, found_z = select(done, root, found_h), select(done, peak, found_z)
+        found_slope = select(done, second + step * third, found_slope)
         todo = todo & ~done
         if not any_lane(todo):
             break
         h = select(todo, select(inside & (ratio < 1.0), root, 0.5 * (low + high)), splat(FAR))
     store(group.found_peak_h, 0, found_h)
     store(group.found_peak_z, 0, found_z)
+    store(group.found_peak_slope, 0, found_slope)
     store(group.top, 0, select(pending, maximum(load(group.top, 0), found_z), load(group.top, 0)))
     store(group.undecided, 0, select(todo, splat(1.0), load(group.undecided, 0)))
     store(group.peak_pending, 0, splat(0.0))
@@ -83,11 +124,21 @@ def locate_peaks(pulse: Record, group: Record) -> None:
 def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
     """Locate the impacts where the mask `wanted` is true: zeros of z, decreasing; set `length` and `end_w`."""
     low, high = load(group.impact_low, 0), load(group.impact_high, 0)
-    z_low, w_low = load(group.impact_low_z, 0), load(group.impact_low_w, 0)
+    z_low, w_low, slope_low = (
+        load(group.impact_low_z, 0),
+        load(group.impact_low_w, 0),
+        load(group.impact_low_slope, 0),
+    )
     after_peak = load(group.impact_after_peak, 0) > 0.0
     low = select(after_peak, load(group.found_peak_h, 0), low)
     z_low, w_low = select(after_peak, load(group.found_peak_z, 0), z_low), select(after_peak, splat(0.0), w_low)
-    h = low + hermite_roots(z_low, w_low, load(group.impact_high_z, 0), load(group.impact_high_w, 0), high - low)
+    slope_low = select(after_peak, load(group.found_peak_slope, 0), slope_low)
+    z_high, w_high, slope_high = (
+        load(group.impact_high_z, 0),
+        load(group.impact_high_w, 0),
+        load(group.impact_high_slope, 0),
+    )
+    h = low + quintic_roots(False, z_low, w_low, slope_low, z_high, w_high, slope_high, high - low)
     max_rate = load(group.max_rate, 0)
     length, end_w = load(group.length, 0), load(group.end_w, 0)
     todo = wanted

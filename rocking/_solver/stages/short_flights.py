@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from rocking._numba.compilation import Record, kernel
+from typing import Any
+
+from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
 from rocking._solver.stages.arcs import expand_start, series_states, start_arcs
 from rocking._solver.stages.events import piece_ends
@@ -11,10 +13,22 @@ from rocking._solver.stages.state import OMEGA, PEAK, PHASE, W0
 from rocking._solver.state import IMPACT, IN_FLIGHT
 
 MAX_STEPS = 12
-"""Newton steps to the impact; four suffice where the series is accurate."""
+"""Steps to the impact or the peak; two suffice where the flight is short."""
 
-PEAK_STEPS = 6
-"""Newton steps to the peak, which is close to half the duration."""
+
+@kernel
+def first_guesses(w0: SimdVector, c2: SimdVector, c3: SimdVector, c4: SimdVector) -> Any:
+    """Guesses of the times of impact and peak: three Newton steps on z/h and w of the quartic z.
+
+    Its coefficients are `w0`, `c2`, `c3`, `c4`; the parabola gives the first guess.
+    """
+    h = w0 / (c2 * -1.0)
+    time = 0.5 * h
+    for _ in range(3):
+        h = h - (w0 + h * (c2 + h * (c3 + h * c4))) / (c2 + h * (2.0 * c3 + h * (3.0 * c4)))
+        w = w0 + time * (2.0 * c2 + time * (3.0 * c3 + time * (4.0 * c4)))
+        time = time - w / (2.0 * c2 + time * (6.0 * c3 + time * (12.0 * c4)))
+    return h, time
 
 
 @kernel
@@ -26,9 +40,10 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     """
     start_arcs(pulse, group, sign)
     expand_start(pulse, group)
-    phase, w0, q0 = load(group.columns, PHASE), load(group.columns, W0), load(group.q0, 0)
+    phase, w0 = load(group.columns, PHASE), load(group.columns, W0)
     reach = load(group.reach, 0)
-    h = 2.0 * w0 / q0
+    series = group.series
+    h, time = first_guesses(w0, load(series, 2), load(series, 3), load(series, 4))
     todo, done = fill_mask(True), fill_mask(False)
     for _ in range(MAX_STEPS):
         z, w = series_states(pulse, group, h)
@@ -47,11 +62,17 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     top = splat(0.0)
     higher = done & (0.5 * w0 * h > load(group.columns, PEAK))
     if any_lane(higher):
-        time, tenth = 0.5 * h, 1e-4 * h
-        for _ in range(PEAK_STEPS):
+        todo = higher
+        time = select((time > 0.0) & (time < h), time, 0.5 * h)
+        for _ in range(MAX_STEPS):
             _, here = series_states(pulse, group, time)
-            _, beside = series_states(pulse, group, time + tenth)
-            time = time - here * tenth / (beside - here)
+            _, beside = series_states(pulse, group, time + 1e-4 * h)
+            step = here * (1e-4 * h) / (beside - here)
+            time = select(todo, time - step, time)
+            # the error of z is proportional to the square of the error of the time
+            todo = todo & (absolute(step) > 1e-6 * h)
+            if not any_lane(todo):
+                break
         peak, _ = series_states(pulse, group, time)
         top = select(higher, peak, top)
     store(group.length, 0, h)

@@ -77,13 +77,16 @@ _LANE_FIELDS = (
     "peak_guess",
     "found_peak_h",  # the last located one
     "found_peak_z",
+    "found_peak_slope",  # of w
     # the impact to be located: the bracket with the states at its ends
     "impact_low",
     "impact_low_z",
     "impact_low_w",
+    "impact_low_slope",
     "impact_high",
     "impact_high_z",
     "impact_high_w",
+    "impact_high_slope",
     "impact_after_peak",  # 1 where the bracket starts with the last peak
     # end of the flight
     "ended",  # `IMPACT`, `PULSE_END`, or `IN_FLIGHT` where it is undecided
@@ -121,6 +124,7 @@ def _group_layout() -> np.dtype[np.void]:
             ("response", [(name, np.float64, lanes) for name in RESPONSE_RECORD.names or ()]),  # to be written
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
             ("written", np.int64, lanes),  # number of the response to be written, or -1
+            ("expanded", np.int64),  # 1 once `series` and `excitation` are of this flight
             ("used", np.int64),  # bits of the lanes that hold a cell
             ("source", np.int64, lanes),  # the same, with a cell in every lane
             ("leader", np.int64, lanes),  # row of the first cell that shares its flight
