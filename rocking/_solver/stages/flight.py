@@ -5,11 +5,11 @@ The parts of the pulse are visited in their order, all cells at once; a cell ign
 
 - Restored, q >= 0: z <= 0 at the right end is necessary and sufficient for an impact, since negative z stays negative.
   f' keeps its sign, so that a peak exists if w > 0 at the left end and w < 0 at the right. Two more zeros of w are
-  possible only if w'' - w = -q' lets w turn inside: w is then convex (or concave) where it is positive (negative),
-  and its tangents at both ends exclude a zero, else the cell is left to the general solver.
+  possible only if w'' - w = -q' lets w turn inside: w is then convex (or concave) where it is positive (negative), and
+  its tangents at both ends exclude a zero, or the state at one more time shows the two, with a peak between.
 - Destabilised, q <= 0: z is convex where it is positive. Where w >= 0 at the left end nothing happens, and the state at
   the right end is not computed before it is needed. Otherwise z <= 0 at the right end means an impact; if z turns
-  inside, its tangents exclude a zero, else the cell is left to the general solver.
+  inside, its tangents exclude a zero, or the state at one more time shows an impact before it.
 - z + w > 1 + a at the right end of a restored part: overturning is certain, see `rocking._solver.arcs.events`.
 
 Worked example: the sine, 1/a = 0.6, omega = 2. The first flight starts at the uplift, phi = 0.644 (f = 0.6), about the
@@ -204,22 +204,33 @@ def restored_events(
     else:
         turns = (left_w <= 0.0) & (w < 0.0) & (left_slope > 0.0) & (slope < 0.0)
     undecided = inside & known & turns & ~are_apart(left_w, left_slope, w, slope, duration)
+    peaks = inside & known & (left_w > 0.0) & (w < 0.0)
+    low, low_z, low_w, low_slope = left_h, left_z, left_w, left_slope
+    high, high_z, high_w, high_slope = h, z, w, slope
     if any_lane(undecided):
         up = 1.0 if rising else -1.0
         undecided, dips = find_dips(
             pulse, group, up, undecided, left_h, left_w * up, left_slope * up, h, w * up, slope * up
         )
-        undecided = undecided | dips
-    peaks = inside & known & (left_w > 0.0) & (w < 0.0)
+        # two zeros of w: the peak lies before the dip of w if w is positive at the ends, else after it
+        peaks = peaks | dips
+        dip, dip_z = load(group.impact_high, 0), load(group.impact_high_z, 0)
+        dip_w, dip_slope = load(group.impact_high_w, 0), load(group.impact_high_slope, 0)
+        if rising:
+            high, high_z = select(dips, dip, high), select(dips, dip_z, high_z)
+            high_w, high_slope = select(dips, dip_w, high_w), select(dips, dip_slope, high_slope)
+        else:
+            low, low_z = select(dips, dip, low), select(dips, dip_z, low_z)
+            low_w, low_slope = select(dips, dip_w, low_w), select(dips, dip_slope, low_slope)
     hits = inside & (z <= 0.0)
     undecided = undecided | (hits & (w >= 0.0))  # rounding: z rises through zero
     if any_lane(peaks):
         if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
             flush_peaks(pulse, group, peaks)
-        guess = left_h + quintic_roots(True, left_z, left_w, left_slope, z, w, slope, duration)
+        guess = low + quintic_roots(True, low_z, low_w, low_slope, high_z, high_w, high_slope, high - low)
         store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
-        store(group.peak_low, 0, select(peaks, left_h, load(group.peak_low, 0)))
-        store(group.peak_high, 0, select(peaks, h, load(group.peak_high, 0)))
+        store(group.peak_low, 0, select(peaks, low, load(group.peak_low, 0)))
+        store(group.peak_high, 0, select(peaks, high, load(group.peak_high, 0)))
         store(group.peak_guess, 0, select(peaks, guess, load(group.peak_guess, 0)))
     store(group.impact_after_peak, 0, select(hits, select(peaks, one, zero), load(group.impact_after_peak, 0)))
     return hits, undecided, left_z, left_w
