@@ -3,7 +3,6 @@
 import rocking
 from rocking._excitation.pulses import AbstractPulse
 from rocking._numba.compilation import Record
-from rocking._solver.arcs.flight import set_angles
 from rocking._solver.kernels.event_loop import init_state, start_flight
 from rocking._solver.rules import SAFE, final_outcome, set_block, set_sign
 from rocking._solver.state import pulse_state
@@ -26,7 +25,6 @@ def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, a
 
 def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
     """Return the record at the start of a flight after an impact at `phase`."""
-    set_angles(flight, phase, flight["cosine0"], flight["sine0"])
     flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
     assert start_flight(flight)
     return flight

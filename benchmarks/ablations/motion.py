@@ -19,8 +19,7 @@ from rocking._history.motion import MAX_FREE_IMPACTS, MAX_ROTATION
 from rocking._history.sampling import REST_VELOCITY, sample_free_rocking
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
-from rocking._solver.arcs.flight import state_at
-from rocking._solver.kernels.event_loop import advance_by_arc, end_flight, init_state, start_flight
+from rocking._solver.kernels.event_loop import end_flight, init_state, start_flight
 from rocking._solver.peak_response import peak_response
 from rocking._solver.records.state import BLOCK_STATE
 from rocking._solver.rules import SAFE, set_block
@@ -37,7 +36,7 @@ CHATTER, BEYOND, FREE = 1, 2, 4
 """Flags: what is integrated in addition; they can be added."""
 
 FLIGHTS, FARTHER, IMPACTS, WRONG_OUTCOMES = 0, 1, 2, 3
-"""Indices of the counts: flights during the pulse; intervals or Taylor steps beyond return; impacts after the pulse;
+"""Indices of the counts: flights during the pulse; Taylor steps beyond return; impacts after the pulse;
 outcomes of the motion integrated after the pulse that differ from the outcome by energy."""
 
 LONG_DURATION = 1e6
@@ -47,8 +46,6 @@ LONG_DURATION = 1e6
 @kernel
 def advance(flight: Record, steps: Record) -> bool:
     """Follow the next flight of any block to its end; False if it is the last or there is none."""
-    if flight.by_arcs == 1:
-        return advance_by_arc(flight)
     if not start_flight(flight):
         return False
     ended, w, z = flight_by_steps(flight, steps)
@@ -58,17 +55,8 @@ def advance(flight: Record, steps: Record) -> bool:
 
 @kernel
 def continue_beyond_return(flight: Record, steps: Record, phase: float) -> int:
-    """Continue from an overturning at `phase` to the end of the pulse; return the number of intervals or steps."""
+    """Continue from an overturning at `phase` to the end of the pulse; return the number of steps."""
     found = 0
-    if flight.by_arcs == 1:
-        for k in range(flight.interval_count + 1):
-            if flight.interval_phase[k] > phase:
-                h = (flight.interval_phase[k] - flight.phase) / flight.omega
-                flight.end_rotation, flight.end_velocity = state_at(
-                    flight, h, flight.interval_cosine[k], flight.interval_sine[k]
-                )
-                found += 1
-        return found
     steps.z0[0], steps.w0[0], steps.starts_at_uplift[0], steps.phase[0] = (
         flight.end_rotation,
         flight.end_velocity,
@@ -195,7 +183,7 @@ def motions(side: int, rounds: int) -> Iterator[Ablation]:
     kinds = {
         FREE: ("free rocking after the pulse", "impacts after the pulse", IMPACTS),
         CHATTER: ("chatter", "flights", FLIGHTS),
-        BEYOND: ("motion beyond return", "intervals or Taylor steps", FARTHER),
+        BEYOND: ("motion beyond return", "Taylor steps", FARTHER),
     }
     for what, (name, unit, key) in kinds.items():
         for kind, alpha in ALPHA.items():

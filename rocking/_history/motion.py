@@ -20,7 +20,6 @@ from rocking._history.sampling import (
     ROTATION,
     TAU,
     VELOCITY,
-    sample_arcs,
     sample_flights,
     sample_free_rocking,
     sample_record,
@@ -249,16 +248,12 @@ class PulseMotion(BodyMotion):
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
         flag = flag_array(self.stop)
-        if self.pulse.series.has_exact_arcs and self.alpha == 0.0:
-            record = pulse_state(self.pulse).copy()
-            written = int(sample_arcs(self.cell, record, history, impact_times, flag))
-        else:
-            followed, solved = self._flights
-            record = solved.copy()
-            sample_flights(followed, record, step_state(pulse_state(self.pulse)), self.max_rotation, history, flag)
-            impacts = followed if record["end_sign"] == 0.0 else followed[:-1]
-            written = min(impacts.size, impact_times.size)
-            impact_times[:written] = (impacts["next_phase"][:written] - self.pulse.start) / self.frequency_ratio
+        followed, solved = self._flights
+        record = solved.copy()
+        sample_flights(followed, record, step_state(pulse_state(self.pulse)), self.max_rotation, history, flag)
+        impacts = followed if record["end_sign"] == 0.0 else followed[:-1]
+        written = min(impacts.size, impact_times.size)
+        impact_times[:written] = (impacts["next_phase"][:written] - self.pulse.start) / self.frequency_ratio
         if self.alpha == 0.0:
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding

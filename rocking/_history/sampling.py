@@ -1,9 +1,9 @@
 """Time histories from the flights of the solver: samples of each flight, then of free rocking, impact by impact.
 
 The event loop of the solver, for a pulse or for samples of the ground motion, follows one flight after the other; each
-is then repeated from its start, by the same arcs, pieces or Taylor steps, and evaluated at the times inside it. So a
-history has the events of the response, and samples do not change them. Under a pulse the flights by Taylor steps are
-those that the kernel of the responses has written, so that a history does not compile its event loop again.
+is then repeated from its start, by the same pieces or Taylor steps, and evaluated at the times inside it. So a
+history has the events of the response, and samples do not change them. Under a pulse the flights are those
+that the kernel of the responses has written, so that a history does not compile its event loop again.
 
 In all functions `history` is a float array (3, times): the rows `TAU`, ascending times from the start of the ground
 motion [-], `ROTATION` theta/alpha and `VELOCITY` theta'/(p alpha), the last two zero on entry. `filled` is the number
@@ -20,8 +20,6 @@ from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel, light_entry
 from rocking._numba.records import copy_fields
-from rocking._solver.arcs.flight import set_angles, state_at
-from rocking._solver.kernels.event_loop import advance_by_arc, init_state
 from rocking._solver.records import taylor_flight as pieces
 from rocking._solver.records.arc_flight import flight_by_arcs
 from rocking._solver.records.batch import end_flight
@@ -29,7 +27,7 @@ from rocking._solver.records.event_loop import init_body_state, restoring_at, st
 from rocking._solver.records.piece import piece_state
 from rocking._solver.records.samples import SHAPE, TIME, interval_length
 from rocking._solver.records.taylor_step import take_step as take_piece_step
-from rocking._solver.rules import set_body, set_sign
+from rocking._solver.rules import set_sign
 from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 from rocking._solver.taylor.events import evaluate_series
 from rocking._solver.taylor.flight import MAX_STEPS, impact_in_step
@@ -81,56 +79,6 @@ def sample_flights(
         filled, z, w = sample_steps(flight, steps, start, end, limit, history, filled)
         if not going:
             flight.end_rotation, flight.end_velocity = z, w
-
-
-@light_entry
-def sample_arcs(
-    cell: Record,
-    flight: Record,
-    history: FloatArray,
-    impact_times: FloatArray,
-    stop: FloatArray,
-) -> int:
-    """One slender block under sinusoids from rest to its final outcome, sampled during the pulse by exact arcs.
-
-    Returns the number of impacts written.
-
-    Parameters
-    ----------
-    cell
-        A record `BODY_CELL`.
-    flight
-        Solver state, a record of `pulse_state`; it holds the response on return.
-    """
-    set_body(flight, cell, False)
-    omega = cell.rate
-    init_state(flight, omega)
-    pulse_end = (flight.end_phase[flight.pieces] - flight.end_phase[0]) / omega
-    filled, written = 0, 0
-    going = flight.interval_count > 0  # whether the last flight ended in an impact
-    while going and not is_stopped(stop):
-        flight.length = math.nan
-        going = advance_by_arc(flight)
-        if math.isnan(flight.length):
-            break  # at rest until the end
-        start = (flight.phase - flight.end_phase[0]) / omega
-        end = start + flight.length
-        if going:
-            end = (flight.next_phase - flight.end_phase[0]) / omega  # as the start of the next flight
-            if written < len(impact_times):
-                impact_times[written] = end
-                written += 1
-        elif end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
-            flight.length, end = pulse_end - start, pulse_end
-        filled = pass_times(history, filled, start)  # at rest
-        # `advance_by_arc` has set the angles of the next flight: restore those of this one
-        set_angles(flight, flight.phase, flight.cosine0, flight.sine0)
-        filled, z, w = sample_arc(flight, start, end, history, filled)
-        if going:
-            set_angles(flight, flight.next_phase, flight.cosine0, flight.sine0)
-        else:
-            flight.end_rotation, flight.end_velocity = z, w
-    return written
 
 
 @entry
@@ -203,20 +151,6 @@ def sample_step(steps: Record, sign: float, start: float, end: float, history: F
         history[VELOCITY, filled] = sign * evaluate_series(steps.rate, 0, order - 1, h)
         filled += 1
     return filled
-
-
-@kernel
-def sample_arc(flight: Record, start: float, end: float, history: FloatArray, filled: int) -> tuple[int, float, float]:
-    """Evaluate the arc of the last flight; returns the times passed, last z, w."""
-    while filled < history.shape[1] and history[TAU, filled] < end:
-        h = max(history[TAU, filled] - start, 0.0)
-        set_angles(flight, flight.phase + flight.omega * h, flight.cosine1, flight.sine1)
-        z, w = state_at(flight, h, flight.cosine1, flight.sine1)
-        history[ROTATION, filled], history[VELOCITY, filled] = flight.sign * z, flight.sign * w
-        filled += 1
-    set_angles(flight, flight.phase + flight.omega * flight.length, flight.cosine1, flight.sine1)
-    z, w = state_at(flight, flight.length, flight.cosine1, flight.sine1)
-    return filled, z, w
 
 
 @kernel

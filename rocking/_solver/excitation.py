@@ -28,7 +28,6 @@ from rocking._solver.families.polynomials import (
 from rocking._solver.families.sinusoids import (
     SINUSOID_END_FIELDS,
     SINUSOID_FIELDS,
-    SINUSOIDS,
     expand_sinusoids,
     fill_sinusoids,
     sinusoids_and_slopes,
@@ -74,12 +73,6 @@ def fill_excitation(record: Record, series: ExcitationSeries, ends: NDArray[np.f
             fill_wavelet(record, series)
         case PolynomialSeries():
             fill_polynomials(record, series)
-
-
-@kernel
-def has_exact_arcs(flight: Record, alpha: float) -> bool:
-    """Whether the motion consists of exact arcs (3.4): slender blocks under sums of sinusoids."""
-    return alpha == 0.0 and flight.family == SINUSOIDS
 
 
 @kernel

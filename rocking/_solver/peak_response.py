@@ -25,7 +25,7 @@ from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.records.record_response import record_response, solve_pulse
-from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
+from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.state import StageState, stage_state
 from rocking._solver.state import (
     BODY_CELL,
@@ -286,12 +286,9 @@ def _solve_alike(
 def _fill_by_arcs(
     pulse: AbstractPulse, cells: list[NDArray[np.float64]], flag: NDArray[np.uint8], records: NDArray[np.void]
 ) -> None:
-    """Solve slender blocks in stages, and what these leave one by one, under a wavelet by Taylor steps."""
+    """Solve slender blocks in stages, and what these leave by Taylor steps."""
     state, stages = solver_state.of_arcs(pulse)
     if solve_by_arcs(*cells[:3], state, *stages, flag, records) == 0:
-        return
-    if pulse.series.has_exact_arcs:
-        solve_remainder(*cells[:3], state, flag, records)
         return
     left = np.flatnonzero(records["outcome"] == LEFT)
     rest = np.empty(left.size, RESPONSE_RECORD)

@@ -13,13 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._excitation.shapes import MAX_PIECES, AbstractPulse
-from rocking._excitation.sinusoids import MAX_SINUSOIDS
 from rocking._model.fields import SOLVED_FIELDS, record_dtype
 from rocking._numba.compilation import Record
 from rocking._numba.records import constant_fields
 from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking._solver.excitation import EXCITATION_FIELDS, PULSE_FIELDS, fill_excitation
-from rocking._solver.families.sinusoids import SERIES_LENGTH
 
 MAX_ORDER = 22
 """Largest degree of the Taylor steps."""
@@ -86,7 +84,6 @@ overturns; sgn(theta) at the end of the motion, 0 at rest; sgn(theta) of a body 
 
 
 def _flight_layout() -> np.dtype[np.void]:
-    per_term = (MAX_SINUSOIDS,)
     ends, cuts = (MAX_PIECES + 1,), (3 * MAX_PIECES + 1,)
     crossings = (math.ceil(2 * MAX_PIECES / LANES), LANES)
     return np.dtype(
@@ -107,15 +104,10 @@ def _flight_layout() -> np.dtype[np.void]:
             # the cell
             *BODY_FIELDS,
             ("omega", np.float64),  # frequency ratio
-            ("rate", np.float64, per_term),  # Omega = omega w
-            ("max_rate", np.float64),  # largest of 1 and the rates
             ("interval_phase", np.float64, cuts),  # ends of the intervals, see `split_into_intervals`
             ("interval_level", np.float64, cuts),  # in the interval to the right: +1 if a f > 1, -1 if a f < -1, else 0
             ("interval_slope", np.float64, cuts),  # sign of f' there
-            ("interval_cosine", np.float64, (*cuts, MAX_SINUSOIDS)),
-            ("interval_sine", np.float64, (*cuts, MAX_SINUSOIDS)),
             # progress of the event loop
-            ("by_arcs", np.int64),  # whether its motion is exact arcs, else Taylor steps
             ("cell", np.int64),  # index of the cell, -1: none
             ("last_cell", np.int64),  # last of the consecutive cells that differ in eta only
             ("interval_count", np.int64),  # number of intervals
@@ -125,24 +117,8 @@ def _flight_layout() -> np.dtype[np.void]:
             ("next_w", np.float64),
             ("next_sign", np.float64),
             # the flight
-            ("force", np.float64, per_term),  # sgn(theta) a c
             ("phase", np.float64),  # phi at its start
             ("length", np.float64),  # its duration [tau]
-            ("q0", np.float64),  # restoring acceleration there
-            ("particular", np.float64, per_term),  # coefficients of its arc, see `init_arc`
-            ("x0", np.float64),
-            ("y0", np.float64),
-            ("offset_z", np.float64),
-            ("offset_w", np.float64),
-            ("cosine0", np.float64, per_term),  # of the angles there
-            ("sine0", np.float64, per_term),
-            ("cosine1", np.float64, per_term),  # at the phase of the last `set_angles`
-            ("sine1", np.float64, per_term),
-            (
-                "coef",
-                np.float64,
-                (SERIES_LENGTH,),
-            ),  # Taylor coefficients of z about the point of the last `expand_series`
             # its Taylor steps
             ("segment_end", np.int64),  # index of the interval end at which the steps must end next
             ("elapsed", np.float64),  # time since the flight's start

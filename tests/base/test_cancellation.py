@@ -14,7 +14,7 @@ from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS
-from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
+from rocking._solver.stages.batch import solve_by_arcs
 from rocking._solver.stages.state import stage_state
 from rocking._solver.state import RESPONSE_RECORD, pulse_state, step_state
 from rocking._spectra.cubes import spectra
@@ -92,18 +92,12 @@ def test_a_kernel_reads_the_flag_within_one_cell():
         for delay in (0.003, 0.006, 0.003, 0.006, 0.012):  # on a busy machine kernel or timer may start later
             flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
             pulse = pulse_state(rocking.pulse("c2")).copy()
-            answers["outcome"] = LEFT
-            scratch = (np.repeat(pulse, LANES), step_state(pulse)) if alpha else (pulse,)
-            groups = (s, w, eta, np.array([alpha])) if alpha else (s, w, eta)
-            kernel = solve_batch if alpha else solve_remainder
+            states, steps = np.repeat(pulse, LANES), step_state(pulse)
             timer = threading.Timer(delay, flag.fill, [1])
             timer.start()
-            if alpha:
-                kernel(*groups, NO_BODIES, *scratch, flag, answers, NO_EDGES, NO_FLIGHTS)
-            else:
-                kernel(*groups, *scratch, flag, answers)
+            solve_batch(s, w, eta, np.array([alpha]), NO_BODIES, states, steps, flag, answers, NO_EDGES, NO_FLIGHTS)
             timer.join()
-            reached = (scratch[0][0] if alpha else scratch[0])["impacts"]
+            reached = states[0]["impacts"]
             if 0 < reached < 200_000:
                 break
         assert 0 < reached < 200_000

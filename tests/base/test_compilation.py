@@ -31,8 +31,8 @@ from rocking._lookup.cube import open_cube
 from rocking._numba import kernel_cache
 from rocking._numba.compilation import array_entry, contiguous_array, entry, kernel, specialised_kernel
 from rocking._numba.way import INTERNALS
-from rocking._solver.arcs.arc import cosh_minus_one_and_sinh
 from rocking._solver.kernels import batch as rock_many
+from rocking._solver.kernels.intervals import half_width
 from rocking._solver.stages import batch as stages
 from rocking._spectra.cubes import spectra
 
@@ -42,9 +42,7 @@ ENTRIES = (
     *(
         rock_many.solve_batch,
         stages.solve_by_arcs,
-        stages.solve_remainder,
         sampling.sample_flights,
-        sampling.sample_arcs,
         sampling.sample_free_rocking,
     ),
     *(interpolation.lagrange_weight, interpolation.interpolate_cells),
@@ -117,7 +115,7 @@ def test_compiling_process_and_cached_process_give_equal_bits(tmp_path):
 import hashlib, numpy as np, rocking
 from rocking._model.fields import RESPONSE_FIELDS
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.stages.batch import solve_by_arcs, solve_remainder
+from rocking._solver.stages.batch import solve_by_arcs
 rng = np.random.default_rng(7)
 s, w, e = rng.uniform(0.02, 0.95, 20_000), np.exp(rng.uniform(-1.2, 2.5, 20_000)), rng.uniform(0.5, 0.95, 20_000)
 digest = hashlib.sha256()
@@ -126,11 +124,11 @@ for name in ("ricker", "sine", "c2"):
         found = rocking.peak_response(name, slenderness=s, frequency_ratio=w, restitution=e, alpha=alpha)
         for field in RESPONSE_FIELDS:
             digest.update(getattr(found, field.name).tobytes())
-entries = solve_by_arcs, solve_remainder, solve_batch
+entries = solve_by_arcs, solve_batch
 print(sum(sum(one.stats.cache_misses.values()) for one in entries), digest.hexdigest())
 """
     found = [script(code, NUMBA_CACHE_DIR=str(tmp_path)).split() for _ in range(2)]
-    assert [misses for misses, _ in found] == ["3", "0"]
+    assert [misses for misses, _ in found] == ["2", "0"]
     assert found[0][1] == found[1][1]
 
 
@@ -255,7 +253,7 @@ def test_only_entries_that_count_references_are_prepared_for_the_removal_of_pair
 
 
 def test_kernels_release_the_interpreter_and_do_not_reorder_sums():
-    for compiled in (*ENTRIES, cosh_minus_one_and_sinh):
+    for compiled in (*ENTRIES, half_width):
         options = compiled.targetoptions
         assert options["nogil"]
         assert options["fastmath"] == {"contract"}  # no option that ignores nan or reorders operations

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 import rocking
 from rocking import Outcome
 from rocking._excitation.pulses import PULSE_NAMES
-from rocking._solver.arcs.events import long_flight
 from rocking._solver.kernels.chatter import chatter_ends_in_rest
 from rocking._solver.state import IMPACT, step_state
 from rocking._solver.taylor.flight import flight_by_steps
@@ -35,12 +34,8 @@ def follow(flight, w, eta, phase, sign) -> tuple[float, float]:
     highest, first, steps = 0.0, w, step_state(flight)
     while w > 1e-7 * first:
         flight_from(flight, phase, w, sign)
-        if flight["by_arcs"]:
-            ended, h, landing, _, peak = long_flight(flight)
-        else:
-            ended, landing, _ = flight_by_steps(flight, steps)
-            h, peak = float(flight["elapsed"]), float(flight["largest_z"])
-        highest = max(highest, peak)
+        ended, landing, _ = flight_by_steps(flight, steps)
+        h, highest = float(flight["elapsed"]), max(highest, float(flight["largest_z"]))
         if ended != IMPACT:
             return math.inf, highest
         phase, w, sign = phase + float(flight["omega"]) * h, -eta * landing, -sign
@@ -102,7 +97,7 @@ def test_equal_uplifts_separated_by_rest_give_equal_motion(alpha):
     groups = {"slenderness": 0.97, "frequency_ratio": 8.0, "restitution": 0.0, "alpha": alpha}
     one = rocking.peak_response("half_sine", **groups)
     two = rocking.peak_response("sine", **groups)
-    assert two.peak_rotation >= one.peak_rotation * (1.0 - 1e-14)  # to rounding
+    assert two.peak_rotation >= one.peak_rotation * (1.0 - 1e-13)  # to rounding, which 1/(1 - 1/a) amplifies
     assert two.impacts >= 1
 
 

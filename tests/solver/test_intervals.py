@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking
-from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, SinusoidalPulse
+from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, splat, store
 from rocking._solver.excitation import shapes_and_slopes
@@ -46,13 +46,6 @@ def check_cuts(pulse: AbstractPulse, slenderness: float) -> None:
     assert (np.abs(f[level[wide] == 0]) < slenderness + margin).all()
     change = np.diff(f, axis=1) * rise[wide, None]
     assert (change > -1e-14).all()
-    if isinstance(pulse, SinusoidalPulse):
-        terms = pulse.terms
-        for k, (_, w, d) in enumerate(terms):
-            angle = w * phase + d
-            # an angle of up to 68 rad is rounded once by the kernel, twice here, by 7e-15 each
-            np.testing.assert_allclose(flight["interval_cosine"][: count + 1, k], np.cos(angle), rtol=0, atol=2e-14)
-            np.testing.assert_allclose(flight["interval_sine"][: count + 1, k], np.sin(angle), rtol=0, atol=2e-14)
 
 
 @pytest.mark.parametrize("name", SIGNED)

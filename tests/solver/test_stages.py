@@ -1,4 +1,4 @@
-"""The stages for slender blocks: the same responses as the general solver, whatever the company."""
+"""The stages for slender blocks: the same responses as the event loop with Taylor steps, whatever the company."""
 
 import math
 
@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking import Outcome
 from rocking._excitation.pulses import SinusoidalPulse
-from rocking._numba.compilation import kernel
-from rocking._solver.kernels.event_loop import advance_by_arc, init_state
-from rocking._solver.rules import set_block, write_response
-from rocking._solver.stages.batch import LEFT, solve_by_arcs, solve_remainder
+from rocking._solver.kernels.batch import solve_batch
+from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS, solver_state
+from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.state import BLOCK_SIZE, stage_state
-from rocking._solver.state import RESPONSE_RECORD, pulse_state
+from rocking._solver.state import FULL_PRECISION, RESPONSE_RECORD, pulse_state
 
 SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.pulse(name).series.has_exact_arcs]
 SIGNED = [sign + name for name in SINUSOIDS for sign in ("", "-")]
@@ -29,30 +29,27 @@ def cells(count, seed):
     return s, np.exp(rng.uniform(math.log(0.05), math.log(20), count)), eta
 
 
-def by_stages(pulse, s, w, eta):
+def by_stages_alone(pulse, s, w, eta):
     found = np.zeros(s.size, RESPONSE_RECORD)
     stop = np.zeros(1, np.uint8)
     left = solve_by_arcs(s, w, eta, pulse_state(pulse).copy(), *stage_state(), stop, found)
     assert left == np.count_nonzero(found["outcome"] == LEFT)
-    if pulse.series.has_exact_arcs:
-        solve_remainder(s, w, eta, pulse_state(pulse).copy(), stop, found)
     return found
 
 
-@kernel
-def follow_cells(s, w, eta, flight, found):
-    """One cell after another, from event to event."""
-    for i in range(s.size):
-        set_block(flight, s[i], eta[i], 0.0)
-        init_state(flight, w[i])
-        while advance_by_arc(flight):
-            pass
-        write_response(flight, found[i])
+def by_stages(pulse, s, w, eta):
+    found = by_stages_alone(pulse, s, w, eta)
+    rest = found["outcome"] == LEFT
+    found[rest] = by_event_loop(pulse, s[rest], w[rest], eta[rest])
+    return found
 
 
 def by_event_loop(pulse, s, w, eta):
+    """The event loop that serves all bodies and pulses."""
     found = np.zeros(s.size, RESPONSE_RECORD)
-    follow_cells(s, w, eta, pulse_state(pulse).copy(), found)
+    state = solver_state.of_steps(pulse, FULL_PRECISION)
+    groups = s, w, eta, np.zeros(s.size)
+    solve_batch(*groups, NO_BODIES, *state, np.zeros(1, np.uint8), found, NO_EDGES, NO_FLIGHTS)
     return found
 
 
@@ -61,20 +58,21 @@ def assert_equal(first, second):
         np.testing.assert_array_equal(first[name], second[name], err_msg=name)
 
 
-def assert_agree(stages, loop, s, eta, state=STATE):
+def assert_agree(stages, loop, s, eta):
     """Equal events and modes; values equal to rounding where the problem is well conditioned."""
     # where the peaks of two uplifts differ by rounding only, which 1/(1 - s) amplifies, either may be the first
     tie = (stages["peak_mode"] - loop["peak_mode"]) % 65536 == 0
     rounding = 1e-10 + 1e-15 / np.maximum(1.0 - s, 1e-13)
     tie &= np.abs(stages["peak_rotation"] - loop["peak_rotation"]) <= rounding * loop["peak_rotation"]
-    assert np.count_nonzero(stages["peak_mode"] != loop["peak_mode"]) <= 0.01 * s.size
+    assert np.count_nonzero(stages["peak_mode"] != loop["peak_mode"]) <= 0.04 * s.size  # a tenth is close to the onset
     for field in WHOLE:
         decided = ~tie if field == "peak_mode" else slice(None)
         np.testing.assert_array_equal(stages[field][decided], loop[field][decided], err_msg=field)
     assert {*WHOLE, *NUMBERS, *STATE} == set(RESPONSE_RECORD.names)
-    for field in state:
+    safe = loop["outcome"] == Outcome.SAFE  # they are certain of overturning at other times
+    for field in STATE:
         error = np.abs(stages[field] - loop[field]) / np.maximum(1.0, np.abs(loop[field]))
-        assert error[(s < 0.9) & (eta < 0.9)].max() < 1e-9, field
+        assert error[safe & (s < 0.9) & (eta < 0.9)].max() < 1e-9, field
     for field in NUMBERS:
         np.testing.assert_array_equal(np.isnan(stages[field]), np.isnan(loop[field]))
         scale = np.where(loop[field] == 0.0, 1.0, np.abs(loop[field]))
@@ -128,3 +126,20 @@ def test_a_start_above_the_level_and_pieces_without_a_cut():
             np.testing.assert_array_equal(stages[field], loop[field], err_msg=field)
         error = np.abs(stages["peak_rotation"] / np.where(loop["peak_rotation"] > 0, loop["peak_rotation"], 1.0) - 1.0)
         assert np.nanmedian(error[loop["peak_rotation"] > 0]) < 1e-14
+
+
+@pytest.mark.parametrize("name", SIGNED)
+def test_few_cells_are_left(name):
+    """The peak between two zeros of w inside a part is bracketed by the state there."""
+    pulse = rocking.pulse(name)
+    s, w, eta = cells(20_000, 10)
+    left = by_stages_alone(pulse, np.minimum(s, 0.95), w, np.minimum(eta, 0.95))["outcome"] == LEFT
+    assert np.count_nonzero(left) < 0.002 * s.size
+
+
+def test_a_peak_after_a_minimum_of_the_velocity_is_found():
+    """w > 0 at both ends of a monotone interval and negative inside; found among 420,000 random blocks."""
+    s, w, eta = np.array([0.9716350970804516]), np.array([0.41023686938728526]), np.array([0.993624995799155])
+    (found,) = by_stages(rocking.pulse("c1"), s, w, eta)
+    motion = rocking.time_history("c1", slenderness=s[0], frequency_ratio=w[0], restitution=eta[0], samples=200_000)
+    assert np.abs(motion.rotation.values).max() == pytest.approx(float(found["peak_rotation"]), rel=1e-6)

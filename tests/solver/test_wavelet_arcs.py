@@ -9,11 +9,10 @@ import pytest
 import rocking
 from rocking._excitation.pulses import WaveletPulse
 from rocking._solver.families.wavelets import WAVELET_SERIES_LENGTH
-from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS, solve_cells, solver_state
+from rocking._solver.peak_response import solve_cells
 from rocking._solver.stages.batch import LEFT
-from rocking._solver.state import FULL_PRECISION, RESPONSE_RECORD
-from tests.solver.test_stages import assert_agree, assert_equal, by_stages, cells
+from rocking._solver.state import FULL_PRECISION
+from tests.solver.test_stages import assert_agree, assert_equal, by_event_loop, by_stages_alone, cells
 
 NAMES = ["ricker", "-ricker", "ricker_antisymmetric", "-ricker_antisymmetric"]
 
@@ -33,14 +32,6 @@ PULSES = {name: rocking.pulse(name) for name in NAMES} | {"cubic": cubic_wavelet
 def frequencies(pulse, s, w):
     """The cells with exact arcs."""
     return s, np.maximum(w, pulse.series.least_arc_frequency)
-
-
-def by_steps(pulse, s, w, eta):
-    found = np.zeros(s.size, RESPONSE_RECORD)
-    state = solver_state.of_steps(pulse, FULL_PRECISION)
-    groups = s, w, eta, np.zeros(s.size)
-    solve_batch(*groups, NO_BODIES, *state, np.zeros(1, np.uint8), found, NO_EDGES, NO_FLIGHTS)
-    return found
 
 
 @pytest.mark.parametrize("name", PULSES)
@@ -80,9 +71,9 @@ def test_arcs_and_taylor_steps_agree(name):
     pulse = PULSES[name]
     s, w, eta = cells(1000, list(PULSES).index(name))
     s, w = frequencies(pulse, s, w)
-    arcs, steps = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None), by_steps(pulse, s, w, eta)
-    # both are certain of overturning at other times
-    assert_agree(arcs, steps, s, eta, state=())
+    arcs = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None)
+    steps = by_event_loop(pulse, s, w, eta)
+    assert_agree(arcs, steps, s, eta)
 
 
 @pytest.mark.parametrize("name", PULSES)
@@ -92,11 +83,11 @@ def test_few_cells_are_left_to_taylor_steps(name):
     s, w, eta = cells(3000, 3)
     s, w = frequencies(pulse, s, w)
     eta = np.minimum(eta, 0.95)  # above, many impacts are left to the Taylor steps
-    left = by_stages(pulse, s, w, eta)["outcome"] == LEFT
+    left = by_stages_alone(pulse, s, w, eta)["outcome"] == LEFT
     assert np.count_nonzero(left) < 0.02 * s.size
     found = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None)
     assert (found["outcome"] >= 0).all()
-    assert_equal(found[left], by_steps(pulse, s[left], w[left], eta[left]))
+    assert_equal(found[left], by_event_loop(pulse, s[left], w[left], eta[left]))
 
 
 @pytest.mark.parametrize("name", ["ricker", "ricker_antisymmetric"])
@@ -106,7 +97,7 @@ def test_low_frequencies_are_solved_by_taylor_steps(name):
     s, w, eta = np.full(40, 0.37), least * np.linspace(0.9, 1.1, 40), np.full(40, 0.8)
     found, steps = (
         rocking.peak_response(pulse, slenderness=s, frequency_ratio=w, restitution=eta),
-        by_steps(pulse, s, w, eta),
+        by_event_loop(pulse, s, w, eta),
     )
     below = w < least
     assert 0 < np.count_nonzero(below) < 40

@@ -1,18 +1,14 @@
 """The event loop of one body under a pulse, from rest to the final outcome; `rocking._solver.rules` has the rules.
 
-Between events the motion is an exact arc for the slender block (3.1) under sinusoids (`rocking._solver.arcs`), and a
-sequence of Taylor steps otherwise (`rocking._solver.taylor`), with restitution (2.3) at each impact. The intervals of
-the pulse (`rocking._solver.kernels.intervals`) decide for each stretch whether it holds an impact. The first flight
-does not depend on the restitution: it is stored and reused for each eta.
+Between events the motion is a sequence of Taylor steps (`rocking._solver.taylor`), with restitution (2.3) at each
+impact. The intervals of the pulse (`rocking._solver.kernels.intervals`) decide for each stretch whether it holds an
+impact. The first flight does not depend on the restitution: it is stored and reused for each eta.
 """
 
 from __future__ import annotations
 
 from rocking._base.errors import SearchError
 from rocking._numba.compilation import Record, kernel
-from rocking._solver.arcs.events import long_flight, short_flight
-from rocking._solver.arcs.flight import set_angles, start_arc
-from rocking._solver.excitation import has_exact_arcs
 from rocking._solver.kernels.chatter import chatter_ends_in_rest
 from rocking._solver.kernels.intervals import split_into_intervals
 from rocking._solver.rules import (
@@ -35,15 +31,10 @@ def init_state(flight: Record, omega: float) -> None:
     """Initialise a cell, whose body is set: empty response, intervals, rest before the first of them."""
     reset_response(flight)
     flight.first_flight_known = 0
-    flight.by_arcs = int(has_exact_arcs(flight, flight.alpha))
     flight.interval, flight.interval_count = 0, 0
     if flight.slenderness[0] >= 1.0 and flight.slenderness[1] >= 1.0:
         return
     flight.omega = omega
-    flight.max_rate = 1.0
-    for k in range(flight.terms):
-        flight.rate[k] = omega * flight.multiple[k]
-        flight.max_rate = max(flight.max_rate, flight.rate[k])
     flight.interval_count = split_into_intervals(flight)
 
 
@@ -56,9 +47,6 @@ def next_uplift(flight: Record) -> bool:
         return False
     flight.next_phase, flight.next_w = flight.interval_phase[flight.interval], 0.0
     flight.next_sign = -flight.interval_level[flight.interval]  # positive ground acceleration: negative rotation
-    for k in range(flight.terms if flight.by_arcs == 1 else 0):
-        flight.cosine0[k] = flight.interval_cosine[flight.interval, k]
-        flight.sine0[k] = flight.interval_sine[flight.interval, k]
     count_uplift(flight, (flight.next_phase - flight.end_phase[0]) / flight.omega)
     return True
 
@@ -93,8 +81,6 @@ def on_impact(flight: Record, w: float) -> None:
     if flight.interval == flight.interval_count:
         flight.at_rest = 1
         return
-    if flight.by_arcs == 1:
-        set_angles(flight, phase, flight.cosine0, flight.sine0)
     flight.at_rest = 0
     if flight.interval_level[flight.interval] == 0.0:
         if flight.next_w <= 0.0:  # eta = 0
@@ -123,8 +109,6 @@ def start_flight(flight: Record) -> bool:
         and flight.a[flight.side] * abs(flight.end_shape[0]) <= 1.0 + ROUNDING
     )
     flight.starts_at_uplift = int(flight.at_rest == 1 and through)
-    if flight.by_arcs == 1:
-        start_arc(flight)
     return True
 
 
@@ -161,17 +145,3 @@ def repeat_first_flight(flight: Record) -> bool:
     return end_flight(
         flight, flight.first_flight_end, flight.first_flight_w, flight.first_flight_z, flight.first_flight_peak
     )
-
-
-@kernel
-def advance_by_arc(flight: Record) -> bool:
-    """Follow the next flight by an exact arc to its end; False if it is the last or there is none."""
-    if not start_flight(flight):
-        return False
-    time_to_interval_end = (flight.interval_phase[flight.interval + 1] - flight.phase) / flight.omega
-    ended, z = IMPACT, 0.0
-    h, w, top = short_flight(flight, time_to_interval_end, flight.peak_rotation)
-    if h < 0.0:
-        ended, h, w, z, top = long_flight(flight)
-    flight.length = h
-    return end_flight(flight, ended, w, z, top)

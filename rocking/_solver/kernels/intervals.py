@@ -9,8 +9,7 @@ maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with
   between; no maximum of z inside;
 - q' >= 0 or q' <= 0 determine the zeros of w, which are the peaks, in the same way.
 
-Single sinusoids have closed forms for the interval ends and the cosine and sine there; for other excitations
-`rocking._solver.crossings` finds them.
+Single sinusoids have closed forms for the interval ends; for other excitations `rocking._solver.crossings` finds them.
 """
 
 from __future__ import annotations
@@ -32,44 +31,20 @@ def set_interval(flight: Record, index: int, phase: float, level: float, rise: f
 
 
 @kernel
-def cap(slenderness: float) -> tuple[float, float]:
-    """Sine and value of the half-width of |f| > 1/a about an extremum of a sinusoid, accurate also for 1/a near 1."""
-    root = math.sqrt(max((1.0 - slenderness) * (1.0 + slenderness), 0.0))
-    return root, math.atan2(root, slenderness)  # cos(half-width) = 1/a
+def half_width(slenderness: float) -> float:
+    """Half of the width [rad] of |f| > 1/a about an extremum of a sinusoid: arccos(1/a), also accurate near 1/a = 1."""
+    return math.atan2(math.sqrt(max((1.0 - slenderness) * (1.0 + slenderness), 0.0)), slenderness)
 
 
 @kernel
-def set_end(flight: Record, index: int, end: int, angles: int, level: float, rise: float) -> None:
-    """Set an interval that begins at the end number `end` of a piece, with cosine and sine of the angles there."""
-    set_interval(flight, index, flight.end_phase[end], level, rise)
-    for k in range(angles):
-        flight.interval_cosine[index, k] = flight.end_cosine[end, k]
-        flight.interval_sine[index, k] = flight.end_sine[end, k]
-
-
-@kernel
-def set_crossing_of_sinusoid(
-    flight: Record, index: int, piece: int, target: float, half_width: float, root: float, level: float, rise: float
-) -> None:
-    """Set an interval that begins where a single sinusoid of amplitude 1 equals `target`, in closed form.
+def crossing_of_sinusoid(flight: Record, piece: int, target: float, width: float) -> float:
+    """Phase at which a single sinusoid of amplitude 1 equals `target` on a piece, where |f| > 1/a has the half-width.
 
     The sinusoid is cos(x), x from the start of the half period: there the cosine of the angle is +1 and decreases, or
-    -1 and increases. `half_width` and `root` are those of `cap`.
+    -1 and increases.
     """
-    cosine = flight.half_period_cosine[piece]
-    value = target * flight.amplitude[0]
-    distance = half_width if value * cosine > 0.0 else math.pi - half_width
-    set_interval(flight, index, flight.half_period_phase[piece] + distance, level, rise)
-    flight.interval_cosine[index, 0], flight.interval_sine[index, 0] = value, cosine * root
-
-
-@kernel
-def set_crossing(flight: Record, index: int, phi: float, angles: int, level: float, rise: float) -> None:
-    """Set an interval that begins at the phase `phi`."""
-    set_interval(flight, index, phi, level, rise)
-    for k in range(angles):
-        angle = flight.multiple[k] * phi + flight.shift[k]
-        flight.interval_cosine[index, k], flight.interval_sine[index, k] = math.cos(angle), math.sin(angle)
+    near_start = target * flight.amplitude[0] * flight.half_period_cosine[piece] > 0.0
+    return flight.half_period_phase[piece] + (width if near_start else math.pi - width)
 
 
 @kernel
@@ -85,13 +60,12 @@ def split_into_intervals(flight: Record) -> int:
     5 pi/6 and -1/2 at 7 pi/6: intervals from pi/2 (level 1), 5 pi/6 (level 0), 7 pi/6 (level -1). The last one, from
     3 pi/2, is left at 11 pi/6: seven intervals.
     """
-    angles = flight.terms if flight.by_arcs == 1 else 0  # of which Taylor steps need no cosines and sines
     single = is_unit_sinusoid(flight)
     below, above = flight.slenderness[0], flight.slenderness[1]
-    root_below, width_below, root_above, width_above = 0.0, 0.0, 0.0, 0.0
+    width_below, width_above = 0.0, 0.0
     if single:
-        root_below, width_below = cap(below)
-        root_above, width_above = (root_below, width_below) if above == below else cap(above)
+        width_below = half_width(below)
+        width_above = width_below if above == below else half_width(above)
     else:
         find_crossings(below, above, flight)
     count = 0
@@ -99,7 +73,7 @@ def split_into_intervals(flight: Record) -> int:
         f_left, f_right = flight.end_shape[piece], flight.end_shape[piece + 1]
         rise = -1.0 if f_left > f_right else 1.0
         level = 1.0 if f_left > above else (-1.0 if f_left < -below else 0.0)
-        set_end(flight, count, piece, angles, level, rise)
+        set_interval(flight, count, flight.end_phase[piece], level, rise)
         count += 1
         for turn in (-rise, rise):
             target = above if turn > 0.0 else -below
@@ -108,12 +82,13 @@ def split_into_intervals(flight: Record) -> int:
                 continue
             level += rise
             if single:
-                root, half_width = (root_above, width_above) if turn > 0.0 else (root_below, width_below)
-                set_crossing_of_sinusoid(flight, count, piece, target, half_width, root, level, rise)
+                phase = crossing_of_sinusoid(flight, piece, target, width_above if turn > 0.0 else width_below)
+            elif entered:
+                phase = flight.end_phase[piece]
             else:
                 crossing = 2 * piece + (0 if turn == -rise else 1)
-                found = flight.crossing_phase[crossing // LANES, crossing % LANES]
-                set_crossing(flight, count, flight.end_phase[piece] if entered else found, angles, level, rise)
+                phase = flight.crossing_phase[crossing // LANES, crossing % LANES]
+            set_interval(flight, count, phase, level, rise)
             count += 1
-    set_end(flight, count, flight.pieces, angles, 0.0, 0.0)
+    set_interval(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
     return count

@@ -1,6 +1,8 @@
-"""Exact arcs of `LANES` flights, each from z = 0 with velocity w0: the vector form of `rocking._solver.arcs`.
+"""Exact arcs (3.4) of `LANES` flights, each from z = 0 with velocity w0, without overflow and cancellation.
 
-With F = sgn(theta) a f, z'' = z - q and q = 1 + F. Of a particular solution p of z'' - z = -F the motion is
+A flight is described by z = sgn(theta) theta/alpha >= 0 and w = dz/dtau. By (3.1), z'' = z - q with q = 1 + F and
+F = sgn(theta) a f. From its start the solution is written as an increment with cosh h - 1 and sinh h: the coefficients
+A, B of (3.4) would lose all digits on short flights. Of a particular solution p of z'' - z = -F the motion is
 
     z = p(h) - p(0) + x0 (cosh h - 1) + y0 sinh h,    x0 = -1 - p(0),    y0 = w0 - dp/dtau(0)
 

@@ -2,9 +2,8 @@
 
 A cell waits in the list of its next flight: first, long or short, with negative or positive rotation. `LANES` cells
 of a list are followed at a time, and each is put into the list of the flight after that. The arithmetic of a cell
-depends neither on its lane nor on the other cells. What no stage decides, possible hidden peaks and very many impacts,
-is left to the caller: for `solve_remainder`, under wavelets for Taylor steps. `solve_remainder` is an entry of its own:
-most calls leave no block, and do not wait for its compilation.
+depends neither on its lane nor on the other cells. What no stage decides, a search that rounding keeps from its end and
+very many impacts, is left to the caller, for Taylor steps: most calls leave no block.
 """
 
 from __future__ import annotations
@@ -12,8 +11,6 @@ from __future__ import annotations
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
-from rocking._solver.kernels.event_loop import advance_by_arc, init_state
-from rocking._solver.rules import set_block, write_response
 from rocking._solver.stages.cuts import init_nodes, start_uplifts, uplift_piece
 from rocking._solver.stages.events import end_flights, prefetch_responses, write_responses
 from rocking._solver.stages.flight import follow_flights
@@ -217,35 +214,3 @@ def solve_by_arcs(
             response.first_impact_velocity = row[FIRST_IMPACT_VELOCITY]
         left += counts[GENERAL_LIST]
     return left
-
-
-@light_entry
-def solve_remainder(
-    slenderness: FloatArray, omega: FloatArray, eta: FloatArray, pulse: Record, stop: FloatArray, responses: Record
-) -> None:
-    """Solve the blocks that `rocking._solver.stages.batch.solve_by_arcs` has left.
-
-    Parameters
-    ----------
-    slenderness, omega, eta, pulse, stop
-        As for `solve_by_arcs`.
-    responses : array (cells,) of `rocking._solver.state.RESPONSE_RECORD`
-        As `solve_by_arcs` has filled it; those with the outcome `LEFT` are replaced.
-    """
-    for cell in range(len(slenderness)):
-        if is_stopped(stop):
-            return
-        response = responses[cell]
-        if response.outcome != LEFT:
-            continue
-        followed = response.impacts
-        uplift_time, impact_time = response.uplift_time, response.first_impact_time
-        impact_velocity = response.first_impact_velocity
-        set_block(pulse, slenderness[cell], eta[cell], 0.0)
-        init_state(pulse, omega[cell])
-        while advance_by_arc(pulse) and not is_stopped(stop):
-            pass
-        write_response(pulse, response)
-        if followed > 0:  # the same bits for each eta
-            response.uplift_time, response.first_impact_time = uplift_time, impact_time
-            response.first_impact_velocity = impact_velocity

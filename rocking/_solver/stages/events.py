@@ -39,7 +39,7 @@ from rocking._solver.stages.state import (
 from rocking._solver.state import IMPACT, PULSE_END
 
 MOST_IMPACTS = 400.0
-"""Impacts after which a cell is left to the general solver: few cells have as many, and vectors of few cells gain
+"""Impacts after which a cell is left to the event loop: few cells have as many, and vectors of few cells gain
 nothing."""
 
 

@@ -10,7 +10,7 @@ The parts of the pulse are visited in their order, all cells at once; a cell ign
 - Destabilised, q <= 0: z is convex where it is positive. Where w >= 0 at the left end nothing happens, and the state at
   the right end is not computed before it is needed. Otherwise z <= 0 at the right end means an impact; if z turns
   inside, its tangents exclude a zero, or the state at one more time shows an impact before it.
-- z + w > 1 + a at the right end of a restored part: overturning is certain, see `rocking._solver.arcs.events`.
+- z + w > 1 + a at the right end of a restored part: overturning is certain, since (z + w)' = z + w - q and q <= 1 + a.
 
 Worked example: the sine, 1/a = 0.6, omega = 2. The first flight starts at the uplift, phi = 0.644 (f = 0.6), about the
 left edge. On the parts to pi/2 and to the cut at phi = 2.498 (f = 0.6 again) q <= 0 and w >= 0 at the left end: no
@@ -45,7 +45,7 @@ def follow_flights(pulse: Record, group: Record, sign: float) -> None:
     """Follow the flights given by the columns of `flight` to their ends.
 
     Sets `ended` (`IMPACT`, `PULSE_END`, the latter also where overturning is certain earlier, or -1: left to the
-    general solver), `length`, `end_w`, `end_z` and `top`, the largest z, the latter only if the block can still return.
+    event loop), `length`, `end_w`, `end_z` and `top`, the largest z, the latter only if the block can still return.
     """
     init_cuts(pulse, group)
     start_arcs(pulse, group, sign)

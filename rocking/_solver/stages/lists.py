@@ -25,7 +25,7 @@ from rocking._solver.stages.state import (
 from rocking._solver.state import set_empty_response
 
 FIRST_LISTS, LONG_LISTS, SHORT_LISTS, GENERAL_LIST = 0, 2, 4, 6
-"""Lists of cells: two for each kind of flight, with negative and positive rotation, and one for the general solver.
+"""Lists of cells: two for each kind of flight, with negative and positive rotation, and one for the event loop.
 Cells in the first two are at rest at the start of the pulse, and have no row yet."""
 
 

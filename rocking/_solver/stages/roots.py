@@ -70,7 +70,7 @@ def quintic_roots(
 
 
 MAX_ARCS = 24
-"""Evaluations of the arc after which a search gives up and leaves the cell to the general solver. Nearly all need two
+"""Evaluations of the arc after which a search gives up and leaves the cell to the event loop. Nearly all need two
 or three."""
 
 

@@ -1,4 +1,4 @@
-"""Short flights of `LANES` blocks by the Taylor series at their start: `rocking._solver.arcs.events.short_flight`."""
+"""Short flights of `LANES` blocks by the Taylor series at their start: the impact is the first zero of z/h."""
 
 from __future__ import annotations
 

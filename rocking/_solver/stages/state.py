@@ -40,7 +40,7 @@ FAR = 1.0
 
 FINISHED, LONG, SHORT, REPEATED, REST, UNDECIDED = 0, 1, 2, 3, 4, 5
 """What follows for a cell: nothing, a long or a short flight with the opposite sign of rotation, a long one with the
-same sign, rest, or the general solver."""
+same sign, rest, or the event loop."""
 
 _LANE_FIELDS = (
     # the cell
@@ -64,7 +64,7 @@ _LANE_FIELDS = (
     "decay",  # sqrt(spread)/(2 omega), see `rocking._solver.stages.wavelets`
     # progress of the flight
     "followed",  # 1 where it is still followed, else 0
-    "undecided",  # 1 where it is left to the general solver, else 0
+    "undecided",  # 1 where it is left to the event loop, else 0
     "known",  # 1 where the state below is known; 0 where it is not and w > 0
     "left_h",  # time, z, w and q at the left end of the next part of the pulse
     "left_z",

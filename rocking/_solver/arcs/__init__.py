@@ -1,1 +1,0 @@
-"""Exact arcs of the slender block under sums of sinusoids."""
