@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
-from rocking._base.errors import InvalidArgumentError, integer, number
+from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.records.record import Record
@@ -75,12 +75,8 @@ class AssessParams(Params):
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
-        ranges = {"pga": STRENGTHS, "pgv": STRENGTHS, "period_min": LENGTH, "period_max": LENGTH}
-        if name in ranges and value is not None:
-            number(name, value, *ranges[name], unit={"pga": "m/s2", "pgv": "m/s"}.get(name, "s"))
-        elif name in ("samples", "seed"):
-            integer(name, value, 0, MAX_SAMPLES if name == "samples" else 2**53)
-        elif name.startswith("floor_") and value is not None:
+        super().check_field(name, value)
+        if name.startswith("floor_") and value is not None:
             numbers(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
             for shape in str(value).split(","):

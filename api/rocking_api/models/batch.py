@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.errors import TooLargeError
-from rocking_api.models.params import GROUPS, LookupOptions, check_value
+from rocking_api.models.params import GROUPS, BatchParams, LookupOptions
 
 Columns = Mapping[str, NDArray[np.float64]]
 
@@ -71,7 +71,7 @@ def batch_of(options: LookupOptions, columns: Columns, given: Mapping[str, Any],
         raise TooLargeError("points", points, f"at most {max_points}")
     options.check()
     for name, column in groups.items():
-        check_value(name, column)
+        BatchParams.check_field(name, column)
     return Batch(options, {name: np.broadcast_to(groups[name], (points,)) for name in GROUPS})
 
 

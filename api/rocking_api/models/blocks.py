@@ -8,10 +8,9 @@ from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, Validato
 from pydantic_core import PydanticCustomError
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import in_range
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import AbsoluteTolerance, Method, Params, PulseName, TableFormat, check_value
+from rocking_api.models.params import AbsoluteTolerance, Method, Params, PulseName, TableFormat
 from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import BY_SOLVER, PointResponse
 
@@ -53,21 +52,6 @@ Offset = Annotated[
 MassHeight = Annotated[float | None, quantity("mass_height", "height of the centre of mass; absent: half the height")]
 
 
-def check_block_value(name: str, value: Any) -> None:
-    """Refuse a value in SI units that is out of range, whatever the others are.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is.
-    """
-    if name in RANGES and value is not None:
-        low, high, unit = RANGES[name]
-        in_range(name, value, low, high, unit=unit)
-    elif value != "momentum":
-        check_value(name, value)
-
-
 class SizeParams(Params):
     """A block in SI units."""
 
@@ -77,10 +61,6 @@ class SizeParams(Params):
         "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
     )
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
-
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        check_block_value(name, value)
 
 
 class BlockParams(SizeParams):
@@ -105,10 +85,6 @@ class BlocksParams(Params):
         "momentum", description="eta [-] of the blocks that state none, or momentum: (2.4), 0 where that is negative"
     )
     format: TableFormat = None
-
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        check_block_value(name, value)
 
 
 class BlockRow(Params):

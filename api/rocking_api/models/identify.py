@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
-from rocking._base.errors import in_range
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
@@ -23,20 +22,13 @@ class IdentifyParams(Params):
     edges: int = Field(
         1,
         description="1 for a body with equal edges, 2 for one with a right and a left edge [-]",
-        json_schema_extra={"enum": [1, 2]},
+        json_schema_extra={"minimum": 1, "maximum": 2},
     )
     degrees: bool = Field(False, description="the rotations are in degrees, not in radians")
     confidence: float = Field(
         0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
     )
     format: TableFormat = None
-
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        if name == "edges":
-            in_range(name, value, 1, 2)
-        elif name == "confidence":
-            in_range(name, value, 0.0, 0.999, closed="right")
 
 
 class Trace(IdentifyParams):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable
-from functools import partial
+from functools import cache, partial
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names
 from rocking._model import parameters
 from rocking._model.checks import check
@@ -106,14 +106,16 @@ class Params(BaseModel):
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
-        """Refuse a value that is out of range, whatever the others are.
+        """Refuse a value that is out of the range that the schema of its field states, whatever the others are.
 
         Raises
         ------
         InvalidArgumentError
             If it is.
         """
-        check_value(name, value)
+        check = _checks_of(cls).get(name)
+        if check is not None and value is not None:
+            check(value)
 
     @classmethod
     def out_of_range(cls, values: Iterable[tuple[str, Any]]) -> list[InvalidArgumentError]:
@@ -213,7 +215,11 @@ class HistoryParams(Params):
         description="length tau = p t [-]; absent: the pulse and some free rocking",
         json_schema_extra={"exclusiveMinimum": 0, "maximum": MAX_DURATION},
     )
-    samples: int = Field(400, description="uniform samples [-]; the events are added", json_schema_extra={"minimum": 2})
+    samples: int = Field(
+        400,
+        description="uniform samples [-]; the events are added",
+        json_schema_extra={"minimum": 2, "maximum": 1_000_000},
+    )
     contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
     format: Format = None
 
@@ -233,29 +239,31 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": as_pulse,
     "slenderness": partial(check, SLENDERNESS),
     "frequency_ratio": partial(check, FREQUENCY_RATIO),
-    "restitution": partial(check, RESTITUTION),
+    "restitution": lambda value: (isinstance(value, str) and value == "momentum") or check(RESTITUTION, value),
     "alpha_deg": alpha_of,
-    "absolute_tolerance": partial(in_range, "absolute_tolerance", low=0.0, high=np.inf, closed="left"),
-    "highest": partial(in_range, "highest", low=1.0, high=1e6, closed="right"),
-    "duration": partial(in_range, "duration", low=0.0, high=MAX_DURATION, closed="right"),
-    "samples": partial(in_range, "samples", low=2, high=1_000_000),
-    "points": partial(in_range, "points", low=2, high=np.inf, closed="left"),
-    "columns": partial(in_range, "columns", low=2, high=np.inf, closed="left"),
-    "rows": partial(in_range, "rows", low=2, high=np.inf, closed="left"),
 }
+"""Checks of parameters whose range is not all of what is allowed, or which may be arrays."""
 
 
-def check_value(name: str, value: Any) -> None:
-    """Refuse a parameter that is out of range, whatever the others are.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is.
-    """
-    check = _CHECKS.get(name)
-    if check is not None and value is not None:
-        check(value)
+@cache
+def _checks_of(kind: type[Params]) -> dict[str, Callable[[Any], object]]:
+    """Checks of the fields of a model: of `_CHECKS`, or of the range or the values that their schema states."""
+    found = {name: check for name, check in _CHECKS.items() if name in kind.model_fields}
+    for name, field in kind.model_fields.items():
+        schema: Any = field.json_schema_extra
+        if name in found or not isinstance(schema, dict):
+            continue
+        if "enum" in schema:
+            found[name] = partial(one_of, name, choices=[one for one in schema["enum"] if one is not None])
+        else:
+            ends = {
+                "low": schema.get("minimum", schema.get("exclusiveMinimum")),
+                "high": schema.get("maximum", math.inf),
+            }
+            closed = "both" if "minimum" in schema else "right"
+            unit = re.search(r"\[([^]]+)\]", field.description or "")
+            found[name] = partial(in_range, name, **ends, closed=closed, unit=unit[1] if unit else "-")
+    return found
 
 
 def check_point(params: ResponseParams) -> None:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, create_model
 
-from rocking._base.errors import in_range, one_of
 from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import OVERTURNS_ABOVE, RANGES, BlockSummary, BodySummary, MassHeight, Offset, SizeParams
+from rocking_api.models.blocks import OVERTURNS_ABOVE, BlockSummary, BodySummary, MassHeight, Offset, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format
 from rocking_api.models.responses import BY_SOLVER, Motion
@@ -44,9 +43,6 @@ Unit = Annotated[
 class RecordFileParams(SizeParams):
     """A block in SI units, and what the file of the record does not state."""
 
-    BOUNDS: ClassVar[dict[str, tuple[float, float]]] = {"baseline_order": (0, MAX_BASELINE_ORDER)}
-    """Ranges of the parameters that are numbers without unit, both ends included [-]."""
-
     name: str = Field("record", description="name of the file, for messages", max_length=200)
     unit: Unit = None
     time_step: float | None = Field(
@@ -64,22 +60,9 @@ class RecordFileParams(SizeParams):
         json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
     )
 
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        if name in cls.BOUNDS and value is not None:
-            in_range(name, value, *cls.BOUNDS[name])
-        elif name == "time_step" and value is not None:
-            in_range(name, value, *TIME_STEP, unit="s")
-        elif name == "unit" and value is not None:
-            one_of(name, value, UNITS)
-        elif name in RANGES or name == "restitution":
-            super().check_field(name, value)
-
 
 class RecordParams(RecordFileParams):
     """The same, and a factor of the record, of both components."""
-
-    BOUNDS: ClassVar = {**RecordFileParams.BOUNDS, "scale": (SMALLEST_SCALE, HIGHEST_SCALE)}
 
     scale: float = Field(1.0, description="factor of the record [-]", json_schema_extra=_SCALE)
 
@@ -110,12 +93,6 @@ class RecordHistoryParams(RecordParams):
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
-    BOUNDS: ClassVar = {
-        **RecordFileParams.BOUNDS,
-        **dict.fromkeys(("scale_min", "scale_max"), (SMALLEST_SCALE, HIGHEST_SCALE)),
-        "points": (2, MAX_SCALES),
-    }
-
     scale_min: float | None = Field(
         None, description="smallest factor [-]; absent: that of uplift", json_schema_extra=_SCALE
     )
@@ -133,9 +110,9 @@ class RecordScalesParams(RecordFileParams):
 class RecordPulseParams(RecordParams):
     """The same, and the samples for a drawing."""
 
-    BOUNDS: ClassVar = {**RecordParams.BOUNDS, "samples": (2, MAX_DRAWN)}
-
-    samples: int = Field(2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2})
+    samples: int = Field(
+        2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
+    )
 
 
 class RecordBody(RecordFileParams):

@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._base.errors import InvalidArgumentError, in_range
+from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.assessment import Assessment, assess
 from rocking._dimensional.block import Block
 from rocking._dimensional.margins import Margins as FoundMargins
@@ -23,9 +23,9 @@ from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_resp
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.blocks import (
-    RANGES,
     BlockParams,
     BlockResponse,
+    BlockRow,
     BlockRows,
     BlocksParams,
     BlocksResponse,
@@ -133,8 +133,7 @@ def _read_table(body: BlockRows | bytes, params: BlocksParams) -> BlockTable:
             ("peak_acceleration", problem.peak_acceleration),
             ("period", problem.period),
         ):
-            low, high, unit = RANGES[name]
-            in_range(name, value, low, high, unit=unit)
+            BlockRow.check_field(name, value)
     return table
 
 

@@ -11,7 +11,6 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import Field, SerializeAsAny
 
-from rocking._base.errors import in_range
 from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES
 from rocking._model.checks import check_window
 from rocking._model.response import Response as Found
@@ -148,8 +147,7 @@ def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDA
     """The columns and the rows, within the ranges of the service."""
     left, right = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
     low, high = check_window(SLENDERNESS, params.slenderness_min, params.slenderness_max)
-    in_range("columns", params.columns, 2, np.inf, closed="left")
-    in_range("rows", params.rows, 2, np.inf, closed="left")
+    params.check()
     if params.columns * params.rows > service.settings.max_samples:
         larger = "columns" if params.columns >= params.rows else "rows"
         allowed = f"columns times rows at most {service.settings.max_samples}"

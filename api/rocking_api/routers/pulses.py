@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import inspect
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
-from rocking._base.errors import in_range
 from rocking._excitation import pulses
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import QUERY, Answer
@@ -32,10 +31,6 @@ class PulsesParams(Params):
     samples: int = Field(
         65, description="samples of each pulse [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
     )
-
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        in_range(name, value, 2, MAX_DRAWN)
 
 
 class PulseParameter(BaseModel):

@@ -8,7 +8,6 @@ import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 
-from rocking._base.errors import in_range
 from rocking._model.checks import check_window
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import evaluate_many
@@ -48,7 +47,7 @@ add_twin(
 def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
     """The frequency ratios of the curve, within the range of the service."""
     low, high = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
-    in_range("points", params.points, 2, np.inf, closed="left")
+    params.check()
     if params.points > service.settings.max_samples:
         raise TooLargeError("points", params.points, f"at most {service.settings.max_samples}")
     return np.geomspace(low, high, params.points)
