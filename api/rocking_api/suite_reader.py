@@ -12,13 +12,13 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 import xarray as xr
 
-from rocking._base.errors import DatasetError
+from rocking._base.errors import DatasetError, finite
 from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache
 from rocking._datasets.csv_text import csv_text
 from rocking._datasets.cube import decode_dataset
 from rocking.suites.intensity import measure_of
 from rocking.suites.summary import record_margins, rotation_quantiles
-from rocking_api.models.responses import Link, finite
+from rocking_api.models.responses import Link
 from rocking_api.models.suites import (
     FragilityCurve,
     LimitState,

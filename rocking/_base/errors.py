@@ -214,6 +214,25 @@ def plain_number(parameter: str, text: str) -> float:
         return si_value(parameter, text, "-")
 
 
+def plain_numbers(parameter: str, text: str) -> list[float]:
+    """The values of a text of numbers that are separated by commas.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the text holds anything else.
+    """
+    try:
+        return [float(one) for one in text.split(",")]
+    except ValueError:
+        raise InvalidArgumentError(parameter, text, "a number, or several separated by commas") from None
+
+
+def finite(value: float) -> float | None:
+    """The number; None, which JSON can hold, if it is not finite."""
+    return value if math.isfinite(value) else None
+
+
 def float_array(
     parameter: str,
     value: Any,

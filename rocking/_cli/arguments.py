@@ -128,7 +128,7 @@ def read_params(options: ProblemOptions) -> Params:
                 raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
         angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
         slenderness, ratio = options.slenderness or 0.0, options.frequency_ratio or 0.0
-        return Params(read_pulse(options.pulse), slenderness, ratio, _eta(options.restitution), angle or None)
+        return Params(read_pulse(options.pulse), slenderness, ratio, read_eta(options.restitution), angle or None)
     _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
     block = read_block(options)
     return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "period"))
@@ -147,7 +147,7 @@ def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Pa
             raise InvalidArgumentError("slenderness", None, "a number; or a block and an amplitude with units instead")
         window = check_window(FREQUENCY_RATIO, low, high)
         angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-        eta = _eta(options.restitution)
+        eta = read_eta(options.restitution)
         return Params(read_pulse(options.pulse), options.slenderness, window[0], eta, angle or None), window
     _refuse_groups(options, ("slenderness", "alpha"))
     block = read_block(options)
@@ -166,7 +166,7 @@ def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Para
     if not _has_units(options):
         window = check_window(FREQUENCY_RATIO, low, high)
         angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-        return Params(read_pulse(options.pulse), 1.0, window[0], _eta(options.restitution), angle or None), window
+        return Params(read_pulse(options.pulse), 1.0, window[0], read_eta(options.restitution), angle or None), window
     _refuse_groups(options, ("alpha",))
     block = read_block(options)
     window = _window(options, block, low, high)
@@ -311,11 +311,17 @@ def _positive(options: SizeOptions, name: str) -> float:
 
 def _restitution(options: ShapeOptions) -> float | str:
     given = options.restitution or "momentum"
-    return given if given == "momentum" else _eta(given)
+    return given if given == "momentum" else read_eta(given)
 
 
-def _eta(text: str | None) -> float:
-    allowed = "a number, or momentum for a block with units"
+def read_eta(text: str | None, allowed: str = "a number, or momentum for a block with units") -> float:
+    """The coefficient of restitution of a text.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is not a number, with what is `allowed`.
+    """
     if text is None:
         raise InvalidArgumentError("restitution", None, allowed)
     try:

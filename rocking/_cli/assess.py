@@ -195,7 +195,7 @@ def assess(
     from rocking._assessment.report import Project
     from rocking._assessment.site import Site
     from rocking._assessment.tables import ObjectTable, read_objects
-    from rocking._base.errors import InvalidArgumentError
+    from rocking._base.errors import InvalidArgumentError, plain_numbers
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
@@ -218,8 +218,8 @@ def assess(
             None if shapes is None else shapes.split(","),
             moving_ground,
             None if floor_periods is None else floor_periods.split(","),
-            _numbers("floor_damping", floor_damping),
-            _numbers("floor_participation", floor_participation),
+            plain_numbers("floor_damping", floor_damping),
+            plain_numbers("floor_participation", floor_participation),
         )
         table = ObjectTable([], []) if objects is None else read_objects(objects)
         bad = [f"{objects}, {printing.printable(str(one))}" for one in table.bad_rows]
@@ -266,16 +266,6 @@ def _read(
             raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
         found.append((read(first), read_record(second, unit=unit, time_step=time_step)))
     return found
-
-
-def _numbers(option: str, text: str) -> list[float]:
-    """Numbers separated by commas."""
-    from rocking._base.errors import InvalidArgumentError
-
-    try:
-        return [float(one) for one in text.split(",")]
-    except ValueError:
-        raise InvalidArgumentError(option, text, "a number, or several separated by commas") from None
 
 
 def _html(found: Assessment, project: Project, bad_rows: Sequence[BadRow]) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import typer
 
-from rocking._base.errors import in_range
+from rocking._base.errors import finite, in_range
 from rocking._base.units import UNITS
 from rocking._cli.arguments import Params, given_units
 from rocking._cli.options import OutputOptions
@@ -168,7 +168,7 @@ _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
 
 def _contact(found: ContactExtremes) -> dict[str, Any]:
     return {
-        "friction_demand": number(found.largest_friction_demand),
+        "friction_demand": finite(found.largest_friction_demand),
         "lifts_off": found.lifts_off,
         "rocking_model_applies": found.rocking_applies,
     }
@@ -287,15 +287,15 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
             contact=contact,
         )
     names = ["tau", "rotation", "angular_velocity", "ground_acceleration", *(COLUMNS if contact else ())]
-    columns = {name: [number(value) for value in motion[name].values.tolist()] for name in names}
+    columns = {name: [finite(value) for value in motion[name].values.tolist()] for name in names}
     about = _groups(params) | {
         "outcome": str(motion.attrs["outcome"]),
         "overturned": bool(motion.attrs["overturned"]),
-        "peak_rotation": number(float(motion.attrs["peak_rotation"])),
+        "peak_rotation": finite(float(motion.attrs["peak_rotation"])),
         "impact_time": motion["impact_time"].values.tolist(),
     }
     if contact:
-        about |= {name: number(float(motion.attrs[name])) for name in ATTRIBUTES}
+        about |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES}
         about |= {"lifts_off": bool(motion.attrs["lifts_off"]), "warnings": motion.attrs["warnings"] or None}
     shown = columns
     if params.problem is not None:
@@ -323,10 +323,10 @@ def body_history(
     with progress("solving the body"):
         motion = body.history(**given, duration=duration, samples=samples, contact=contact)
     columns = _si_columns(motion) | {"edge": motion["edge"].values.tolist()}
-    columns |= {name: [number(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
+    columns |= {name: [finite(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
     names = ("outcome", "impacts", "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio", "warnings")
     about = {name: motion.attrs[name] for name in names if name in motion.attrs}
-    about = {name: number(value) if isinstance(value, float) else value or None for name, value in about.items()}
+    about = {name: finite(value) if isinstance(value, float) else value or None for name, value in about.items()}
     about |= {"impact_time_s": motion["impact_time"].values.tolist()}
     _print_curve(about, columns, columns, form)
 
@@ -371,8 +371,8 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
         curve = block_spectrum(problem, period)
         columns |= {
             "period": period.tolist(),
-            "peak_rotation_deg": [number(x) for x in np.degrees(curve["rotation"].values).tolist()],
-            "top_displacement": [number(x) for x in curve["top_displacement"].values.tolist()],
+            "peak_rotation_deg": [finite(x) for x in np.degrees(curve["rotation"].values).tolist()],
+            "top_displacement": [finite(x) for x in curve["top_displacement"].values.tolist()],
         }
         about |= {"peak_acceleration": problem.peak_acceleration}
         names = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
@@ -426,15 +426,10 @@ def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
         if field is OUTCOME:
             values = [Outcome(code).name for code in values]
         elif field.dtype == "f8":
-            values = [number(value) for value in values]
+            values = [finite(value) for value in values]
         if field is not SOURCE:  # it is the solver
             columns[field.name] = values
     return columns
-
-
-def number(value: float) -> float | None:
-    """The value; None, which JSON can hold, if it is not finite."""
-    return value if math.isfinite(value) else None
 
 
 def print_json(result: Mapping[str, Any]) -> None:

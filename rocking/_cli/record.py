@@ -94,12 +94,12 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
     RecordFileError
         If the file does not hold a record.
     """
-    from rocking._cli.arguments import read_block
+    from rocking._cli.arguments import read_block, read_eta
     from rocking._excitation.records.readers.read_record import read_record
 
     block = read_block(options)
     eta: float | Literal["momentum"] = (
-        "momentum" if options.restitution == "momentum" else _number_of(options.restitution)
+        "momentum" if options.restitution == "momentum" else read_eta(options.restitution, "a number, or momentum")
     )
     motion = read_record(
         file,
@@ -113,18 +113,9 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
     return motion, block, eta
 
 
-def _number_of(text: str) -> float:
-    from rocking._base.errors import InvalidArgumentError, plain_number
-
-    try:
-        return plain_number("restitution", text)
-    except InvalidArgumentError:
-        raise InvalidArgumentError("restitution", text, "a number, or momentum") from None
-
-
 def _measures(motion: Record) -> dict[str, Any]:
     """What is printed of a record, by name."""
-    from rocking._cli.printing import number
+    from rocking._base.errors import finite
 
     return {
         "record": motion.name,
@@ -137,7 +128,7 @@ def _measures(motion: Record) -> dict[str, Any]:
         "peak_displacement": motion.peak_displacement,
         "arias_intensity": motion.arias_intensity,
         "significant_duration": motion.significant_duration,
-        "mean_period": number(motion.mean_period),
+        "mean_period": finite(motion.mean_period),
         "final_velocity": motion.final_velocity,
     }
 
@@ -173,7 +164,7 @@ def _solved(
     fit: bool,
 ) -> tuple[dict[str, Any], list[str]]:
     """What is printed of a block, by name, and the outcome and the margin in words."""
-    from rocking._cli.printing import number
+    from rocking._base.errors import finite
 
     found = block.response(motion, scale=scale, restitution=restitution, thresholds=thresholds)
     response, assessment = found.dimensionless, found.assessment
@@ -190,11 +181,11 @@ def _solved(
         "overturned": bool(response.overturned),
         "exceeded_alpha": bool(response.exceeded_alpha),
         "impacts": int(response.impacts),
-        "peak_rotation": number(float(response.peak_rotation)),
-        "amplification": number(assessment.amplification),
-        "peak_rotation_deg": number(math.degrees(found.rotation)),
-        "top_displacement": number(found.displacement),
-        "peak_rotation_resampled": None if refined is None else number(float(refined.peak_rotation)),
+        "peak_rotation": finite(float(response.peak_rotation)),
+        "amplification": finite(assessment.amplification),
+        "peak_rotation_deg": finite(math.degrees(found.rotation)),
+        "top_displacement": finite(found.displacement),
+        "peak_rotation_resampled": None if refined is None else finite(float(refined.peak_rotation)),
         "overturned_resampled": None if refined is None else bool(refined.overturned),
     }
     about |= _changes(assessment.thresholds)
@@ -206,10 +197,10 @@ def _solved(
             "pulse": fitted.velocity.family,
             "period": fitted.period,
             "pulse_peak_acceleration": fitted.peak_acceleration,
-            "pulse_cycles": number(fitted.velocity.cycles),
-            "pulse_phase": number(fitted.velocity.phase),
+            "pulse_cycles": finite(fitted.velocity.cycles),
+            "pulse_phase": finite(fitted.velocity.phase),
             "pulse_explained": fitted.explained,
-            "pulse_scale_ratio": number(float(fitted.scale_ratio[0])),
+            "pulse_scale_ratio": finite(float(fitted.scale_ratio[0])),
         }
     sentences = [text for text in (assessment.sentence, assessment.margin) if text]
     return about | {"margin": assessment.margin, "warnings": assessment.warnings}, sentences

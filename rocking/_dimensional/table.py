@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, finite
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.table_reader import (
@@ -171,7 +171,7 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
         alpha=np.array([one["alpha"] for one in groups]),
         stop=stop,
     )
-    peaks = [_finite(peak) for peak in found.peak_rotation.tolist()]
+    peaks = [finite(peak) for peak in found.peak_rotation.tolist()]
     rotations = [
         None if peak is None else peak * problem.block.alpha for peak, problem in zip(peaks, problems, strict=True)
     ]
@@ -186,9 +186,5 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
         OUTCOME.name: [Outcome(code).name for code in found.outcome.tolist()],
         IMPACTS.name: found.impacts.tolist(),
         EXCEEDED_ALPHA.name: found.exceeded_alpha.tolist(),
-        ERROR_BOUND.name: [_finite(bound) for bound in found.error_bound.tolist()],
+        ERROR_BOUND.name: [finite(bound) for bound in found.error_bound.tolist()],
     }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

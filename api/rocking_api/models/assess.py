@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import plain_numbers
 from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.records.record import Record
@@ -77,7 +77,7 @@ class AssessParams(Params):
     def check_field(cls, name: str, value: Any) -> None:
         super().check_field(name, value)
         if name.startswith("floor_") and value is not None:
-            numbers(name, str(value))  # a query with an error elsewhere has its numbers read
+            plain_numbers(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
             for shape in str(value).split(","):
                 as_pulse(shape)
@@ -101,24 +101,10 @@ class AssessParams(Params):
             None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
             None if self.shapes is None else self.shapes.split(","),
             self.moving_ground,
-            None if self.floor_periods is None else numbers("floor_periods", self.floor_periods),
-            numbers("floor_damping", self.floor_damping),
-            numbers("floor_participation", self.floor_participation),
+            None if self.floor_periods is None else plain_numbers("floor_periods", self.floor_periods),
+            plain_numbers("floor_damping", self.floor_damping),
+            plain_numbers("floor_participation", self.floor_participation),
         )
-
-
-def numbers(name: str, text: str) -> list[float]:
-    """Numbers that are separated by commas.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the text holds anything else.
-    """
-    try:
-        return [float(one) for one in text.split(",")]
-    except ValueError:
-        raise InvalidArgumentError(name, text, "a number, or several separated by commas") from None
 
 
 class SuiteRecordBody(BaseModel):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
+from rocking._base.errors import finite
 from rocking._model.fields import (
     COLUMN_FIELDS,
     DERIVED_FIELDS,
@@ -295,8 +296,3 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
         data_version=point.data_version,
         **derived,
     )
-
-
-def finite(value: float) -> float | None:
-    """The number, None if it is not finite."""
-    return value if math.isfinite(value) else None

@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, finite
 from rocking._dimensional.assessment import Assessment, assess
 from rocking._dimensional.block import Block
 from rocking._dimensional.margins import Margins as FoundMargins
@@ -37,7 +37,7 @@ from rocking_api.models.blocks import (
 )
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
-from rocking_api.models.responses import PointResponse, finite, point_response
+from rocking_api.models.responses import PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._base.errors import finite
 from rocking._history.contact import ATTRIBUTES, COLUMNS
 from rocking._history.time_history import time_history
 from rocking._numba.cancellation import StopFlag
@@ -14,7 +15,7 @@ from rocking_api.http.encoding import CONTENT, csv_response, json_response, nego
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import HistoryParams, alpha_of
-from rocking_api.models.responses import ContactResponse, HistoryResponse, finite
+from rocking_api.models.responses import ContactResponse, HistoryResponse
 from rocking_api.routers.twin import add_twin
 from rocking_api.service import ServiceDep
 

@@ -9,7 +9,7 @@ import numpy as np
 from fastapi import APIRouter, Request, Response
 from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, finite
 from rocking._excitation.records.readers.columns import read_samples
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
@@ -18,7 +18,6 @@ from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_resp
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES, IdentifyParams, IdentifyResponse, Trace
-from rocking_api.models.responses import finite
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)

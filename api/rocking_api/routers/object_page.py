@@ -16,14 +16,13 @@ from rocking._assessment.directions import factors_by_direction
 from rocking._assessment.objects import Object, Plane
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._base.units import Scalar
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
 from rocking_api.dial import dial_of, worst_directions
 from rocking_api.http.parameters import query_parameters
 from rocking_api.mesh_reader import ENDINGS, MAX_MESH, can_read_meshes, read_mesh
-from rocking_api.models.assess import numbers
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
 
@@ -128,7 +127,7 @@ def site_of(given: dict[str, str]) -> Site:
         for name in ("floor_periods", "floor_participation"):
             if len(given[name]) > MAX_MODES_TEXT:
                 raise InvalidArgumentError(name, f"{len(given[name])} characters", f"at most {MAX_MODES_TEXT}")
-            modes[name] = numbers(name, given[name])
+            modes[name] = plain_numbers(name, given[name])
     return Site(_quantity(given, "pga"), _quantity(given, "pgv"), **modes)
 
 

@@ -16,12 +16,11 @@ from rocking._assessment.columns import VERDICTS
 from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
 from rocking._assessment.tables import ObjectTable, objects_of_csv
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
-from rocking_api.models.assess import numbers
 from rocking_api.routers.assess import MAX_BODY, check_table
 from rocking_api.routers.object_page import SITE, address_of, site_of
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
@@ -62,7 +61,7 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
     table, found = await _assessed(given, request, service)
     command = f"rocking assess TABLE --pga {given['pga']}{given['pga_unit']} --pgv {given['pgv']}{given['pgv_unit']}"
     if given["floor_periods"].strip():
-        periods = ",".join(f"{one:g}s" for one in numbers("floor_periods", given["floor_periods"]))
+        periods = ",".join(f"{one:g}s" for one in plain_numbers("floor_periods", given["floor_periods"]))
         command += f" --floor {periods} --floor-participation {given['floor_participation'].replace(' ', '')}"
     project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), command)
     text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows), request)

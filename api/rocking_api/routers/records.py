@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Request, Response
 
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, finite
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import BlockProblem, record_groups, restitution_of, search_range
 from rocking._dimensional.response import respond
@@ -51,7 +51,7 @@ from rocking_api.models.records import (
     ScaleThreshold,
     with_record,
 )
-from rocking_api.models.responses import OUTCOMES, finite
+from rocking_api.models.responses import OUTCOMES
 from rocking_api.routers.history import motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
