@@ -19,6 +19,7 @@ from rocking._cli.floor import floor
 from rocking._cli.fragility import fragility
 from rocking._cli.identify import identify
 from rocking._cli.options import (
+    Duration,
     FrequencyRatioMax,
     FrequencyRatioMin,
     MassOptions,
@@ -128,10 +129,7 @@ def history(
     block: ProblemOptions,
     mass: MassOptions,
     output: OutputOptions,
-    duration: Annotated[
-        str | None,
-        typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
-    ] = None,
+    duration: Duration = None,
     samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.", metavar="[NUMBER]")] = 400,
     contact: Annotated[
         bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.", metavar="")

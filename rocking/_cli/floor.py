@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking._cli.options import FileOptions, with_options
 from rocking._cli.record import File, file_errors
 
 if TYPE_CHECKING:
@@ -21,30 +22,19 @@ Participation = Annotated[
         help="Participation factor times mode shape at the floor, of all modes or once for each.", metavar="[-]"
     ),
 ]
-Unit = Annotated[
-    str | None, typer.Option(help="Unit of the samples if the file states none, such as g.", metavar="[UNIT]")
-]
-TimeStep = Annotated[str | None, typer.Option(help="Time step if the file states none, such as 0.01s.", metavar="[s]")]
-Component = Annotated[str | None, typer.Option(help="Column or trace of a file with several.", metavar="[NAME]")]
-Vertical = Annotated[
-    str | None,
-    typer.Option(help="Vertical component, a file or a column; the floor has the same.", metavar="[FILE|NAME]"),
-]
 
 
+@with_options
 def floor(
     file: File,
     period: Periods,
+    stated: FileOptions,
     damping: Damping = [0.05],  # noqa: B006  # typer reads it
     participation: Participation = [1.0],  # noqa: B006
-    unit: Unit = None,
-    time_step: TimeStep = None,
-    component: Component = None,
-    vertical: Vertical = None,
 ) -> None:
     """Print the motion of a floor of a linear structure as CSV, a record for the other commands.
 
-    One mode of participation 1 is a structure on an isolation.
+    One mode of participation 1 is a structure on an isolation. The floor has the vertical component of the ground.
     """
     from rocking._base.errors import positive
     from rocking._cli.arguments import option_errors
@@ -54,7 +44,7 @@ def floor(
 
     with option_errors({"periods": "--period"}), file_errors():
         periods = [positive("period", one, "s") for one in period]
-        record = read_record(file, unit=unit, time_step=time_step, component=component, vertical=vertical)
+        record = read_record(file, **vars(stated))
         motion = floor_motion(record, periods=periods, damping=_each(damping), participation=_each(participation))
     typer.echo(csv_text(_columns(motion)), nl=False)
     typer.echo(motion.source, err=True)

@@ -112,15 +112,9 @@ class SpectrumOptions(WindowOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RecordOptions(SizeOptions):
-    """A block, and what the file of a record does not state."""
+class FileOptions:
+    """What the file of a record does not state: arguments of `read_record`."""
 
-    restitution: Annotated[
-        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).", metavar="[-]")
-    ] = "momentum"
-    scale: Annotated[
-        float, typer.Option(help="Factor of the record, of its vertical component too.", metavar="[-]")
-    ] = 1.0
     unit: Annotated[
         str | None,
         typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", metavar="[UNIT]"),
@@ -137,6 +131,18 @@ class RecordOptions(SizeOptions):
             help="File of the vertical component, upwards, or its column or trace in the file.", metavar="[FILE|NAME]"
         ),
     ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordOptions(FileOptions, SizeOptions):
+    """A block, and a record."""
+
+    restitution: Annotated[
+        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).", metavar="[-]")
+    ] = "momentum"
+    scale: Annotated[
+        float, typer.Option(help="Factor of the record, of its vertical component too.", metavar="[-]")
+    ] = 1.0
     baseline_order: Annotated[
         int | None,
         typer.Option(
@@ -170,11 +176,15 @@ class PictureOptions:
     ] = None
 
 
-GROUPS = (SizeOptions, MassOptions, OutputOptions, PictureOptions)
+GROUPS = (SizeOptions, FileOptions, MassOptions, OutputOptions, PictureOptions)
 """Types of arguments whose fields are options."""
 
 FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.", metavar="[-]")]
 FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.", metavar="[-]")]
+Duration = Annotated[
+    str | None,
+    typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
+]
 
 
 def with_options(command: Callable[..., None]) -> Callable[..., None]:

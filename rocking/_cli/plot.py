@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rocking._cli.options import (
+    Duration,
     FrequencyRatioMax,
     FrequencyRatioMin,
     PictureOptions,
@@ -60,10 +61,7 @@ def response(block: ProblemOptions, picture: PictureOptions) -> None:
 def history(
     block: ProblemOptions,
     picture: PictureOptions,
-    duration: Annotated[
-        str | None,
-        typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
-    ] = None,
+    duration: Duration = None,
 ) -> None:
     """Rotation and ground acceleration of one block against time."""
     from rocking._cli import arguments
