@@ -218,17 +218,6 @@ def record_dtype(fields: Sequence[ResponseField]) -> np.dtype[np.void]:
     return np.dtype([(field.name, field.dtype) for field in ordered], align=True)
 
 
-def markdown_table() -> str:
-    """The fields as a table for docs/notation.md."""
-    rows = ["| field | type | unit | equation | meaning |", "|---|---|---|---|---|"]
-    for field in dict.fromkeys((*RESPONSE_FIELDS, *COLUMN_FIELDS)):
-        kind = {"?": "bool", "U": "text", "i1": "int8", "i4": "int32", "f8": "float64"}[field.dtype]
-        unit = "-" if field.unit == "1" else field.unit
-        meaning = field.description("nan").replace(" [-]", "").replace("|theta|", "abs(theta)")
-        rows.append(f"| `{field.name}` | {kind} | {unit} | ({field.equation}) | {meaning} |")
-    return "\n".join(rows)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class ResponseFields:
     """Base of responses: the fields that all of them begin with, and a property for each of `DERIVED_FIELDS`.
