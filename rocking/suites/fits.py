@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -117,6 +118,18 @@ def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple
         low = np.where(successes > 0, beta.ppf(tail, successes, trials - successes + 1), 0.0)
         high = np.where(successes < trials, beta.isf(tail, successes + 1, trials - successes), 1.0)
     return low, high
+
+
+def counted(reached: NDArray[np.bool_], confidence: float, event: str) -> dict[str, tuple[NDArray[Any], str]]:
+    """Number and fraction of the records, the last axis, that do something, with interval; each with its meaning."""
+    count, trials = reached.sum(axis=-1), reached.shape[-1]
+    low, high = binomial_interval(count, trials, confidence)
+    return {
+        "exceedances": (count.astype(np.int32), f"number of records that {event}"),
+        "fraction": (count / trials, f"fraction of records that {event}"),
+        "fraction_lower": (low, "lower end of the Clopper-Pearson interval of the probability"),
+        "fraction_upper": (high, "upper end of the Clopper-Pearson interval of the probability"),
+    }
 
 
 def fit_curve(

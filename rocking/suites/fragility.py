@@ -26,7 +26,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.suites.body_arrays import over_bodies
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
-from rocking.suites.fits import CurveFit, FitStatus, binomial_interval, fit_curve
+from rocking.suites.fits import CurveFit, FitStatus, counted, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
 
@@ -170,8 +170,8 @@ def fragility_of_outcomes(
         {"measure": outcomes.attrs["measure"]},
     )
     for prefix, outcome, remark in (("", reached, {}), ("first_", first, {"comment": COMPARISON})):
-        for name, (unit, meaning, values) in _counted(outcome, confidence).items():
-            found[prefix + name] = variable(by_level, values, unit, meaning, **remark)
+        for name, (values, meaning) in counted(outcome, confidence, "reach the limit state").items():
+            found[prefix + name] = variable(by_level, values, "1", meaning, **remark)
         fits = _fits(outcome, levels, confidence, falling)
         found[f"{prefix}fit_status"] = (by_model, _each(fits, "status").astype(np.int8), _STATUS_ATTRIBUTES | remark)
         for name, (unit, meaning) in _MODEL_VARIABLES.items():
@@ -210,17 +210,6 @@ def _reached(outcomes: xr.Dataset, limit: str | float) -> NDArray[np.bool_]:
         return outcomes["exceeded_alpha"].values.astype(bool)
     with np.errstate(invalid="ignore"):
         return overturned | (outcomes["peak_rotation"].values > limit)
-
-
-def _counted(reached: NDArray[np.bool_], confidence: float) -> dict[str, tuple[str, str, NDArray[Any]]]:
-    count, trials = reached.sum(axis=-1), reached.shape[-1]
-    low, high = binomial_interval(count, trials, confidence)
-    return {
-        "exceedances": ("1", "number of records that reach the limit state", count.astype(np.int32)),
-        "fraction": ("1", "fraction of records that reach the limit state", count / trials),
-        "fraction_lower": ("1", "lower end of the Clopper-Pearson interval of the probability", low),
-        "fraction_upper": ("1", "upper end of the Clopper-Pearson interval of the probability", high),
-    }
 
 
 def _fits(reached: NDArray[np.bool_], levels: Array, confidence: float, falling: bool) -> list[list[list[CurveFit]]]:

@@ -12,7 +12,6 @@ about 1.5 ms. All of these are therefore computed at a few levels, not at those 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -27,7 +26,7 @@ from rocking._model.block import AbstractBlock
 from rocking._model.fields import OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
-from rocking.suites.fits import binomial_interval
+from rocking.suites.fits import counted
 from rocking.suites.outcomes import (
     DIMENSIONS,
     Suite,
@@ -151,15 +150,8 @@ def sensitivity_of_outcomes(outcomes: xr.Dataset, confidence: float) -> xr.Datas
     """The variables of `suite_sensitivity` over (block, intensity), from those over the records as well."""
     by_level = ("block", "intensity")
     overturned = outcomes["overturned"].transpose(*DIMENSIONS).values.astype(bool)
-    names, trials = outcomes["record"].values.astype(str), overturned.shape[-1]
-    count = overturned.sum(axis=-1)
-    low, high = binomial_interval(count, trials, confidence)
-    columns: dict[str, tuple[NDArray[Any], str]] = {
-        "exceedances": (count.astype(np.int32), "number of records that overturn the block"),
-        "fraction": (count / trials, "fraction of records that overturn the block"),
-        "fraction_lower": (low, "lower end of the Clopper-Pearson interval of the probability"),
-        "fraction_upper": (high, "upper end of the Clopper-Pearson interval of the probability"),
-    }
+    names = outcomes["record"].values.astype(str)
+    columns = counted(overturned, confidence, "overturn the block")
     others = {name: outcomes[f"overturned_{name}"].transpose(*DIMENSIONS).values.astype(bool) for name in VARIANTS}
     changed = {name: other != overturned for name, other in others.items()}
     for name, meaning in VARIANTS.items():
