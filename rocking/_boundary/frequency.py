@@ -65,7 +65,7 @@ def critical_frequency_ratio(
     window : (float, float)
         Smallest and largest omega = omega_g/p considered [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
     stop : StopFlag, optional
-        Once another thread sets it, this ends soon with `StoppedError`.
+        Cancels the work, which then raises `StoppedError`.
 
     Returns
     -------
@@ -79,8 +79,6 @@ def critical_frequency_ratio(
     ------
     InvalidArgumentError
         For an argument out of range.
-    StoppedError
-        If `stop` was set.
     """
     made = as_pulse(pulse)
     low, high = (check_number(FREQUENCY_RATIO, end, "window") for end in window)

@@ -255,14 +255,9 @@ def assess(
     seconds : float
         Time limit of each of these searches [s].
     stop : StopFlag, optional
-        Cancels the work.
+        Cancels the work, which then raises `StoppedError`.
     served : (float, float)
         Frequency ratios beyond which periods are not searched [-].
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
     """
     flag = StopFlag() if stop is None else stop
     motion, about = problem.motion, dict[str, Any]()

@@ -108,7 +108,7 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
         Highest peak acceleration searched, which broadcasts with the problem [m/s2]; at most `HIGHEST` times that of
         uplift is searched.
     stop : StopFlag, optional
-        Cancels the work.
+        Cancels the work, which then raises `StoppedError`.
 
     Returns
     -------
@@ -119,8 +119,6 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
     ------
     InvalidArgumentError
         For a record.
-    StoppedError
-        If `stop` was set.
     """
     motion = problem.motion
     if isinstance(motion, Record):

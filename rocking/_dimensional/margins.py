@@ -115,14 +115,9 @@ def margins_of(
     accelerations : iterable of Threshold
         As `block_thresholds` finds them.
     stop : StopFlag, optional
-        Cancels the work.
+        Cancels the work, which then raises `StoppedError`.
     served : (float, float)
         Frequency ratios beyond which periods are not searched [-].
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
     """
     groups, block = problem.groups, problem.block
     omega = groups["frequency_ratio"]

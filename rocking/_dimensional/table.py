@@ -143,10 +143,7 @@ def _blocks(read: Table[BlockProblem]) -> BlockTable:
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:
     """The responses as columns in SI units, degrees and groups, in the order of the rows; missing numbers are None.
 
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
+    `stop` cancels the work, which then raises `StoppedError`.
     """
     problems = table.problems
     groups = [problem.groups for problem in problems]

@@ -168,12 +168,7 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
     highest : float, optional
         Highest strength searched, in its unit; by default 100 times that of uplift under a pulse, 10 under a record.
     stop : StopFlag, optional
-        Cancels the work.
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
+        Cancels the work, which then raises `StoppedError`.
     """
     motion, shape = problem.motion, problem.shape
     by_record = isinstance(motion, Record)
@@ -253,12 +248,7 @@ def block_thresholds(
         Highest peak acceleration [m/s2] or factor [-] searched; by default as `thresholds_of`, or 10 times the peak
         acceleration of the problem, twice its factor, where that is more.
     stop : StopFlag, optional
-        Cancels the work.
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
+        Cancels the work, which then raises `StoppedError`.
     """
     block, motion, groups = problem.block, problem.motion, problem.groups
     if isinstance(motion, Record):

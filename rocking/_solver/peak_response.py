@@ -237,12 +237,7 @@ def solve_cells(
     threads : int or None
         Number of threads, None: all cores.
     stop : StopFlag or None
-        Cancels the work.
-
-    Raises
-    ------
-    StoppedError
-        If `stop` was set.
+        Cancels the work, which then raises `StoppedError`.
     """
     if pulse.samples is not None:
         return solve_pulse(pulse, cells, threads, stop)
