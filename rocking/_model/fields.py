@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from inspect import cleandoc
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
@@ -237,11 +238,12 @@ class ResponseFields:
 
     def __init_subclass__(cls, *, declared: Sequence[ResponseField] = ()) -> None:
         described = "\n".join(
-            f"    {field.name} : {np.dtype(field.dtype).name} array\n"
-            + fill(f"{field.description('nan')}.", 112, initial_indent=" " * 8, subsequent_indent=" " * 8)
+            f"{field.name} : {np.dtype(field.dtype).name} array\n"
+            + fill(f"{field.description('nan')}.", 108, initial_indent=" " * 4, subsequent_indent=" " * 4)
             for field in declared
         )
-        cls.__doc__ = (cls.__doc__ or "").replace("    {fields}", described)
+        # without the indentation of the source, which docstrings have up to Python 3.12 only
+        cls.__doc__ = cleandoc(cls.__doc__ or "").replace("{fields}", described)
 
     @property
     def overturned(self) -> NDArray[np.bool_]:
