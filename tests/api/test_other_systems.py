@@ -25,6 +25,7 @@ import os, runpy, socket, sys
 import netCDF4, numba, pandas, scipy, typer, xarray  # as they are for the system where this test runs
 sys.platform = "freebsd14"  # of darwin and win32 Python itself has modules that are missing here
 sys.modules["uvloop"] = sys.modules["httptools"] = None
+os.process_cpu_count = os.cpu_count  # from Python 3.13 on it calls the function that goes
 del os.sched_getaffinity, socket.TCP_NOTSENT_LOWAT
 runpy.run_module("rocking._cli", run_name="__main__")
 """
