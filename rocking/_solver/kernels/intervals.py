@@ -43,8 +43,9 @@ def crossing_of_sinusoid(flight: Record, piece: int, target: float, width: float
     The sinusoid is cos(x), x from the start of the half period: there the cosine of the angle is +1 and decreases, or
     -1 and increases.
     """
+    start: float = flight.half_period_phase[piece]
     near_start = target * flight.amplitude[0] * flight.half_period_cosine[piece] > 0.0
-    return flight.half_period_phase[piece] + (width if near_start else math.pi - width)
+    return start + (width if near_start else math.pi - width)
 
 
 @kernel
