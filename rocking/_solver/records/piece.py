@@ -56,59 +56,69 @@ def piece_state(z: float, w: float, q0: float, r: float, s: float) -> tuple[floa
 
 
 @kernel
+def next_time(
+    s: float, value: float, rate: float, second: float, lo: float, hi: float, before: float
+) -> tuple[float, float]:
+    """Halley's step towards the zero of a function from its value and derivatives at `s`, or the middle of [lo, hi].
+
+    Returns the next time and the length of the step, negative if the step after it would be below rounding: the error
+    is cubed at each step, so that the next one is step^4/before^3 where `before` is the length of the one before.
+    """
+    newton = -value / rate if rate != 0.0 else -1.0
+    halley = s + newton / (1.0 + 0.5 * newton * second / rate) if rate != 0.0 else lo - 1.0
+    following = halley if lo <= halley <= hi else 0.5 * (lo + hi)
+    step = abs(following - s)
+    fourth = step * step * (step * step)
+    done = fourth <= 1e-16 * following * (before * before * before) or step <= 1e-16 * following
+    return following, -step if done else step
+
+
+@kernel
 def impact_time(z: float, w: float, q0: float, r: float, lo: float, hi: float, guess: float) -> float:
-    """The time in (lo, hi] at which z falls to zero: bracketed Newton iteration.
+    """The time in (lo, hi] at which z falls to zero: bracketed Halley iteration.
 
     From the ground (z = 0) the iteration is on z/s, which removes the zero at the start.
     """
     from_ground = z == 0.0
     s = guess if lo < guess < hi else 0.5 * (lo + hi)
-    before = 0.0
+    step = 0.0
     for _ in range(MAX_ITERATIONS):
         value, rate = piece_state(z, w, q0, r, s)
+        second = value - (q0 + r * s)
         if from_ground:
             value /= s
             rate = (rate - value) / s
+            second = (second - 2.0 * rate) / s
         if value > 0.0:
             lo = s
         else:
             hi = s
-        newton = s - value / rate if rate < 0.0 else -1.0
-        follow = newton if lo <= newton <= hi else 0.5 * (lo + hi)
-        step = abs(follow - s)
-        s = follow
-        if step * step * step <= 1e-16 * s * before * before or step <= 1e-16 * s:
-            break  # the next Newton step would be below rounding
-        before = step
+        s, step = next_time(s, value, rate, second, lo, hi, step)
+        if step <= 0.0:
+            break
     return s
 
 
 @kernel
-def velocity_zero(z: float, w: float, q0: float, r: float, lo: float, hi: float, falling: bool) -> float:
-    """The time between lo and hi at which w crosses zero in the given direction: bracketed Newton iteration."""
-    s = 0.5 * (lo + hi)
-    before = 0.0
+def velocity_zero(z: float, w: float, q0: float, r: float, lo: float, hi: float, guess: float, falling: bool) -> float:
+    """The time between lo and hi at which w crosses zero in the given direction: bracketed Halley iteration."""
+    s, step = guess, 0.0
     for _ in range(MAX_ITERATIONS):
         at, rate = piece_state(z, w, q0, r, s)
-        slope = at - (q0 + r * s)
         if (rate > 0.0) == falling:
             lo = s
         else:
             hi = s
-        newton = s - rate / slope if slope != 0.0 else -1.0
-        follow = newton if lo <= newton <= hi else 0.5 * (lo + hi)
-        step = abs(follow - s)
-        s = follow
-        if step * step * step <= 1e-16 * s * before * before or step <= 1e-16 * s:
+        s, step = next_time(s, rate, at - (q0 + r * s), rate - r, lo, hi, step)
+        if step <= 0.0:
             break
-        before = step
     return s
 
 
 @kernel
 def highest_in_piece(z: float, w: float, q0: float, r: float, length: float, w1: float) -> float:
     """Largest maximum of z inside a piece with q >= 0 that ends with the velocity `w1`; 0 if there is none."""
-    lo, hi = 0.0, length
+    lo, hi, guess = 0.0, length, length * (w / (w - w1))
     c, d = z - q0, w - r
     if (w > 0.0) == (w1 > 0.0):
         # w has two zeros or none: both lie on different sides of its extremum
@@ -121,9 +131,10 @@ def highest_in_piece(z: float, w: float, q0: float, r: float, length: float, w1:
             hi = turn
         else:
             lo = turn
+        guess = 0.5 * (lo + hi)
     elif w1 > 0.0:
         return 0.0
-    top = velocity_zero(z, w, q0, r, lo, hi, True)
+    top = velocity_zero(z, w, q0, r, lo, hi, guess, True)
     return float(piece_state(z, w, q0, r, top)[0])
 
 
@@ -148,7 +159,7 @@ def follow_piece(
         if z1 <= 0.0:
             impact = impact_time(z, w, q0, r, 0.0, length, length * (z / (z - z1)))
         elif w1 > 0.0:
-            bottom = velocity_zero(z, w, q0, r, 0.0, length, False)
+            bottom = velocity_zero(z, w, q0, r, 0.0, length, length * (w / (w - w1)), False)
             if piece_state(z, w, q0, r, bottom)[0] <= 0.0:
                 impact = impact_time(z, w, q0, r, 0.0, bottom, 0.5 * bottom)
     if impact >= 0.0:
