@@ -64,9 +64,11 @@ def next_time(
     Returns the next time and the length of the step, negative if the step after it would be below rounding: the error
     is cubed at each step, so that the next one is step^4/before^3 where `before` is the length of the one before.
     """
-    newton = -value / rate if rate != 0.0 else -1.0
-    halley = s + newton / (1.0 + 0.5 * newton * second / rate) if rate != 0.0 else lo - 1.0
-    following = halley if lo <= halley <= hi else 0.5 * (lo + hi)
+    following = 0.5 * (lo + hi)
+    if rate != 0.0:
+        newton = -value / rate
+        halley = s + newton / (1.0 + 0.5 * newton * second / rate)
+        following = halley if lo <= halley <= hi else following
     step = abs(following - s)
     fourth = step * step * (step * step)
     done = fourth <= 1e-16 * following * (before * before * before) or step <= 1e-16 * following
