@@ -138,11 +138,13 @@ def chatter_ends_in_rest(block: Record, samples: FloatArray) -> bool:
         return False
     f, vertical = ground_at(block, samples, block.interval, block.s)
     pulls = pulls_of(block)
-    first = min(pulls[0] * (vertical + block.a[0] * f), pulls[1] * (vertical - block.a[1] * f))
-    if w * w > block.peak_rotation * max(block.ratio[0], block.ratio[1]) * first:
-        return False
+    q_right, q_left = vertical + block.a[0] * f, vertical - block.a[1] * f
+    first = min(pulls[0] * q_right, pulls[1] * q_left)
     window = 8.0 * w / (first * (1.0 - eta))
-    spread = 1.0 / (eta * eta) if eta > 0.0 else math.inf  # where q varies more, the series diverges
+    if not impacts_accumulate(block, w, pulls, window, (q_right, q_right), (q_left, q_left), vertical):
+        return False  # not even under constant q
+    # where q varies more, eta sqrt(most/least) leaves too little of the window for the sum of the series
+    spread = ((0.75 + 0.25 * eta) / eta) ** 2 if eta > 0.0 else math.inf
     least_right, most_right, least_left, most_left, highest = extremes_in_window(block, samples, window, spread)
     right, left = (least_right, most_right), (least_left, most_left)
     return bool(impacts_accumulate(block, w, pulls, window, right, left, highest))
