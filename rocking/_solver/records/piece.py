@@ -57,46 +57,56 @@ def piece_state(z: float, w: float, q0: float, r: float, s: float) -> tuple[floa
 
 @kernel
 def next_time(
-    s: float, value: float, rate: float, second: float, lo: float, hi: float, before: float
-) -> tuple[float, float]:
+    s: float, value: float, rate: float, second: float, third: float, lo: float, hi: float
+) -> tuple[float, bool]:
     """Halley's step towards the zero of a function from its value and derivatives at `s`, or the middle of [lo, hi].
 
-    Returns the next time and the length of the step, negative if the step after it would be below rounding: the error
-    is cubed at each step, so that the next one is step^4/before^3 where `before` is the length of the one before.
+    Returns the next time and whether its error is below rounding: a step of length d leaves an error of
+    d^3 |(second/(2 rate))^2 - third/(6 rate)|, whose two terms are added here.
     """
     following = 0.5 * (lo + hi)
-    if rate != 0.0:
-        newton = -value / rate
-        halley = s + newton / (1.0 + 0.5 * newton * second / rate)
-        following = halley if lo <= halley <= hi else following
-    step = abs(following - s)
-    fourth = step * step * (step * step)
-    done = fourth <= 1e-16 * following * (before * before * before) or step <= 1e-16 * following
-    return following, -step if done else step
+    if rate == 0.0:
+        return following, abs(following - s) <= 1e-16 * following
+    inverse = 1.0 / rate
+    newton = -value * inverse
+    bend = 0.5 * newton * (second * inverse)
+    halley = s + newton / (1.0 + bend)
+    if not lo <= halley <= hi:
+        return following, abs(following - s) <= 1e-16 * following
+    left = bend * bend + abs(newton * newton * (third * inverse)) * (1 / 6)
+    return halley, abs(newton) * min(left, 1.0) <= 1e-17 * halley
 
 
 @kernel
-def impact_time(z: float, w: float, q0: float, r: float, lo: float, hi: float, guess: float) -> float:
-    """The time in (lo, hi] at which z falls to zero: bracketed Halley iteration.
+def impact_time(z: float, w: float, q0: float, r: float, length: float, z1: float) -> float:
+    """The time in (0, length] at which z falls to zero, `z1` <= 0 being z at the end: bracketed Halley iteration.
 
-    From the ground (z = 0) the iteration is on z/s, which removes the zero at the start.
+    It starts from the zero of the parabola through z, w and z1, from the ground (z = 0) of that through z, w and z'',
+    since many flights from there are short. From the ground the iteration is on z/s, which removes the zero at the
+    start.
     """
     from_ground = z == 0.0
-    s = guess if lo < guess < hi else 0.5 * (lo + hi)
-    step = 0.0
+    curvature = -0.5 * q0 if from_ground and q0 > 0.0 else (z1 - z - w * length) / (length * length)
+    root = math.sqrt(max(w * w - 4.0 * curvature * z, 0.0))
+    s = 2.0 * z / (root - w) if w < 0.0 else -0.5 * (root + w) / curvature
+    lo, hi = 0.0, length
+    if not lo < s < hi:
+        s = 0.5 * hi
     for _ in range(MAX_ITERATIONS):
         value, rate = piece_state(z, w, q0, r, s)
-        second = value - (q0 + r * s)
+        second, third = value - (q0 + r * s), rate - r
         if from_ground:
-            value /= s
-            rate = (rate - value) / s
-            second = (second - 2.0 * rate) / s
+            inverse = 1.0 / s
+            value *= inverse
+            rate = (rate - value) * inverse
+            second = (second - 2.0 * rate) * inverse
+            third = (third - 3.0 * second) * inverse
         if value > 0.0:
             lo = s
         else:
             hi = s
-        s, step = next_time(s, value, rate, second, lo, hi, step)
-        if step <= 0.0:
+        s, done = next_time(s, value, rate, second, third, lo, hi)
+        if done:
             break
     return s
 
@@ -104,15 +114,16 @@ def impact_time(z: float, w: float, q0: float, r: float, lo: float, hi: float, g
 @kernel
 def velocity_zero(z: float, w: float, q0: float, r: float, lo: float, hi: float, guess: float, falling: bool) -> float:
     """The time between lo and hi at which w crosses zero in the given direction: bracketed Halley iteration."""
-    s, step = guess, 0.0
+    s = guess
     for _ in range(MAX_ITERATIONS):
         at, rate = piece_state(z, w, q0, r, s)
         if (rate > 0.0) == falling:
             lo = s
         else:
             hi = s
-        s, step = next_time(s, rate, at - (q0 + r * s), rate - r, lo, hi, step)
-        if step <= 0.0:
+        acceleration = at - (q0 + r * s)
+        s, done = next_time(s, rate, acceleration, rate - r, acceleration, lo, hi)
+        if done:
             break
     return s
 
@@ -155,15 +166,15 @@ def follow_piece(
     impact = -1.0
     if restoring:
         if z1 <= 0.0:
-            guess = 2.0 * w / q0 if z == 0.0 and q0 > 0.0 else length * (z / (z - z1))
-            impact = impact_time(z, w, q0, r, 0.0, length, guess)
+            impact = impact_time(z, w, q0, r, length, z1)
     elif w < 0.0:
         if z1 <= 0.0:
-            impact = impact_time(z, w, q0, r, 0.0, length, length * (z / (z - z1)))
+            impact = impact_time(z, w, q0, r, length, z1)
         elif w1 > 0.0:
             bottom = velocity_zero(z, w, q0, r, 0.0, length, length * (w / (w - w1)), False)
-            if piece_state(z, w, q0, r, bottom)[0] <= 0.0:
-                impact = impact_time(z, w, q0, r, 0.0, bottom, 0.5 * bottom)
+            lowest = piece_state(z, w, q0, r, bottom)[0]
+            if lowest <= 0.0:
+                impact = impact_time(z, w, q0, r, bottom, lowest)
     if impact >= 0.0:
         z1, w1, length = 0.0, min(piece_state(z, w, q0, r, impact)[1], 0.0), impact
     top = 0.0
