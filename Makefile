@@ -72,8 +72,8 @@ SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin
 deploy-check: .venv/project ## slow and greedy clients of the service alone, and behind nginx if it is installed; a minute
 	python -m tests.api.check_deployment
 
-fuzz: .venv/project ## send 5,000 random requests to the service; three minutes (SEED= for others)
-	FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q tests/api/test_api_fuzz.py
+fuzz: .venv/project ## send 5,000 random requests to the service (SEED= for others), try all of which `make test` tries a sample; 15 minutes
+	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q $$(grep -rlE 'FUZZ_CASES|tests.sampling' --include='test_*.py' tests)
 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)

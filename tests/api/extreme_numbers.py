@@ -3,13 +3,15 @@
 `python -m tests.api.extreme_numbers RESULTS` replaces one number of an ordinary call at a time and prints the faults:
 errors other than those about an argument, warnings, status 500, calls beyond the time limit. The parameters are read
 from the signatures, the commands and the OpenAPI description; one that has no ordinary value here is a fault as well.
-`--only NAME` restricts it to the calls whose name contains NAME.
+`--only NAME` restricts it to the calls whose name contains NAME, and `--sample SEED` to a few of the values of each
+number, drawn at random.
 """
 
 import argparse
 import inspect
 import json
 import math
+import random
 import re
 import resource
 import signal
@@ -21,6 +23,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -52,10 +55,10 @@ GRANTED = 0.3
 
 POWERS = (300, 30, 12, 6)
 EXTREMES = (
-    *(sign * 10.0 ** (end * power) for power in POWERS for end in (-1, 1) for sign in (1, -1)),
-    *(0.0, math.nan, math.inf, -math.inf),
+    tuple(sign * 10.0 ** (end * power) for power in POWERS for end in (-1, 1) for sign in (1, -1)),
+    (0.0, math.nan, math.inf, -math.inf),
 )
-"""Values that replace each number."""
+"""Values that replace each number: powers of ten, and others."""
 
 INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
 """Values that replace an integer as well."""
@@ -245,8 +248,9 @@ class LateError(BaseException):
 class Walk:
     """Counts and faults of the calls."""
 
-    def __init__(self, only: str) -> None:
+    def __init__(self, only: str, sample: int | None) -> None:
         self.only = only
+        self.draw = None if sample is None else random.Random(sample)
         self.results: Counter[str] = Counter()
         self.seconds: Counter[str] = Counter()
         self.faults: list[str] = []
@@ -273,22 +277,25 @@ class Walk:
         if ended not in ("answered", "refused", "stopped"):
             self.faults.append(f"{name} {given}: {ended}")
 
+    def values(self, number: float) -> list[float]:
+        """The values that replace a number: all, or one of each kind."""
+        kinds = (*EXTREMES, INTEGERS) if isinstance(number, int) else EXTREMES
+        return [*chain(*kinds)] if self.draw is None else [self.draw.choice(kind) for kind in kinds]
+
+    def replaced(self, given: Any) -> Iterator[Any]:
+        """The given values with one number replaced, for each number and each replacement; of many samples a few."""
+        if isinstance(given, dict):
+            yield from ({**given, name: other} for name, value in given.items() for other in self.replaced(value))
+        elif isinstance(given, (list, tuple)):
+            for place in range(0, len(given), max(len(given) // 4, 1)):
+                others = self.replaced(given[place])
+                yield from (type(given)([*given[:place], other, *given[place + 1 :]]) for other in others)
+        elif isinstance(given, (float, int)) and not isinstance(given, bool):
+            yield from self.values(given)
+
 
 def late(_: int, __: FrameType | None) -> None:
     raise LateError
-
-
-def replaced(given: Any) -> Iterator[Any]:
-    """The given values with one number replaced, for each number and each replacement; of many samples a few."""
-    if isinstance(given, dict):
-        yield from ({**given, name: other} for name, value in given.items() for other in replaced(value))
-    elif isinstance(given, (list, tuple)):
-        for place in range(0, len(given), max(len(given) // 4, 1)):
-            yield from (type(given)([*given[:place], other, *given[place + 1 :]]) for other in replaced(given[place]))
-    elif isinstance(given, (float, int)) and not isinstance(given, bool):
-        yield from EXTREMES
-        if isinstance(given, int):
-            yield from INTEGERS
 
 
 def walk_python(walk: Walk, results: Path) -> None:
@@ -324,7 +331,7 @@ def walk_python(walk: Walk, results: Path) -> None:
                 walk.faults.append(f"{name}: the parameter {error} has no ordinary value in this test")
                 continue
             numbers = {key: value for key, value in given.items() if key not in OBJECTS}
-            for other in replaced(numbers):
+            for other in walk.replaced(numbers):
                 changed = ", ".join(f"{key} = {other[key]}" for key in numbers if other[key] is not numbers[key])
                 walk.call(name, changed, partial(evaluate, function, given | other))
 
@@ -376,13 +383,13 @@ def walk_commands(walk: Walk, folder: Path) -> None:
         done: set[str] = set()
         for variant in VARIANTS:
             options = {key: OPTIONS[key] for key in OPTIONS if key in takes & (variant | COMMON)}
-            for key in options.keys() - done:
-                for other in (*EXTREMES, *INTEGERS) if isinstance(options[key][0], int) else EXTREMES:
+            for key in (key for key in options if key not in done):
+                for other in walk.values(options[key][0]):
                     given = {**options, key: (other, options[key][1])}
                     named = (f"--{one.replace('_', '-')}={value}{unit}" for one, (value, unit) in given.items())
                     walk.call(name, f"{key} = {other}", partial(run_command, [*start, *named]))
             done |= options.keys()
-    for other in replaced(SUITE):
+    for other in walk.replaced(SUITE):
         (folder / "suite.json").write_text(json.dumps(other), encoding="utf-8")
         walk.call(
             "rocking fragility", other, partial(run_command, ["fragility", str(folder / "suite.json"), "--format=json"])
@@ -433,10 +440,10 @@ def walk_routes(walk: Walk, results: Path) -> None:
                 ask = partial(request, client, method, target)
                 if walk.only in name and (ended := ask(query, media_type, body)) not in ("answered", "stopped"):
                     walk.faults.append(f"{name} with ordinary values: {ended}")
-                for other in replaced(numbers):
+                for other in walk.replaced(numbers):
                     changed = ", ".join(f"{key} = {value}" for key, value in other.items() if value is not numbers[key])
                     walk.call(name, changed, partial(ask, query | other, media_type, body))
-                for other in replaced(body):
+                for other in walk.replaced(body):
                     walk.call(name, other, partial(ask, query, media_type, other))
             walk.call(f"health after {name}", "", lambda: request(client, "GET", "/health", {}, "", None))
 
@@ -464,13 +471,14 @@ def main() -> None:
     parser.add_argument("results", type=Path, help="folder that the workflow filled")
     parser.add_argument("--part", choices=["python", "routes", "commands"], help="only this part")
     parser.add_argument("--only", default="", help="part of the name of a function, command or route")
+    parser.add_argument("--sample", type=int, metavar="SEED", help="one value of each kind for each number")
     parser.add_argument("--verbose", action="store_true", help="print the time of each function, command and route")
     given = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
     signal.signal(signal.SIGALRM, late)
     warnings.simplefilter("error")
     warnings.filterwarnings("ignore", category=DeprecationWarning)
-    walk = Walk(given.only)
+    walk = Walk(given.only, given.sample)
     with ExitStack() as stack:
         for name in ("rocking_api.command.main", "rocking.plot.output.save_figure", "rocking._cli.assess._write"):
             stack.enter_context(patch(name))  # no server, and no files
