@@ -14,6 +14,7 @@ from reference.records import BITS, RELATIVE_CHANGE, Edge, integrate_record
 from rocking._solver.records.record_response import solve_bodies
 from rocking._solver.records.samples import sample_rows
 from rocking._solver.state import BODY_CELL
+from tests.sampling import sample
 from tests.solver.records.test_bodies import edge
 
 ROUNDING = 2.2e-16
@@ -102,7 +103,7 @@ def test_random_bodies() -> None:
 
 @pytest.mark.slow
 def test_more_random_bodies() -> None:
-    found = [errors_of(seed) for seed in range(1000, 1100)]
+    found = [errors_of(seed) for seed in sample(range(1000, 1100), 15)]
     errors = [error for _, both in found for error in both]
     assert max(errors) < ALLOWED
     assert np.median(errors) < 10.0

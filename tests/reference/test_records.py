@@ -8,6 +8,7 @@ import pytest
 from reference.exact_response import working_precision
 from reference.records import BITS, integrate_record, response_and_amplification
 from stress.records import judge, random_case, summary
+from tests.sampling import sample
 from tests.solver.records.tables import rows
 
 
@@ -43,7 +44,7 @@ def test_random_cases() -> None:
 @pytest.mark.slow
 def test_more_random_cases() -> None:
     """`python -m stress.records` runs a thousand."""
-    found = summary([judge(random_case(seed)) for seed in range(100, 125)])
+    found = summary([judge(random_case(seed)) for seed in sample(range(100, 125), 6)])
     assert found["wrong"] == 0
     assert found["largest error over allowed"] < 0.1
 
