@@ -3,10 +3,13 @@
 import json
 import math
 import re
-import subprocess
+import runpy
 import sys
+import warnings
+from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +23,7 @@ from benchmarks.baselines import runge_kutta
 from benchmarks.baselines.event_loop import SINE, respond
 from benchmarks.baselines.methods import compiled_peaks, package_peaks, python_peaks
 from benchmarks.baselines.scipy_ivp import integrate_flight
-from benchmarks.cost import records, stages, work_precision
+from benchmarks.cost import growth, records, stages, work_precision
 from benchmarks.cost.equal_error import time_for
 from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.measure import accuracy
@@ -129,17 +132,26 @@ def test_a_setting_that_is_slower_and_worse_does_not_count() -> None:
     assert time_for(1e-2, [50.0, 10.0], [1e-2, 1e-4]) == pytest.approx(10.0)
 
 
-def run(module: str, out: Path, *options: str) -> tuple[dict, str]:
-    """The record and what the command prints."""
-    command = [sys.executable, "-m", f"benchmarks.{module}", *options, "--out", str(out)]
-    done = subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return json.loads(out.read_text()), done.stdout
+Run = Callable[..., tuple[dict[str, Any], str]]
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run a command as `python -m` does, without a process of its own; return its record and what it prints."""
+
+    def command(module: str, out: Path, *options: str) -> tuple[dict[str, Any], str]:
+        monkeypatch.setattr(sys, "argv", [module, *options, "--out", str(out)])
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", category=RuntimeWarning, module="runpy")  # the tests import some of them
+            runpy.run_module(f"benchmarks.{module}", run_name="__main__")
+        return json.loads(out.read_text()), capsys.readouterr().out
+
+    return command
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("diagram_name", ["slender-sine", "rigid-ricker"])
-def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path, diagram_name: str) -> None:
+def test_a_diagram_of_time_against_error_is_measured_and_compared(run: Run, tmp_path: Path, diagram_name: str) -> None:
     record, text = run("cost.work_precision", tmp_path / "a.json", diagram_name, "--rounds", "1", "--coarse", "4")
     assert record["cells"]["all"] == 64
     assert all(rows[-1]["wrong_outcomes"] == 0 for rows in record["methods"].values())
@@ -150,8 +162,20 @@ def test_a_diagram_of_time_against_error_is_measured_and_compared(tmp_path: Path
 
 
 @pytest.mark.slow
-def test_growth_finds_the_same_outcomes_for_any_number_of_threads(tmp_path: Path) -> None:
-    record, _ = run("cost.growth", tmp_path / "a.json", "--largest", "1024")
+def test_growth_finds_the_same_outcomes_for_any_number_of_threads(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Of the four measurements one runs in a process of its own, as all of the command do."""
+    alone = ("slender", 32, 1)
+
+    def measure(*case: Any) -> dict[str, Any]:
+        return in_new_process(*case) if case == alone else growth.measure_grid(*case)
+
+    in_new_process = growth.in_new_process
+    monkeypatch.setattr(growth, "in_new_process", measure)
+    monkeypatch.setattr(sys, "argv", ["growth", "--largest", "1024", "--out", str(tmp_path / "a.json")])
+    growth.main()
+    record = json.loads((tmp_path / "a.json").read_text())
     counts = {(one["kind"], one["cells"]): set() for one in record["sizes"]}
     for one in record["sizes"]:
         counts[one["kind"], one["cells"]].add(one["overturned"])
@@ -163,7 +187,7 @@ def test_growth_finds_the_same_outcomes_for_any_number_of_threads(tmp_path: Path
 
 
 @pytest.mark.slow
-def test_interpolation_is_of_fourth_order_where_linear_is_of_second(tmp_path: Path) -> None:
+def test_interpolation_is_of_fourth_order_where_linear_is_of_second(run: Run, tmp_path: Path) -> None:
     record, text = run(
         "accuracy.grid_size", tmp_path / "a.json", "--count", "20000", "--scales", "0.125", "0.25", "0.5"
     )
@@ -246,8 +270,8 @@ def test_the_workflow_plans_every_benchmark_and_one_summary(tmp_path: Path) -> N
 
 
 def test_the_summary_holds_what_was_measured_and_omits_the_rest(tmp_path: Path) -> None:
-    growth = [{"kind": "slender", "cells": 1024, "threads": 1, "overturned": 666, "seconds": [2e-3], "peak_bytes": 5e8}]
-    (tmp_path / "growth.json").write_text(json.dumps({"sizes": growth}))
+    sizes = [{"kind": "slender", "cells": 1024, "threads": 1, "overturned": 666, "seconds": [2e-3], "peak_bytes": 5e8}]
+    (tmp_path / "growth.json").write_text(json.dumps({"sizes": sizes}))
     text = "\n".join(page(tmp_path))
     assert "Cost against the number of cells" in text
     assert "1.953" in text  # us per cell
@@ -260,7 +284,7 @@ def test_the_summary_holds_what_was_measured_and_omits_the_rest(tmp_path: Path) 
 
 
 @pytest.mark.slow
-def test_the_time_of_each_pulse_is_compared_with_another_checkout(tmp_path: Path) -> None:
+def test_the_time_of_each_pulse_is_compared_with_another_checkout(run: Run, tmp_path: Path) -> None:
     record, text = run("cost.solver", tmp_path / "a.json", "--baseline", str(ROOT), "--rounds", "1", "--scale", "0.02")
     assert {row["case"].split()[1].rstrip(",") for row in record["rows"]} == set(rocking.PULSE_NAMES)
     assert all(row["here"]["median"] > 0.0 < row["baseline"]["median"] for row in record["rows"])
@@ -268,7 +292,7 @@ def test_the_time_of_each_pulse_is_compared_with_another_checkout(tmp_path: Path
 
 
 @pytest.mark.slow
-def test_the_tolerance_benchmark_runs_and_draws(tmp_path: Path) -> None:
+def test_the_tolerance_benchmark_runs_and_draws(run: Run, tmp_path: Path) -> None:
     record, _ = run("accuracy.tolerance", tmp_path / "a.json")
     assert record["cells"] == 1000
     assert len(record["tolerances"]) == 11
