@@ -10,6 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from rocking import precompile
+from rocking._base.source_tree import SourceTree
+from rocking._numba import kernel_cache
+
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "tasks.md").read_text()
 TASKS = dict(re.findall(r"^## Add a (\w+)\n(.*?)(?=^\(add-a-|\Z)", PAGE, re.MULTILINE | re.DOTALL))
@@ -25,15 +29,21 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the repository with all five changes; the compiled kernels are copied too."""
+    """A copy of the repository with all five changes; none is to a kernel, so those of this checkout serve it too."""
     folder = tmp_path_factory.mktemp("tasks") / "repository"
     for name in COPIED:
-        shutil.copytree(ROOT / name, folder / name)
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "Snakefile", folder)
     for text in TASKS.values():
         for step in STEP.finditer(text):
             if step["path"]:
                 perform(folder / step["path"], step)
+    precompile.main()
+    compiled = kernel_cache.cache_folder()
+    assert compiled is not None
+    # under another name: the digest is of all files that kernels import, among them the list of the pulses
+    own_name = f"kernels-{kernel_cache.kernel_digest(SourceTree(folder))}"
+    shutil.copytree(compiled, folder / "rocking" / "__pycache__" / own_name)
     return folder
 
 
