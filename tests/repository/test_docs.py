@@ -70,6 +70,12 @@ def figures():
     plt.close("all")
 
 
+@pytest.fixture
+def coarse(monkeypatch):
+    """Boundaries on fewer nodes than by default: what is written shall run, its numbers are not compared."""
+    monkeypatch.setitem(rocking.overturning_boundary.__kwdefaults__, "nodes", 61)
+
+
 def test_every_example_has_an_expected_output():
     assert {path.stem for path in (ROOT / "examples").glob("*.py")} == PRINTED.keys()
 
@@ -104,6 +110,7 @@ def test_example(name, smoke_results, monkeypatch, capsys, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
 def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
     (tmp_path / "results").symlink_to(smoke_results)
@@ -121,6 +128,7 @@ def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
     assert "nan" not in output
 
 
+@pytest.mark.usefixtures("coarse")
 def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     """Each `rocking` command of start and how-to pages runs, apart from the server and long tables."""
     (tmp_path / "workflow").symlink_to(ROOT / "workflow")

@@ -83,7 +83,7 @@ def test_samples_pass_through_files_to_the_last_digit(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_data_sets_of_sampled_pulses(tmp_path: Path) -> None:
+def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) -> None:
     (tmp_path / "ramp.csv").write_text("time,acceleration\n0,0\n0.1,3\n0.3,-1\n0.7,0\n")
     triangle = {"name": "triangle", "acceleration": [0, 2, 0], "time": [0, 0.5, 1]}
     ramp = {"name": "ramp", "file": "ramp.csv", "period": 0.5}
@@ -94,8 +94,13 @@ def test_data_sets_of_sampled_pulses(tmp_path: Path) -> None:
     finished = snakemake(run, module="workflow.run", configuration=written)
     assert finished.returncode == 0, finished.stdout
     listed = json.loads((run / "results/manifest.json").read_text())["products"]
-    for pulse in (TRIANGLE, RAMP):
-        for kind in ("spectra", "overturning"):
+    kinds, pulses = ("spectra", "overturning"), (TRIANGLE, RAMP)
+    assert set(listed) == {f"{kind}/{pulse.name}/eta-0.85.nc" for kind in kinds for pulse in pulses}
+    verdicts = (run / "results/checks.txt").read_text()
+    assert "failed" not in verdicts
+    assert [name for name in listed if f"[{name}]" not in verdicts] == []
+    for pulse in pulses:
+        for kind in kinds:
             assert listed[f"{kind}/{pulse.name}/eta-0.85.nc"]["pulse_sha256"] == pulse.digest
         _check_cube(run / "results", pulse)
     assert "Nothing to be done" in snakemake(run, module="workflow.run", configuration=written).stdout

@@ -18,6 +18,7 @@ from rocking._datasets.cube import read_dataset
 from rocking.suites.configuration import SuiteConfiguration, suite_configuration
 from tests.workflow_fixtures import PROJECT, snakemake
 from workflow.configuration import ConfigurationError, check
+from workflow.records import records_of
 from workflow.verify import problems
 
 CONFIGURATION = PROJECT / "workflow/config/suite.yaml"
@@ -138,12 +139,17 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(suite_run
     again = snakemake(copy, module="workflow.run", configuration=CONFIGURATION)
     assert "Nothing to be done" in again.stdout
     place = "results/suites/demonstration/records/napa_HNE.csv.nc"
+    (record,) = records_of(copy, "suites/demonstration/records/napa_HNE.csv")
     before = (copy / place).read_bytes()
     (copy / place).write_bytes(before[:-100])
     assert [name for name in problems(copy) if "napa_HNE" in name]
-    remade = snakemake(copy, module="workflow.run", configuration=CONFIGURATION)
+    planned = snakemake(copy, "--dry-run", module="workflow.run", configuration=CONFIGURATION)
+    jobs = dict(re.findall(r"^(suite_\w+) +(\d+)$", planned.stdout, flags=re.MULTILINE))
+    figures = {f"suite_figure_{name}": "1" for name in ("curves", "outcomes", "map")}
+    assert jobs == {"suite_record": "1", "suite_fragility": "1", "suite_manifest": "1"} | figures, planned.stdout
+    remade = snakemake(copy, str(record.relative_to(copy)), configuration=CONFIGURATION)
     assert remade.returncode == 0, remade.stdout
-    assert remade.stdout.count("Responses to") == 1
+    assert "Responses to napa_HNE" in remade.stdout
     assert (copy / place).read_bytes() == before
     assert [*problems(copy)] == []
 
