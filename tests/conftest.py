@@ -16,11 +16,11 @@ settings.load_profile("rocking")
 
 FIRST = (
     "tests/workflow/test_claims.py",  # with the shared run of the workflow
-    "tests/api/test_extreme_numbers.py",
     "tests/solver/test_plain_numba.py",
     "tests/workflow/test_workflow_recovery.py",  # needs the shared run
     "tests/repository/test_docs.py",  # needs it
     "tests/workflow/test_suite.py",
+    "tests/api/test_extreme_numbers.py",
     "tests/api/test_memory_budget.py",
     "tests/api/explorer/test_current.py",
     "tests/benchmarks/test_benchmarks.py",
@@ -40,7 +40,6 @@ FIRST = (
     "tests/base/test_compilation.py",
     "tests/api/explorer/test_site.py",
     "tests/repository/test_types.py",
-    "tests/assessment/test_assess.py",
     "tests/api/test_api_fuzz.py",
     "tests/api/explorer/test_motion.py",
     "tests/api/explorer/test_pages.py",
