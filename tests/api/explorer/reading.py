@@ -12,6 +12,17 @@ BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=
 MAP = "/?pulse=sine"  # the map of the groups, without a block
 POINT = "/?frequency_ratio=4&slenderness=0.7"
 
+COMPLETE = {
+    "/": "() => document.querySelector('.headline') && document.querySelectorAll('.downloads a[href]').length >= 7",
+    "/objects?sample=1": "() => document.querySelector('#ranking')",
+    "/records": "() => ['#scales canvas', '#pulse-caution:not(:empty)'].every((one) => document.querySelector(one))",
+    "/datasets": "() => document.querySelector('#groups h3')",
+    "/suites": "() => document.querySelector('#suite-report canvas')",
+    "/state": "() => document.querySelector('#facts dl')",
+    "/docs": "() => document.querySelector('.opblock')",
+}
+"""Functions of JavaScript that are true once a page shows its last answer."""
+
 
 def settle(page: Page):
     """Wait until the map, sharp, and its boundaries are those of what the page shows."""
