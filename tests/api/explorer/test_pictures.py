@@ -8,7 +8,7 @@ import pytest
 
 from tests.api.explorer import plain_font
 from tests.api.explorer.pictures import MAX_SQUARES, NEW, WINDOW, State, different_squares, store, stored, take
-from tests.api.explorer.reading import BLOCK, POINT
+from tests.api.explorer.reading import BLOCK, COMPLETE, POINT
 
 if sys.platform != "linux":
     pytest.skip("the font of the pictures is set by fontconfig", allow_module_level=True)
@@ -25,9 +25,9 @@ STATES = {
     "map-dark": State(POINT, MAP, SECTION, "dark"),
     "spectrum": State(POINT, "() => document.querySelector('#spectrum-chart canvas')", "#spectrum"),
     "own-pulse": State(BLOCK + "&pulse=0+1+0", ANSWERS),
-    "objects": State("/objects?sample=1", "() => document.getElementById('ranking')"),
-    "records": State("/records", "() => document.getElementById('pulse-caution').textContent"),
-    "datasets": State("/datasets", "() => document.querySelector('#groups h3')"),
+    "objects": State("/objects?sample=1", COMPLETE["/objects?sample=1"]),
+    "records": State("/records", COMPLETE["/records"]),
+    "datasets": State("/datasets", COMPLETE["/datasets"]),
     "not-found": State("/nowhere", "() => true"),
 }
 
@@ -44,7 +44,7 @@ def browser(launch, tmp_path_factory):
 def picture(open_page):
     def taken(state, prepare=None):
         options = {"color_scheme": state.scheme, "viewport": WINDOW, "bypass_csp": True, "failing": True}
-        page = open_page("/state", **options)
+        page = open_page("about:blank", **options)
         if prepare is not None:
             prepare(page)
         page.goto(state.path)

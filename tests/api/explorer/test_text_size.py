@@ -60,7 +60,7 @@ def faults(texts):
 
 @pytest.mark.parametrize("path", [BLOCK, "/records", "/suites"])
 def test_drawings_follow_the_size_of_the_text(open_page, path):
-    page = open_page("/state")
+    page = open_page("about:blank")
     page.add_init_script(f"({RECORD_TEXT})()")
     page.goto(path)
     if path == BLOCK:
