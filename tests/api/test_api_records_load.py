@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,12 @@ for thread in threads:
 print(json.dumps(statuses))
 """
 
+pytestmark = [
+    pytest.mark.alone,
+    pytest.mark.slow,
+    pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells"),
+]
+
 
 def column_file(bytes_wanted):
     """A file of times and accelerations [g] of about that size."""
@@ -59,25 +66,33 @@ HOSTILE = {
 }
 
 
-@pytest.mark.alone
-@pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
+@contextmanager
+def warm_server(folder):
+    """A service whose kernels are loaded."""
+    with serving(folder, folder / "log", ROCKING_ACCESS_LOG="0") as server:
+        assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200
+        yield server
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    with warm_server(tmp_path_factory.mktemp("serve")) as server:
+        yield server
+
+
 @pytest.mark.parametrize("body", HOSTILE.values(), ids=[*HOSTILE])
-def test_hostile_bodies_do_not_delay_health(body, tmp_path):
-    with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
-        assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200  # the kernels are loaded
+def test_hostile_bodies_do_not_delay_health(server, body):
+    def delays_meanwhile():
+        delays, statuses = [], []
+        upload = threading.Thread(target=lambda: statuses.append(status_of(server, "POST", ROUTE, body)))
+        upload.start()
+        while upload.is_alive():
+            delays.append(delay_of_health(server))
+            time.sleep(0.005)
+        assert statuses[0] in (200, 422, 504)
+        return delays
 
-        def delays_meanwhile():
-            delays, statuses = [], []
-            upload = threading.Thread(target=lambda: statuses.append(status_of(server, "POST", ROUTE, body)))
-            upload.start()
-            while upload.is_alive():
-                delays.append(delay_of_health(server))
-                time.sleep(0.005)
-            assert statuses[0] in (200, 422, 504)
-            return delays
-
-        assert_short(delays_meanwhile)
+    assert_short(delays_meanwhile)
 
 
 def assert_short(delays_meanwhile):
@@ -118,22 +133,19 @@ def json_of(values):
     return json.dumps({"objects": [{"width": 1.6, "height": 0.4}], "records": records, "sensitivity": False}).encode()
 
 
+# Without thresholds, the record takes a third of the processor time and 30 MB less.
 UPLOADS = {
-    "record": (ROUTE, "text/csv", lambda: column_file(5_000_000)),
+    "record": (ROUTE + "&thresholds=false", "text/csv", lambda: column_file(5_000_000)),
     "blocks in JSON": ("/v1/response", "application/json", lambda: json_of("groups")),
     "records of a site in JSON": ("/v1/assess", "application/json", lambda: json_of("records")),
 }
 
 
-@pytest.mark.alone
-@pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 @pytest.mark.parametrize("upload", UPLOADS)
 def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path, upload):
     route, media_type, made = UPLOADS[upload]
     (tmp_path / "body").write_bytes(made())
-    with serving(tmp_path, tmp_path / "log", ROCKING_ACCESS_LOG="0") as server:
-        assert status_of(server, "POST", ROUTE, column_file(20_000)) == 200  # the kernels are loaded
+    with warm_server(tmp_path) as server:
         before = megabytes(server.process, "VmRSS")
         arguments = [sys.executable, "-c", CLIENTS, str(server.port), str(tmp_path / "body"), route, media_type]
 
@@ -149,4 +161,4 @@ def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(tmp_path, up
             return delays
 
         assert_short(delays_meanwhile)
-        assert megabytes(server.process, "VmHWM") - before < 300.0
+        assert megabytes(server.process, "VmHWM") - before < 260.0
