@@ -95,27 +95,27 @@ class Service:
             await send(message)
 
 
-@pytest.fixture(scope="session")
-def session_service(results):
+@pytest.fixture(scope="package")
+def running_service(results):
     service = Service(results)
     yield service
     service.stop()
 
 
 @pytest.fixture
-def service(session_service):
-    yield session_service
-    session_service.seconds, session_service.refusals = 0.0, 0
-    if not session_service.thread.is_alive():
-        session_service.start()
+def service(running_service):
+    yield running_service
+    running_service.seconds, running_service.refusals = 0.0, 0
+    if not running_service.thread.is_alive():
+        running_service.start()
 
 
-@pytest.fixture(scope="session")
-def address(session_service):
-    return session_service.address
+@pytest.fixture(scope="package")
+def address(running_service):
+    return running_service.address
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def launch():
     """Starts a browser, with variables of the environment."""
     if os.environ.get("ROCKING_NO_BROWSER"):
@@ -132,7 +132,7 @@ def launch():
         yield launched
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser(launch):
     browser = launch()
     yield browser
