@@ -93,7 +93,7 @@ def main() -> None:
     options = parser.parse_args()
     record: dict[str, Any] = {}
     print(
-        f"{'':38}{'share':>8}{'outc.':>7}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
+        f"{'':53}{'share':>8}{'outc.':>7}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
         "   errors in outcome, exceeded_alpha and bounds; largest share of a bound"
     )
     for folder in sorted(path for path in options.spectra.iterdir() if path.is_dir()):
@@ -102,7 +102,7 @@ def main() -> None:
             record.setdefault(folder.name, {})[str(tolerance)] = found
             for kind, row in found.items():
                 print(
-                    f"{folder.name:10}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}{row['wrong_outcomes']:7.0f}"
+                    f"{folder.name:25}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}{row['wrong_outcomes']:7.0f}"
                     f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
                     f"{row['microseconds']:7.2f}",
                     flush=True,
