@@ -60,9 +60,8 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
     cosh1, sinh, above = hyperbolic(h)
     above, slope, sagitta = above / h, cosh1 / h, 0.125 * h * h
     while k < count:
-        if z + w > 1.0 and z + w > 1.0 + a * later[k]:
+        if z + w > 1.0 + a * later[k]:
             return OVERTURNS, k, 0.0, z, w
-        block.stepped += 1
         if not equidistant:
             h = interval_length(block, samples, k)
             cosh1, sinh, above = hyperbolic(h)
@@ -72,6 +71,7 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
         # grouped so that the chain of operations from one sample to the next is short
         z1 = (z + z * cosh1) + (w * sinh - (q0 * cosh1 + rise * above))
         w1 = (w + w * cosh1) + (z * sinh - (q0 * sinh + rise * slope))
+        block.stepped += 1
         plain = False
         if q0 >= 0.0 and q1 >= 0.0:
             if z1 > 0.0:

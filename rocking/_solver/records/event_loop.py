@@ -132,6 +132,7 @@ def chatter_ends_in_rest(block: Record, samples: FloatArray) -> bool:
     """Whether chatter from the start of the next flight certainly ends in rest: `impacts_accumulate`.
 
     The window is four times the sum of the series for constant q, the extremes of q are those of the samples in it.
+    They are not searched for where the impacts do not accumulate under the q of the moment.
     """
     w, eta = block.w0, max(block.eta[0], block.eta[1])
     if eta == 1.0:
@@ -142,9 +143,9 @@ def chatter_ends_in_rest(block: Record, samples: FloatArray) -> bool:
     first = min(pulls[0] * q_right, pulls[1] * q_left)
     window = 8.0 * w / (first * (1.0 - eta))
     if not impacts_accumulate(block, w, pulls, window, (q_right, q_right), (q_left, q_left), vertical):
-        return False  # not even under constant q
-    # where q varies more, eta sqrt(most/least) leaves too little of the window for the sum of the series
-    spread = ((0.75 + 0.25 * eta) / eta) ** 2 if eta > 0.0 else math.inf
+        return False
+    # where q varies more, 1 - eta sqrt(spread) is below 0.24 (1 - eta): a quarter is needed for the sum of the series
+    spread = ((0.76 + 0.24 * eta) / eta) ** 2 if eta > 0.0 else math.inf
     least_right, most_right, least_left, most_left, highest = extremes_in_window(block, samples, window, spread)
     right, left = (least_right, most_right), (least_left, most_left)
     return bool(impacts_accumulate(block, w, pulls, window, right, left, highest))

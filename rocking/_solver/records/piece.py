@@ -64,26 +64,25 @@ def next_time(
     Returns the next time and whether its error is below rounding: a step of length d leaves an error of
     d^3 |(second/(2 rate))^2 - third/(6 rate)|, whose two terms are added here.
     """
-    following = 0.5 * (lo + hi)
-    if rate == 0.0:
-        return following, abs(following - s) <= 1e-16 * following
-    inverse = 1.0 / rate
-    newton = -value * inverse
-    bend = 0.5 * newton * (second * inverse)
-    halley = s + newton / (1.0 + bend)
-    if not lo <= halley <= hi:
-        return following, abs(following - s) <= 1e-16 * following
-    left = bend * bend + abs(newton * newton * (third * inverse)) * (1 / 6)
-    return halley, abs(newton) * min(left, 1.0) <= 1e-17 * halley
+    halley, error = lo - 1.0, 0.0
+    if rate != 0.0:
+        inverse = 1.0 / rate
+        newton = -value * inverse
+        bend = 0.5 * newton * (second * inverse)
+        halley = s + newton / (1.0 + bend)
+        error = abs(newton) * min(bend * bend + abs(newton * newton * (third * inverse)) * (1 / 6), 1.0)
+    if lo <= halley <= hi:
+        return halley, error <= 1e-17 * halley
+    middle = 0.5 * (lo + hi)
+    return middle, abs(middle - s) <= 1e-16 * middle
 
 
 @kernel
 def impact_time(z: float, w: float, q0: float, r: float, length: float, z1: float) -> float:
     """The time in (0, length] at which z falls to zero, `z1` <= 0 being z at the end: bracketed Halley iteration.
 
-    It starts from the zero of the parabola through z, w and z1, from the ground (z = 0) of that through z, w and z'',
-    since many flights from there are short. From the ground the iteration is on z/s, which removes the zero at the
-    start.
+    It starts from the zero of the parabola with z, w and z1. From the ground (z = 0), where many flights are short, it
+    starts from that with z, w and z'', and is on z/s, which removes the zero at the start.
     """
     from_ground = z == 0.0
     curvature = -0.5 * q0 if from_ground and q0 > 0.0 else (z1 - z - w * length) / (length * length)
