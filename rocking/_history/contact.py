@@ -252,10 +252,11 @@ def contact_extremes(motion: BodyMotion) -> ContactExtremes:
     def measured(at: Floats) -> Reactions:
         return reactions_of(motion, impact_times, at, *motion.sample(at))
 
-    normal_time, lowest = _refined_maximum(lambda at: -measured(at).normal, tau)
+    sampled = measured(tau)
+    normal_time, lowest = _refined_maximum(lambda at: -measured(at).normal, tau, -sampled.normal)
     time, demand = normal_time, math.inf
     if lowest < 0.0:
-        time, demand = _refined_maximum(lambda at: measured(at).friction_demand, tau)
+        time, demand = _refined_maximum(lambda at: measured(at).friction_demand, tau, sampled.friction_demand)
     slope = math.tan(motion.alpha)
     return ContactExtremes(
         largest_friction_demand=slope * demand if slope > 0.0 else 0.0,
@@ -349,11 +350,11 @@ def _until_last_crossing_of_alpha(motion: BodyMotion, tau: Floats, rotation: Flo
     return np.append(tau[: below + 1], left) if left > tau[below] else tau[: below + 1]
 
 
-def _refined_maximum(measure: Callable[[Floats], Floats], tau: Floats) -> tuple[float, float]:
-    """Time and value of the maximum of a function, refined around its largest sample."""
-    for _ in range(4):
+def _refined_maximum(measure: Callable[[Floats], Floats], tau: Floats, values: Floats) -> tuple[float, float]:
+    """Time and value of the maximum of a function, of which these are values, refined around the largest of them."""
+    k = int(values.argmax())
+    for _ in range(3):
+        tau = np.union1d(np.linspace(tau[max(k - 1, 0)], tau[min(k + 1, tau.size - 1)], 33), tau[k])
         values = measure(tau)
         k = int(values.argmax())
-        best = float(tau[k]), float(values[k])
-        tau = np.union1d(np.linspace(tau[max(k - 1, 0)], tau[min(k + 1, tau.size - 1)], 33), tau[k])
-    return best
+    return float(tau[k]), float(values[k])
