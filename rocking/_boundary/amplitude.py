@@ -137,7 +137,7 @@ def thresholds(
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
-    return amplitude_changes(block_solver(made, alpha, stop), omega, eta, top)
+    return amplitude_changes(block_solver(made, alpha, stop=stop), omega, eta, top)
 
 
 def _record_changes(

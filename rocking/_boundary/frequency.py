@@ -87,7 +87,7 @@ def critical_frequency_ratio(
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
     point = check_number(SLENDERNESS, slenderness), float(nodes[0]), check_number(RESTITUTION, restitution)
-    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, alpha, stop), counted_code))
+    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, alpha, stop=stop), counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])
     above = overturns[edge + 1]

@@ -143,7 +143,9 @@ class Found:
     chatter: NDArray[np.bool_]
 
 
-def block_solver(pulse: AbstractPulse, alpha: Scalar | None, stop: StopFlag | None = None) -> Solve:
+def block_solver(
+    pulse: AbstractPulse, alpha: Scalar | None, threads: int | None = None, stop: StopFlag | None = None
+) -> Solve:
     """The solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
 
     It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
@@ -157,7 +159,7 @@ def block_solver(pulse: AbstractPulse, alpha: Scalar | None, stop: StopFlag | No
 
     def solve(slenderness: Floats, omega: Floats, eta: Floats) -> tuple[NDArray[np.void], Floats]:
         cells = [slenderness, omega, eta, np.full(eta.size, angle)]
-        records = solve_cells(pulse, cells, FULL_PRECISION, None, stop)
+        records = solve_cells(pulse, cells, FULL_PRECISION, threads, stop)
         return records, outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
 
     return solve

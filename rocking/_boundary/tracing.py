@@ -41,6 +41,7 @@ def overturning_boundary(
     frequency_ratio: tuple[float, float] = (0.2, 15.0),
     slenderness: tuple[float, float] = (0.02, 1.0),
     nodes: int = 401,
+    threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
     """The boundary curves of overturning on a window of the control space.
@@ -55,6 +56,8 @@ def overturning_boundary(
         Window of g tan(alpha)/a_g = 1/a [-], 0 < low < high <= 1: depends on the motion, unlike h/b.
     nodes : int
         Nodes in each direction on which regions are first looked for, 16 to 4001.
+    threads : int, optional
+        Number of threads, >= 1; by default all cores.
     stop : StopFlag, optional
         Once another thread sets it, this ends soon with `StoppedError`.
 
@@ -92,7 +95,8 @@ def overturning_boundary(
     """
     eta = check_number(RESTITUTION, known_restitution(restitution, alpha))
     angle, made = check_one_alpha(alpha), as_pulse(motion)
-    curves = trace_curves(block_solver(made, angle, stop), eta, frequency_ratio, slenderness, nodes)
+    threads = None if threads is None else integer("threads", threads, 1, math.inf)
+    curves = trace_curves(block_solver(made, angle, threads, stop), eta, frequency_ratio, slenderness, nodes)
     return curves.assign_attrs({"pulse": made.name, "restitution": eta, "alpha": angle} | curves.attrs)
 
 

@@ -159,7 +159,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         rocking.isolated_motion, [{"record": RECORD, "period": 0.5, "damping": 0.1, "relative_tolerance": 0.01}],
     ),
     "overturning_boundary": (
-        rocking.overturning_boundary, [{"motion": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32}],
+        rocking.overturning_boundary, [{"motion": "sine", "restitution": 0.9, "alpha": 0.2, "nodes": 32, "threads": 1}],
     ),
     "peak_response": (
         rocking.peak_response,

@@ -1,6 +1,7 @@
 """Boundaries between outcomes: the outcome changes at every vertex, and each connected curve is one curve."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from rocking import Outcome, paper
 from rocking._boundary.search import ELASTIC_RESOLUTION, MANY_IMPACTS, MOST_COUNTED, RESOLUTION, UNCOUNTED, region_code
 from rocking._boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD
 from rocking._model.outcome_code import outcome_codes
+from rocking._solver import chunks
 
 
 def curves(boundary):
@@ -281,6 +283,7 @@ def test_a_window_without_boundary_gives_no_curves():
         ("restitution", math.nan),
         ("alpha", 2.0),
         ("nodes", 3),
+        ("threads", 0),
         ("frequency_ratio", (0.0, 1.0)),
         ("frequency_ratio", (2.0, 1.0)),
         ("slenderness", (0.5, 0.2)),
@@ -290,6 +293,22 @@ def test_a_window_without_boundary_gives_no_curves():
 def test_wrong_windows(argument, value):
     with pytest.raises(rocking.InvalidArgumentError, match=argument):
         rocking.overturning_boundary("sine", **{"restitution": 0.9, "nodes": 17, argument: value})
+
+
+def test_threads(monkeypatch):
+    pools = []
+
+    class CountedPool(ThreadPoolExecutor):
+        def __init__(self, workers):
+            pools.append(workers)
+            super().__init__(workers)
+
+    monkeypatch.setattr(chunks, "ThreadPoolExecutor", CountedPool)
+    case = {"restitution": 0.9, "alpha": 0.2, "nodes": 101}
+    one = rocking.overturning_boundary("sine", **case, threads=1)
+    assert pools == []
+    assert one.identical(rocking.overturning_boundary("sine", **case, threads=2))
+    assert set(pools) == {2}
 
 
 @pytest.mark.parametrize(

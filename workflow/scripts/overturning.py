@@ -40,6 +40,7 @@ def main(
     frequency_ratio: Mapping[str, float],
     boundaries: Path,
     provenance: Mapping[str, str],
+    threads: int,
 ) -> None:
     """Trace the curves of a restitution [-] at all angles [deg], inside the configured window.
 
@@ -48,7 +49,8 @@ def main(
     shape = pulse_of_job(pulse, samples)
     window = {"slenderness": _ends(slenderness), "frequency_ratio": _ends(frequency_ratio)}
     traced = [
-        curves_of(shape, restitution, angle, nodes=nodes_rigid if angle else nodes, **window) for angle in alpha_deg
+        curves_of(shape, restitution, angle, nodes=nodes_rigid if angle else nodes, threads=threads, **window)
+        for angle in alpha_deg
     ]
     joined = join_curves([one.drop_attrs(deep=False) for one in traced])
     curves = described(joined, shape, restitution).assign_attrs(accuracy_of(traced))
@@ -56,10 +58,10 @@ def main(
     print(f"{boundaries}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
-def curves_of(pulse: str | SampledPulse, restitution: float, alpha_deg: float, **window: Any) -> xr.Dataset:
+def curves_of(pulse: str | SampledPulse, restitution: float, alpha_deg: float, **options: Any) -> xr.Dataset:
     """The boundary curves at one slenderness angle: ragged polylines, `row_size` points each."""
     alpha = math.radians(alpha_deg)
-    traced = overturning_boundary(pulse, restitution=restitution, alpha=alpha or None, **window)
+    traced = overturning_boundary(pulse, restitution=restitution, alpha=alpha or None, **options)
     closed = _closed_forms(traced, traced.restitution, slender=alpha == 0.0) if pulse == "sine" else {}
     return traced.assign(closed).assign(alpha=("curve", np.full(traced.sizes["curve"], alpha)))
 
