@@ -110,9 +110,11 @@ OUTPUTS = (
     Column("slides_at", "s", "earliest of these times"),
     Column("sliding", "m", "displacement if it only slides, where it slides first; the other bound"),
     Column(
-        "smallest_width", "m", "smallest base at this height up to which the motions of the site do not overturn it"
+        "smallest_width",
+        "m",
+        "smallest base at this height from which on the motions of the site overturn no base that was tried",
     ),
-    Column("largest_height", "m", "largest height on this base up to which they do not overturn it"),
+    Column("largest_height", "m", "largest height on this base up to which they overturn no height that was tried"),
     Column("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
     Column("factor_more_restitution", "-", "the factor with one higher by 0.05"),
     Column("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),

@@ -101,7 +101,10 @@ def _any_overturns(
 
 
 def _limiting_sizes(bodies: Bodies, motions: Sequence[Motion], stop: StopFlag | None) -> dict[str, Array]:
-    """Smallest base and largest height up to which, from where a body does not uplift, no motion overturns it [m]."""
+    """Smallest base from which on, and largest height up to which, no motion overturns a body [m].
+
+    They are searched from where it does not uplift towards slenderer ones, up to the first of `SIZES` that overturns.
+    """
     strongest = max(static_acceleration(motion) for motion in motions)
     still = strongest / np.asarray(bodies.scaled().uplift_acceleration)  # on a base larger by this it does not uplift
     rows = np.arange(still.size)
