@@ -16,7 +16,7 @@ from rocking._base.units import Quantity
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
 from rocking._model.labelled import Index, variable, with_index
 from rocking._model.outcome import Outcome
-from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
+from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS, VERTICAL_SCALE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -114,7 +114,7 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
             one.name: one.variable(names, getattr(self, one.name)) for one in (*RESPONSE_FIELDS, OVERTURNED)
         }
         coordinates: dict[str, Any] = {}
-        for group in (*GROUPS, FREQUENCY_PARAMETER):
+        for group in (*GROUPS, FREQUENCY_PARAMETER, VERTICAL_SCALE):
             value = self.groups.get(group.name)
             if value is not None:
                 unit = "1" if group.unit == "-" else group.unit

@@ -11,8 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._excitation.pulses import AbstractPulse
+from rocking._model.checks import check_groups
 from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, OVERTURNED, ResponseField, ResponseFields
 from rocking._model.outcome import Outcome
+from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
 from rocking._solver.rules import IMPACT_LIMIT
@@ -125,10 +127,14 @@ def solve_with_bound(
 
     Arguments and errors are those of `rocking.peak_response` under a pulse.
     """
-    given = (slenderness, frequency_ratio, restitution, 0.0 if alpha is None else alpha)
-    s, w, eta, angle = np.broadcast_arrays(*(np.asarray(x, float) for x in given))
+    given = check_groups(slenderness=slenderness, frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha)
+    s, w, eta, angle = np.broadcast_arrays(*given.values())
     shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
-    groups = {"slenderness": s * shift, "frequency_ratio": w * shift, "restitution": eta * shift}
+    groups = {
+        "slenderness": np.maximum(s * shift, SLENDERNESS.lower),
+        "frequency_ratio": np.maximum(w * shift, FREQUENCY_RATIO.lower),
+        "restitution": eta * shift,
+    }
     found = peak_response(pulse, **groups, alpha=angle, threads=threads, stop=stop)
     peak, outcome = found.peak_rotation[0], found.outcome[0]
     with np.errstate(invalid="ignore"):

@@ -12,6 +12,7 @@ from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCube
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_spectrum, write_dataset
 from rocking._lookup.cube import SAFETY, Cube, open_cube
+from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 from rocking._model.response import Outcome
 from rocking._solver.bounded_response import SOLVER_ERROR, solve_with_bound
 from rocking._solver.peak_response import peak_response
@@ -263,3 +264,12 @@ def test_solver_bound_is_the_change_when_all_groups_shrink_together():
     expected = SOLVER_ERROR * peak + 3 * np.abs(beside - peak)
     np.testing.assert_allclose(found.error_bound, expected, rtol=1e-12)
     assert np.isfinite(expected).sum() > 100
+
+
+def test_the_ends_of_the_ranges_are_solved_with_a_bound():
+    groups = {"slenderness": 0.5, "frequency_ratio": 5.0, "restitution": 0.8}
+    for end in ({"frequency_ratio": FREQUENCY_RATIO.lower}, {"slenderness": SLENDERNESS.lower}, {"restitution": 0.0}):
+        found = solve_with_bound("sine", **groups | end, alpha=None)
+        assert found.outcome == peak_response("sine", **groups | end).outcome
+    with pytest.raises(InvalidArgumentError, match=r"`frequency_ratio` = 1e-10 is"):
+        solve_with_bound("sine", **groups | {"frequency_ratio": 1e-10}, alpha=None)

@@ -23,7 +23,7 @@ from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.batch import solve_by_steps, solve_slender
 from rocking._solver.records.samples import TIME, motion_samples, pulse_samples
-from rocking._solver.records.state import body_states, step_state
+from rocking._solver.records.state import body_states, step_state, taylor_orders
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
 
 Array = NDArray[np.float64]
@@ -177,6 +177,15 @@ def solve_bodies(
             records[kind] = solve_bodies(samples, cells[kind], threads, stop)[0]
         return records, edges
     if cells.size and by_steps[0]:
+        # what sets the rounding of a cell is its own, not that of the cells beside it in the array or the thread
+        alike = 2 * taylor_orders(samples, cells) + (cells["vertical"] != 0.0)
+        if (kinds := np.unique(alike)).size > 1:
+            for kind in kinds:
+                own = alike == kind
+                records[own], of_edges = solve_bodies(samples, cells[own], threads, stop, each_side)
+                if each_side:
+                    edges[own] = of_edges
+            return records, edges
 
         def fill(part: slice, flag: NDArray[np.uint8]) -> None:
             blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])

@@ -91,23 +91,24 @@ STEP_STATE = _steps_layout()
 """Layout of the record of `LANES` Taylor steps."""
 
 
-def taylor_order(interval: float) -> int:
-    """Degree n of the Taylor steps for sample intervals of this length [tau]: (2 interval)^n/n! is below rounding.
+def taylor_orders(samples: NDArray[np.float64], cells: NDArray[np.void]) -> NDArray[np.int64]:
+    """Degree n of the Taylor steps of each cell: (2 h)^n/n! is below rounding, for the longest sample interval h [tau].
 
     The lowest degree that reaches the end of an interval in one step under a motion of moderate strength; where it does
     not suffice, the step is shorter than the interval.
     """
-    term, order = 1.0, 0
-    while order < MIN_ORDER or (term > FULL_PRECISION and order < MAX_ORDER):
-        order += 1
+    interval = cells["rate"] * np.diff(samples[TIME]).max()
+    term, orders = np.ones(cells.size), np.full(cells.size, MIN_ORDER)
+    for order in range(1, MAX_ORDER + 1):
+        orders[(term > FULL_PRECISION) & (order > MIN_ORDER)] = order
         term *= 2.0 * interval / order
-    return order
+    return orders
 
 
 def step_state(samples: NDArray[np.float64], cells: NDArray[np.void]) -> Record:
     """Taylor steps for the motion `samples` of `sample_rows` and cells `BODY_CELL`."""
     steps = aligned_record(STEP_STATE)
-    steps["order"] = taylor_order(float(cells["rate"].max()) * float(np.diff(samples[TIME]).max()))
+    steps["order"] = taylor_orders(samples, cells).max()
     steps["log_precision"] = math.log2(FULL_PRECISION)
     steps["has_vertical"] = int(cells["vertical"].any())
     for name in AT_REST:

@@ -11,7 +11,8 @@ import rocking
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.samples import BLOCKS, LATER, SHAPE, motion_samples
-from rocking._solver.records.state import taylor_order
+from rocking._solver.records.state import taylor_orders
+from rocking._solver.state import block_cells
 from tests.solver.records.tables import record
 
 MOTION = record("synthetic_31", 0.01)
@@ -218,7 +219,8 @@ def test_the_rows_of_a_motion_hold_its_maxima() -> None:
 
 
 def test_the_order_of_the_taylor_steps_rises_with_the_interval() -> None:
-    orders = [taylor_order(interval) for interval in (1e-6, 0.01, 0.05, 0.5, 50.0)]
+    cells = block_cells(*np.broadcast_arrays([1e-6, 0.01, 0.05, 0.5, 50.0], 0.5, 0.9, 0.2))
+    orders = taylor_orders(motion_samples(MOTION), cells).tolist()  # the interval of a record is the unit of time
     assert orders == sorted(orders)
     assert orders[0] == 6
     assert orders[-1] == 22
@@ -243,3 +245,28 @@ def test_a_sample_that_just_uplifts_the_block(alpha):
             alpha=alpha,
         )
         assert np.array_equal(np.isnan(found.peak_rotation), found.overturned)
+
+
+def test_the_response_of_a_block_does_not_depend_on_the_others_of_the_array() -> None:
+    p, scale = np.geomspace(0.5, 60.0, 40), np.where(np.arange(40) % 2, 0.4, 0.0)
+    motion = rocking.Record(
+        MOTION.acceleration, MOTION.time_step, vertical=0.5 * MOTION.acceleration[::-1], unit="m/s2"
+    )
+    given = {"slenderness": 0.3, "restitution": 0.5, "alpha": 0.2}
+    together = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given)
+    assert together.outcome.min() == 1
+    for k in range(40):
+        alone = rocking.peak_response(motion, frequency_parameter=p[k], vertical_scale=scale[k], **given)
+        assert alone.outcome == together.outcome[k]
+        np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[k])
+    apart = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given, threads=1)
+    np.testing.assert_array_equal(apart.peak_rotation, together.peak_rotation)
+
+
+def test_the_factor_of_the_vertical_component_is_a_coordinate() -> None:
+    motion = rocking.Record(MOTION.acceleration, MOTION.time_step, vertical=0.1 * MOTION.acceleration, unit="m/s2")
+    found = rocking.peak_response(
+        motion, frequency_parameter=2.0, slenderness=0.3, restitution=0.9, vertical_scale=[0.0, 0.5, 1.0]
+    ).to_xarray()
+    assert found["vertical_scale"].values.tolist() == [0.0, 0.5, 1.0]
+    assert found["vertical_scale"].attrs["units"] == "1"
