@@ -8,6 +8,7 @@ from ._assessment.tables import read_objects as read_objects
 from ._assessment.uncertainty import overturning_probability as overturning_probability
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RockingError as RockingError
+from ._base.errors import StoppedError as StoppedError
 from ._base.version import __version__ as __version__
 from ._boundary.amplitude import thresholds as thresholds
 from ._boundary.tracing import overturning_boundary as overturning_boundary
@@ -32,5 +33,6 @@ from ._history.time_history import time_history as time_history
 from ._lookup.cube import open_cube as open_cube
 from ._model.response import Outcome as Outcome
 from ._model.response import Response as Response
+from ._numba.cancellation import StopFlag as StopFlag
 from ._solver.peak_response import peak_response as peak_response
 from .suites.fragility import fragility as fragility

@@ -113,10 +113,9 @@ def assess(
     overturned |= factors <= 1.0
     rotation[overturned] = displacement[overturned] = np.nan
     uplift = np.asarray(body.uplift_acceleration)
-    peak = np.array([motion.peak_acceleration for motion in motions])
     events = _by_event(overturned, motions)
     share = events.mean(axis=1)
-    uplifts = (peak > uplift[:, None]).any(axis=1) | (np.nan_to_num(rotation) > 0.0).any(axis=1) | (share > 0.0)
+    uplifts = (np.nan_to_num(rotation) > 0.0).any(axis=1) | (share > 0.0)
     factor = least(factors)
     unknown = np.full(factor.size, np.nan)
     low, high = binomial_interval(events.sum(axis=1), events.shape[1], CONFIDENCE) if site.records else (unknown,) * 2

@@ -97,6 +97,13 @@ class Object:
         for name, size in (("offset_width", "width"), ("offset_depth", "depth")):
             half = 0.5 * checked.get(size, checked.get("diameter", math.inf))
             checked[name] = number(name, getattr(self, name), -half, half, closed="neither", unit="m")
+        if self.depth is self.diameter is None and checked["offset_depth"] != 0.0:
+            raise InvalidArgumentError("offset_depth", self.offset_depth, "0 without a depth")
+        offset = math.hypot(checked["offset_width"], checked["offset_depth"])
+        if self.diameter is not None and not offset < 0.5 * checked["diameter"]:
+            raise InvalidArgumentError("offset_width", self.offset_width, "with offset_depth inside the round base")
+        if checked.get("mass_height", 0.0) > checked["height"]:
+            raise InvalidArgumentError("mass_height", self.mass_height, f"(0, {checked['height']:g}] [m], the height")
         self._set(checked)
         self._check_others()
 
@@ -114,6 +121,9 @@ class Object:
         for size in ("width", "depth", "diameter", "height", "mass_height"):
             if getattr(self, size) is not None:
                 raise InvalidArgumentError(size, getattr(self, size), f"nothing beside {description}, which has it")
+        for name in ("offset_width", "offset_depth"):
+            if getattr(self, name) != 0.0:
+                raise InvalidArgumentError(name, getattr(self, name), f"0 beside {description}, which has it")
         self._check_texts()
         self._check_others()
 

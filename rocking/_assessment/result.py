@@ -66,7 +66,7 @@ class Assessment(EqualByValue):
 
     def worst_motion(self, row: int) -> Motion:
         """The motion that overturns a row from the lowest factor on, or under which it rotates most."""
-        integer("row", row, 0, len(self.objects) - 1)
+        row = integer("row", row, 0, len(self.objects) - 1)
         factors, rotations = self.factors[row], np.nan_to_num(self.rotations[row])
         worst = rotations.argmax() if np.isnan(factors).all() else np.nanargmin(factors)
         return self.site.motions[int(worst)]
@@ -93,7 +93,7 @@ class Assessment(EqualByValue):
             Over `motion`: `friction_needed`, the largest one [-], infinite where it lifts off; `exceeded_at`, the time
             at which the coefficient of the object is first exceeded [s], nan where it is not, or not given.
         """
-        integer("row", row, 0, len(self.objects) - 1)
+        row = integer("row", row, 0, len(self.objects) - 1)
         return friction_of(self.objects[row], str(self.columns["direction"][row]), self.site.motions)
 
     def directions(self, row: int = 0, *, stop: StopFlag | None = None) -> xr.Dataset:
@@ -120,7 +120,7 @@ class Assessment(EqualByValue):
             Over `direction` [degrees]: `factor`, nan where none up to `highest_factor` overturns it; `along`, the
             direction across a side along which the component of the motion does [degrees]; `governing`, the motion.
         """
-        integer("row", row, 0, len(self.objects) - 1)
+        row = integer("row", row, 0, len(self.objects) - 1)
         one = self.objects[row]
         return factors_by_direction(one.planes_around, one.restitution, self.site.motions, stop)
 

@@ -90,7 +90,7 @@ class Site:
     periods : (float, float)
         Shortest and longest period of the pulses [s], 0.01 to 10, shortest <= longest; `PERIODS` of them are
         assessed.
-    records : sequence of Record or (Record, Record)
+    records : Record, or sequence of Record or (Record, Record)
         The suite; its records count as independent and equally likely, with their vertical components. Two horizontal
         components of one station are assessed at angles every 15 degrees from the first towards the second one and
         count as one record, which overturns an object if it does so at an angle. The PGA of a pair is the larger one.
@@ -114,7 +114,7 @@ class Site:
     pga: Scalar | None = None
     pgv: Scalar | None = None
     periods: tuple[Scalar, Scalar] | None = None
-    records: Sequence[Record | tuple[Record, Record]] = ()
+    records: Record | Sequence[Record | tuple[Record, Record]] = ()
     hazard: xr.DataArray | tuple[ArrayLike, ArrayLike] | None = None
     shapes: Sequence[str | AbstractPulse] | None = None
     moving_ground: bool = False
@@ -127,7 +127,8 @@ class Site:
             if getattr(self, name) is not None:
                 value = number(name, getattr(self, name), *STRENGTHS, unit=unit)
                 object.__setattr__(self, name, value)  # a frozen dataclass
-        object.__setattr__(self, "records", tuple(_checked_pair(one) for one in self.records))
+        records = (self.records,) if isinstance(self.records, Record) else self.records
+        object.__setattr__(self, "records", tuple(map(_checked_pair, records)))
         ways = (self.pgv is not None) + (self.periods is not None) + bool(self.records)
         if ways != 1:
             raise InvalidArgumentError("site", f"{ways} of pgv, periods, records", "exactly one of them")
@@ -150,10 +151,11 @@ class Site:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
             object.__setattr__(self, "hazard", check_hazard_curve(_hazard_pair(self.hazard)))
         if self.periods is not None:
-            low, high = (number("periods", value, *LENGTH, unit="s") for value in self.periods)
-            if low > high:
-                raise InvalidArgumentError("periods", (low, high), "the shortest and the longest period")
-            object.__setattr__(self, "periods", (low, high))
+            given_periods: Any = self.periods
+            ends = in_range("periods", given_periods, *LENGTH, unit="s")
+            if ends.shape != (2,) or ends[0] > ends[1]:
+                raise InvalidArgumentError("periods", self.periods, "the shortest and the longest period")
+            object.__setattr__(self, "periods", tuple(ends.tolist()))
         if self.pgv is not None and not LENGTH[0] <= vars(self)["pgv"] / vars(self)["pga"] <= LENGTH[1]:
             raise InvalidArgumentError("pgv", self.pgv, f"{LENGTH[0]:g} to {LENGTH[1]:g} s times pga")
         if self.shapes is not None:
@@ -178,7 +180,7 @@ class Site:
 
     def _records(self) -> list[Motion]:
         found = []
-        for group, given in enumerate(self.records):
+        for group, given in enumerate(vars(self)["records"]):
             components = [("", given)] if isinstance(given, Record) else rotated(*given)
             name = (given if isinstance(given, Record) else given[0]).name or f"record {group + 1}"
             peak = max(one.peak_acceleration for _, one in components[:: PAIR_ANGLES // 2])  # of the given ones

@@ -15,8 +15,10 @@ from rocking._assessment.objects import Bodies
 from rocking._assessment.search import overturned_by
 from rocking._assessment.site import Site
 from rocking._base.equality import EqualByValue
-from rocking._base.errors import InvalidArgumentError, integer
+from rocking._base.errors import InvalidArgumentError, integer, number
 from rocking._base.units import Scalar
+from rocking._dimensional.problem import checked_restitution
+from rocking._model.checks import check_number
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 
@@ -126,6 +128,13 @@ def overturning_probability(
 
     given = dict(zip(NAMES, (width, height, mass_height, offset, restitution), strict=True))
     uncertain = {name: value for name, value in given.items() if hasattr(value, "ppf")}
+    for name, value in given.items():
+        if name == "restitution" and name not in uncertain:
+            eta = checked_restitution(value, check_number)
+            given[name] = "momentum" if eta is None else eta
+        elif name not in uncertain and value is not None:
+            low = -math.inf if name == "offset" else 0.0
+            given[name] = number(name, value, low, math.inf, closed="neither", unit="m")
     if not uncertain:
         raise InvalidArgumentError("width", width, "a distribution of scipy.stats for one input at least")
     each = 2 ** math.ceil(math.log2(integer("samples", samples, 64, 2**22) / REPLICATES))

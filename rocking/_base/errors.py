@@ -264,6 +264,8 @@ def _without_unit(parameter: str, value: Any, unit: str) -> Any:
     """The value of a quantity of any library or a text, or of a list with some, in `unit`; other values as they are."""
     if isinstance(value, str) and unit in UNITS:
         return si_value(parameter, value, unit)
+    if isinstance(value, str) and not any(unit in names for names in UNITS.values()):
+        raise InvalidArgumentError(parameter, value, f"a number in [{unit}]; texts with this unit are not read")
     if hasattr(value, "dtype") and value.dtype.kind in "UO":  # an array of texts or quantities, with or without labels
         array = np.asarray(value)
         if any(_has_unit(entry) for entry in array.flat):

@@ -17,7 +17,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Scalar
 from rocking._boundary.search import Floats, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_number
+from rocking._model.checks import check_ends, check_number
 from rocking._model.outcome_code import SURVIVES
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
@@ -81,8 +81,8 @@ def critical_frequency_ratio(
         For an argument out of range.
     """
     made = as_pulse(pulse)
-    low, high = (check_number(FREQUENCY_RATIO, end, "window") for end in window)
-    if not low < high <= 1e4 * low:
+    low, high = check_ends(FREQUENCY_RATIO, window, "window")
+    if not high <= 1e4 * low:
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))

@@ -20,7 +20,7 @@ from rocking._boundary.columns import THINNEST
 from rocking._boundary.search import Floats, Solve, Work, block_solver, classifier, layer_code, region_code
 from rocking._boundary.tracer import CHORD, END, Tracer
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_number, check_one_alpha, check_window, known_restitution
+from rocking._model.checks import check_ends, check_number, check_one_alpha, known_restitution
 from rocking._model.labelled import variable
 from rocking._model.outcome_code import decode_outcomes
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
@@ -109,8 +109,8 @@ def trace_curves(
 ) -> xr.Dataset:
     """`overturning_boundary` by any solver, whose slenderness is 1 at uplift."""
     nodes = integer("nodes", nodes, 16, 4001)
-    low, high = check_window(FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
-    bottom, top = check_window(UPLIFTING, *slenderness, ("slenderness", "slenderness[1]"))
+    low, high = check_ends(FREQUENCY_RATIO, frequency_ratio)
+    bottom, top = check_ends(UPLIFTING, slenderness)
     log_omega = np.linspace(np.log(low), np.log(high), nodes)
     rows, work = _rows(bottom, top, nodes, log_omega.size), Work()
     classify, classify_regions = (classifier(solve, code, work) for code in (layer_code, region_code))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class RespondingBlock(AbstractBlock, RespondingBody):
     """The responses of one block, by the equation of motion of equal edges, (2.2), or the linear one (3.1)."""
 
-    @overload  # type: ignore[override]  # of numbers the response has margins
+    @overload  # of numbers the response has margins
     def response(
         self,
         motion: Motion,
@@ -29,6 +29,7 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         scale: Scalar | None = None,
         restitution: Scalar = "momentum",
         thresholds: bool = True,
+        threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BlockResponse: ...
 
@@ -44,6 +45,7 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         period: Values | None = None,
         scale: Values | None = None,
         restitution: Values = "momentum",
+        threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BodyResponse: ...
 
@@ -56,6 +58,7 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         scale: Values | None = None,
         restitution: Values = "momentum",
         thresholds: bool = True,
+        threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BlockResponse | BodyResponse | xr.Dataset:
         """Outcome, peak rotation and displacement under a pulse or a record, by the rigid equation (2.2).
@@ -77,6 +80,8 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         thresholds : bool
             Whether the strengths of the motion at which the outcome changes are searched, when they, the warnings or
             the text of the response to a record are first asked for, in tenths of a second; not for arrays.
+        threads : int, optional
+            Number of threads for arrays, >= 1; by default all cores.
         stop : StopFlag, optional
             Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -102,6 +107,7 @@ class RespondingBlock(AbstractBlock, RespondingBody):
             period=period,
             scale=scale,
             restitution=restitution,
+            threads=threads,
             stop=stop,
         )
 

@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer, needed, positive, reject_given
+from rocking._base.errors import (
+    InvalidArgumentError,
+    broadcast,
+    in_range,
+    integer,
+    needed,
+    number,
+    positive,
+    reject_given,
+)
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.body_response import BODY_FIELDS, BodyResponse, respond_bodies
@@ -157,7 +166,11 @@ class RespondingBody(AbstractBody):
             As for `response`.
         """
         if highest is not None:
-            highest = positive("highest", highest, "-" if isinstance(motion, Record) else "m/s2")
+            highest = (
+                number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
+                if isinstance(motion, Record)
+                else positive("highest", highest, "m/s2")
+            )
         numbers = as_numbers(period=period, restitution=restitution)
         if isinstance(self, AbstractBlock) and numbers:
             if isinstance(motion, Record):
@@ -215,13 +228,16 @@ class RespondingBody(AbstractBody):
             problem = BlockProblem(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
             return block_spectrum(problem, along, stop)
         body, times = (self, along) if size is None else (self.scaled(along), period)
+        if size is not None and period is not None:
+            times = positive("period", period, "s")
         given, arguments = body._problem(motion, peak_acceleration, times, scale, restitution)
         found = respond_bodies(given, arguments, stop=stop).to_xarray()
         kept = found.drop_vars([one for one in found.coords if one not in ("period", "peak_acceleration", "scale")])
-        if size is None:
-            return kept
-        about = {"units": "1", "long_name": "factor of all lengths"}
-        return kept.rename({found["rotation"].dims[0]: "size"}).assign_coords(size=("size", along, about))
+        kept = kept.drop_vars(axis, errors="ignore").rename({found["rotation"].dims[0]: axis})
+        about = {"units": "s", "long_name": "period"}
+        if size is not None:
+            about = {"units": "1", "long_name": "factor of all lengths"}
+        return kept.assign_coords({axis: (axis, along, about)})
 
     def boundary(
         self,

@@ -157,5 +157,7 @@ class BodyProblem:
         return SamplesMotion(cell, horizon, stop, rows, inertia_ratio=inertia, tilt=tilt)
 
     def _reject_flight(self) -> None:
-        if isinstance(self.motion, Record):
-            reject_flight("scale", self.motion, float(self.vertical_scale.max(initial=0.0)))
+        if isinstance(self.motion, Record) and self.motion.vertical is not None:
+            scale = self.acceleration / self.motion.peak_acceleration
+            for g in np.unique(self.body.gravity).tolist():
+                reject_flight("scale", self.motion, float(np.max(scale, where=self.body.gravity == g, initial=0.0)), g)

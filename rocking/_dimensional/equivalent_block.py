@@ -223,6 +223,9 @@ class EquivalentBlock(RespondingBlock):
         """
         mass, stiffness = positive("mass", mass, "kg m2"), positive("stiffness", stiffness, "N m")
         restoring, load = positive("restoring", restoring, "N m"), positive("load", load, "kg m")
+        if not restoring < 0.5 * math.pi * stiffness:
+            allowed = f"(0, {0.5 * math.pi * stiffness:.6g}) [N m], up to pi/2 times the stiffness"
+            raise InvalidArgumentError("restoring", restoring, allowed)
         return cls(
             restoring / stiffness,
             math.sqrt(stiffness / mass),

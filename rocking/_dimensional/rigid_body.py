@@ -108,8 +108,9 @@ class RigidBody(RespondingBody):
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
             if not np.all(edge.alpha > 0.0):
                 limit = math.degrees(float(np.min(edge.alpha + sign * self.tilt)))
+                bound = f"less than {limit:.4g}" if sign > 0.0 else f"more than {-limit:.4g}"
                 raise InvalidArgumentError(
-                    "inclination", inclination, f"less than {limit:.4g} degrees: the body falls over by itself"
+                    "inclination", inclination, f"{bound} degrees: the body falls over by itself"
                 )
 
     def __eq__(self, other: object) -> bool:
@@ -206,13 +207,15 @@ class RigidBody(RespondingBody):
         InvalidArgumentError
             If the body does not stand there.
         """
-        added = in_range("angle", angle, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
+        added = in_unit("angle", angle, "rad")
+        checked = in_range("angle", added, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
         given = self._given | self._labels
-        return RigidBody(**given | {"inclination": given["inclination"] + added})
+        return RigidBody(**given | {"inclination": given["inclination"] + (added if is_labelled(added) else checked)})
 
     def scaled(self, size: Values) -> RigidBody:
-        factor = in_range("size", size, 0.0, math.inf, closed="neither")
-        given = self._given | self._labels
+        factor = in_unit("size", size, "-")
+        checked = in_range("size", factor, 0.0, math.inf, closed="neither")
+        given, factor = self._given | self._labels, factor if is_labelled(factor) else checked
         return RigidBody(**{name: value if name in RANGES else value * factor for name, value in given.items()})
 
     def _labelled(self) -> tuple[partial[RigidBody], dict[str, Any]]:

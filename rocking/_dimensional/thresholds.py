@@ -180,6 +180,7 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
     top = uplift * HIGHEST[by_record] if highest is None else np.full(uplift.size, highest)
     limit = np.full(uplift.size, math.inf)
     if isinstance(motion, Record):
+        top = np.minimum(top, HIGHEST_SCALE)
         gravity = np.broadcast_to(problem.body.gravity, shape).ravel() / STANDARD_GRAVITY
         limit = highest_vertical_scale(motion) * gravity
     flies, top = limit < top, np.minimum(top, limit)

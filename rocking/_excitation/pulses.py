@@ -210,14 +210,17 @@ def pulse(name: str, **parameters: float) -> AbstractPulse:
     registered = _REGISTERED.get(name.removeprefix("-"))
     if registered is not None and not parameters:
         return registered.mirrored() if name.startswith("-") else registered
-    return _build_pulse(name, **{key: checked_number(key, value) for key, value in parameters.items()})
+    units = {"phase": "rad"}
+    given = {key: checked_number(key, value, unit=units.get(key, "-")) for key, value in parameters.items()}
+    return _build_pulse(name, **given)
 
 
 @lru_cache(maxsize=256)
 def _build_pulse(name: str, **parameters: float) -> AbstractPulse:
     base = one_of("pulse", name.removeprefix("-"), pulse_names())
     allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
-    for parameter in parameters:
-        one_of(f"parameter of pulse {base}", parameter, allowed)
+    for parameter, value in parameters.items():
+        if parameter not in allowed:
+            raise InvalidArgumentError(parameter, value, f"for {base}: {' and '.join(allowed) or 'no parameters'}")
     made = _FACTORIES[base](**parameters)
     return made.mirrored() if name.startswith("-") else made

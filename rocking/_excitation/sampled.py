@@ -114,7 +114,9 @@ class SampledPulse(AbstractPulse):
         values = samples / largest
         for array in (phases, values):
             array.flags.writeable = False
-        inner = np.flatnonzero(np.diff(values[:-1]) * np.diff(values[1:]) < 0.0) + 1
+        rises = np.sign(np.diff(values))
+        sloped = np.flatnonzero(rises)  # an extreme may be a plateau: its end is taken
+        inner = sloped[1:][np.diff(rises[sloped]) != 0.0]
         fields = {"name": name, "start": 0.0, "end": float(phases[-1]), "stationary": tuple(phases[inner].tolist())}
         for key, value in (fields | {"phases": phases, "values": values}).items():
             object.__setattr__(self, key, value)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking._history.motion import BodyMotion, overturned
 from rocking._model.labelled import variable
@@ -284,7 +285,7 @@ def first_excess(motion: BodyMotion, friction: float) -> float:
     rotation, velocity = motion.sample(tau)
     count = motion.sample_count(tau, rotation, record)
     if overturned(record):
-        count = min(count, int(np.flatnonzero(np.abs(rotation[:count]) <= 1.0)[-1]) + 1)
+        count = min(count, int(np.flatnonzero(_within_alpha(motion, rotation[:count]))[-1]) + 1)
     tau = tau[:count]
     found = reactions_of(motion, impact_times, tau, rotation[:count], velocity[:count])
     excess = math.tan(motion.alpha) * found.friction_demand - friction
@@ -337,15 +338,20 @@ def _fine_samples(motion: BodyMotion, record: Record, impact_times: Floats) -> t
         tau = np.sort(np.concatenate([tau, between.ravel()]))
 
 
+def _within_alpha(motion: BodyMotion, rotation: Floats) -> NDArray[np.bool_]:
+    """Whether |theta| is at most alpha of the edge of its sign; `rotation` is theta over alpha of the right edge."""
+    return np.abs(rotation) <= np.where(rotation < 0.0, motion.contact_geometry.ratio, 1.0)
+
+
 def _until_last_crossing_of_alpha(motion: BodyMotion, tau: Floats, rotation: Floats) -> Floats:
     """The times up to the last crossing of |theta| = alpha, after which the block overturns monotonically."""
-    below = int(np.flatnonzero(np.abs(rotation) <= 1.0)[-1])
+    below = int(np.flatnonzero(_within_alpha(motion, rotation))[-1])
     if below == tau.size - 1:
         return tau
     left, right = tau[below], tau[below + 1]
     for _ in range(6):
         grid = np.linspace(left, right, 33)
-        k = int(np.flatnonzero(np.abs(motion.sample(grid)[0]) <= 1.0).max(initial=0))
+        k = int(np.flatnonzero(_within_alpha(motion, motion.sample(grid)[0])).max(initial=0))
         left, right = grid[k], grid[min(k + 1, 32)]
     return np.append(tau[: below + 1], left) if left > tau[below] else tau[: below + 1]
 

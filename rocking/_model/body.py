@@ -186,6 +186,8 @@ def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
             "vertices", points.tolist(), "an outline that stands: a base of some length below its centre of mass"
         )
     squared = polar / area - centre_x * centre_x - centre_y * centre_y
+    if not squared > 0.0:  # parts of opposite orientation: it crosses itself at a vertex
+        raise InvalidArgumentError("vertices", points.tolist(), "an outline that does not cross itself")
     return PolygonProperties(left, right, centre_y - lowest, math.sqrt(squared), float(y.max()) - lowest)
 
 
@@ -212,7 +214,8 @@ def _crosses_itself(points: Array) -> bool:
         (ux, uy), (vx, vy) = np.moveaxis(b - a, -1, 0), np.moveaxis(c - a, -1, 0)
         return np.asarray(np.sign(ux * vy - uy * vx))
 
-    a, b = start[:, None], end[:, None]
-    c, d = start[None], end[None]
-    crossing = (turn(a, b, c) * turn(a, b, d) < 0.0) & (turn(c, d, a) * turn(c, d, b) < 0.0)
-    return bool(crossing.any())
+    def crossed(a: Array, b: Array) -> bool:
+        between = turn(a, b, start) * turn(a, b, end) < 0.0
+        return bool((between & (turn(start, end, a) * turn(start, end, b) < 0.0)).any())
+
+    return any(map(crossed, start, end))  # a side at a time: of many vertices all pairs would need much memory

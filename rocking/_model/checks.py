@@ -75,6 +75,15 @@ def check_window(
     return lower, number(last, high, lower, parameter.upper, closed=closed, unit=parameter.unit)
 
 
+def check_ends(parameter: Parameter, ends: Any, name: str | None = None) -> tuple[float, float]:
+    """The same of a window that is one argument, by default with the name of the parameter."""
+    name = name or parameter.name
+    if np.shape(ends) != (2,):
+        raise InvalidArgumentError(name, ends, "the two ends of a window, ascending")
+    low, high = ends
+    return check_window(parameter, low, high, (name, f"{name}[1]"))
+
+
 def check_alpha(alpha: ArrayLike | Quantity | None) -> Array:
     """Slenderness angles [rad], 0 for None; the same errors as `check`, also between 0 and `SMALLEST_ALPHA`."""
     if alpha is None:

@@ -17,7 +17,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking._model.checks import check_number, check_window
+from rocking._model.checks import check_ends, check_number
 from rocking._model.parameters import RESTITUTION
 from rocking.paper.any_pulse import first_uplift_phase, margin_after_impact
 from rocking.paper.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
@@ -244,7 +244,7 @@ def island_tip(
         If the window has no such tip.
     """
     grid = _amplitudes(amplitude)
-    low, high = check_window(ANY_FREQUENCY_RATIO, *frequency_ratio, ("frequency_ratio", "frequency_ratio[1]"))
+    low, high = check_ends(ANY_FREQUENCY_RATIO, frequency_ratio)
 
     def best(omega: float) -> tuple[float, float]:
         values = np.array([margin_after_impacts(pulse, float(a), omega, restitution, impacts) for a in grid])
@@ -266,5 +266,5 @@ def island_tip(
 
 def _amplitudes(window: tuple[float, float]) -> NDArray[np.float64]:
     """The grid of amplitudes over a window [-]."""
-    ends = check_window(UPLIFTING_AMPLITUDE, *window, ("amplitude", "amplitude[1]"))
+    ends = check_ends(UPLIFTING_AMPLITUDE, window)
     return np.geomspace(*ends, _AMPLITUDES)

@@ -39,13 +39,14 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     """
     labels = body.labels
     plain = {name: value for name, value in body.parameters.items() if name not in labels}
-    given = xr.Dataset(broadcast_by_name(labels))
+    # a variable of the name of a dimension would become its coordinate
+    given = xr.Dataset({f"of body: {name}": value for name, value in broadcast_by_name(labels).items()})
     taken = [name for name in given.dims if name in OWN_DIMENSIONS]
     if taken:
         raise InvalidArgumentError("blocks", taken[0], "dimensions other than " + ", ".join(OWN_DIMENSIONS))
 
     def part(chunk: xr.Dataset) -> xr.Dataset:
-        bodies = RigidBody(**plain, **{name: chunk[name] for name in labels})
+        bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
         names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
         found = _over(analyse(_blocks_of(bodies)), names, bodies.shape).assign_coords(chunk.coords)
         return with_index(found, names[-1], body.index) if names else found

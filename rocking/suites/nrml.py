@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking.suites.fits import FitStatus, fit_curve
+from rocking.suites.table import with_block
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 
@@ -65,7 +66,7 @@ def write_nrml(
     if measure not in TYPES:
         raise InvalidArgumentError("fragility", measure, "a fragility with the measure pga or pgv")
     name, unit = TYPES[measure]
-    data = fragility if "block" in fragility.dims else fragility.expand_dims("block")
+    data = with_block(fragility)
     levels = data["intensity"].values
     if levels.size < 2:
         raise InvalidArgumentError("fragility", f"{levels.size} level", "two levels at least")

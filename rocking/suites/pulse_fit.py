@@ -20,6 +20,7 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array, one_of
 from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.block import Block
+from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._dimensional.thresholds import overturning_scale
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -176,7 +177,7 @@ def fit_pulse(
     pulse, peak = best.acceleration_pulse()
     of_record = []
     for block in compared:
-        highest = HIGHEST_AMPLITUDE * block.uplift_acceleration / record.peak_acceleration
+        highest = min(HIGHEST_AMPLITUDE * block.uplift_acceleration / record.peak_acceleration, HIGHEST_SCALE)
         of_record.append(overturning_scale(record, block, highest=highest, stop=stop))
     of_pulse = [_overturning_acceleration(pulse, best.period, block, stop) / peak for block in compared]
     return PulseFit(pulse, best.period, peak, best, best.explained, compared, np.array(of_record), np.array(of_pulse))

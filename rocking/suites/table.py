@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from rocking.suites.body_arrays import OWN_DIMENSIONS
 from rocking.suites.fits import FitStatus
 
 LEVEL_COLUMNS = ("exceedances", "fraction", "fraction_lower", "fraction_upper", "first_exceedances")
@@ -81,7 +82,7 @@ def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
         Columns width [m], height [m], intensity (unit of the measure), restitution and its smaller and larger
         value `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
     """
-    found = _with_block(sensitivity)
+    found = with_block(sensitivity)
     columns = {name: found[name].transpose("block", "intensity").values for name in SENSITIVITY_COLUMNS}
     restitution = {name: _by_block(found, name) for name in ("restitution", "restitution_low", "restitution_high")}
     return _rows(found, {"intensity": found["intensity"].values, **restitution, **columns})
@@ -97,14 +98,16 @@ def finite(columns: Mapping[str, list[Any]]) -> dict[str, list[Any]]:
 
 def _with_dimensions(fragility: xr.Dataset) -> xr.Dataset:
     """The result with the dimensions demand and block, also where it was made for one of them."""
-    found = _with_block(fragility)
+    found = with_block(fragility)
     return found if "demand" in found.dims else found.expand_dims("demand")
 
 
-def _with_block(found: xr.Dataset) -> xr.Dataset:
-    """The result with the dimension block, also where it was made for one."""
+def with_block(found: xr.Dataset) -> xr.Dataset:
+    """The result with the dimension block, also where it was made for one, or for an array of bodies (C order)."""
     if "block" in found.dims:
         return found
+    if array := [name for name in found["overturned"].dims if name not in OWN_DIMENSIONS]:
+        return found.stack(block=array, create_index=False)
     own = [name for name, value in found.coords.items() if value.ndim == 0 and name not in ("demand",)]
     return found.reset_coords(own).expand_dims("block").set_coords(own)
 

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+import rocking
 from rocking._assessment.assess import assess
 from rocking._assessment.columns import OUTPUTS, VERDICTS
 from rocking._assessment.objects import Bodies, Object
@@ -137,8 +138,10 @@ def test_result_as_table(tmp_path) -> None:
 
 
 @pytest.mark.parametrize(
-    "given", [{"pga": 3.0}, {"pgv": 0.3}, {"pga": 3.0, "pgv": 0.3, "periods": (0.1, 1.0)}, {"pga": -1.0, "pgv": 0.3}]
-)
+    "given",
+    [{"pga": 3.0}, {"pgv": 0.3}, {"pga": 3.0, "pgv": 0.3, "periods": (0.1, 1.0)}, {"pga": 3.0, "periods": 0.5},
+     {"pga": 3.0, "periods": (0.5, 0.6, 0.7)}, {"pga": -1.0, "pgv": 0.3}],
+)  # fmt: skip
 def test_incomplete_sites_are_refused(given) -> None:
     with pytest.raises(InvalidArgumentError):
         Site(**given)
@@ -148,8 +151,25 @@ def test_incomplete_sites_are_refused(given) -> None:
     "given",
     [{"height": 1.0}, {"width": 0.4}, {"width": 0.4, "diameter": 0.4, "height": 1.0},
      {"width": 0.4, "height": 1.0, "offset_width": 0.2}, {"width": 0.4, "height": 1.0, "tolerance": 0.2},
-     {"width": 0.4, "height": 1.0, "restitution": 1.2}],
+     {"width": 0.4, "height": 1.0, "restitution": 1.2}, {"width": 0.4, "height": 1.0, "offset_depth": 0.1},
+     {"diameter": 0.4, "height": 1.0, "offset_width": 0.19, "offset_depth": 0.19},
+     {"width": 0.4, "height": 1.0, "mass_height": 1.1}],
 )  # fmt: skip
 def test_incomplete_objects_are_refused(given) -> None:
     with pytest.raises(InvalidArgumentError):
         Object("one", **given)
+
+
+def test_an_object_that_the_vertical_component_presses_down_does_not_uplift() -> None:
+    ground = np.array([0.0, 0.2, 0.5, 1.0, 0.5, -0.2, -0.6, -0.2, 0.0, 0.0])
+    pressing = [0.0, 0.3, 0.6, 0.9, 0.6, 0.3, 0.3, 0.0, 0.0, 0.0]
+    motion = rocking.Record(0.3 * ground, 0.1, "g", vertical=pressing)
+    assert motion.peak_acceleration > 9.80665 * 0.25  # alone it would uplift the object
+    assert rocking.Block(0.4, 1.6).response(motion).outcome == rocking.Outcome.NO_UPLIFT
+    found = assess(Object("one", width=0.4, height=1.6), Site(records=motion))
+    assert found.columns["verdict"].tolist() == ["stays"]
+    assert found.columns["uplifts"].tolist() == [False]
+    assert found == assess(Object("one", width=0.4, height=1.6), Site(records=[motion]))
+    with pytest.raises(InvalidArgumentError, match="row"):
+        found.friction(0.5)
+    assert found.friction(0.0).identical(found.friction(0))

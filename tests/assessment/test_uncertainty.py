@@ -51,3 +51,19 @@ def test_a_certain_outcome_has_no_indices() -> None:
 def test_impossible_bodies_and_certain_inputs_are_refused(given) -> None:
     with pytest.raises(InvalidArgumentError):
         overturning_probability(SITE, height=1.0, **given)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("restitution", "momentom"), ("restitution", 7.0), ("height", "1 kg"), ("mass_height", -1.0)]
+)
+def test_wrong_certain_inputs_are_refused_by_name(name, value) -> None:
+    with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
+        overturning_probability(SITE, **{"width": stats.norm(1, 0.1), "height": 2.0, name: value})
+
+
+def test_certain_inputs_may_be_texts() -> None:
+    found, same = (
+        overturning_probability(SITE, width=stats.norm(0.4, 0.05), height=height, samples=64, seed=1)
+        for height in (2.0, "200 cm")
+    )
+    assert found == same

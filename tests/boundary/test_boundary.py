@@ -288,6 +288,8 @@ def test_a_window_without_boundary_gives_no_curves():
         ("frequency_ratio", (2.0, 1.0)),
         ("slenderness", (0.5, 0.2)),
         ("slenderness", (0.5, 1.5)),
+        ("frequency_ratio", 1.0),
+        ("slenderness", (0.1, 0.2, 0.3)),
     ],
 )
 def test_wrong_windows(argument, value):

@@ -199,7 +199,7 @@ def test_an_inclined_body_uplifts_at_other_accelerations():
         uplift = STANDARD_GRAVITY * math.tan(alpha)
         outcomes = body.response(name, peak_acceleration=uplift * np.array([0.999, 1.001]), period=0.2).outcome
         assert outcomes[0] == rocking.Outcome.NO_UPLIFT != outcomes[1]
-    with pytest.raises(InvalidArgumentError, match=r"less than 16\.7 degrees: the body falls over"):
+    with pytest.raises(InvalidArgumentError, match=r"more than -16\.7 degrees: the body falls over"):
         BODY.tilted("-20 deg")
 
 
@@ -502,3 +502,60 @@ def test_reactions_with_vertical_motion(tilt):
             assert float(history["normal_reaction"][k]) == pytest.approx(normal, abs=1e-3)
             checked += 1
     assert checked > 30
+
+
+@pytest.mark.parametrize("peak", [6.0, 8.0, 12.0])
+def test_contact_of_the_mirrored_body_is_the_same(peak):
+    wide, narrow = rocking.RigidBody(0.25, 0.1, 0.8), rocking.RigidBody(0.1, 0.25, 0.8)
+    one = wide.response("-sine", peak_acceleration=peak, period=1.0).contact
+    other = narrow.response("sine", peak_acceleration=peak, period=1.0).contact
+    for name in ("largest_friction_demand", "smallest_normal_reaction", "impulse_ratio"):
+        assert getattr(one, name) == pytest.approx(getattr(other, name), rel=1e-9), name
+    for name in ("friction_time", "normal_time"):  # p t, with p of the right edge
+        times = [
+            getattr(contact, name) / float(body.right.frequency_parameter)
+            for contact, body in ((one, wide), (other, narrow))
+        ]
+        assert times[0] == pytest.approx(times[1], rel=1e-4), name
+
+
+def test_spectra_have_their_own_dimension_and_one_period_of_several_sizes():
+    body, motion = rocking.RigidBody(0.15, 0.25, 0.8), {"motion": "sine", "peak_acceleration": 3.0}
+    both = body.spectrum(**motion, period=[0.5, 0.6])
+    assert both["rotation"].dims == ("period",)
+    for k, period in enumerate([0.5, 0.6]):
+        one = body.spectrum(**motion, period=[period])
+        assert one["rotation"].dims == ("period",)
+        assert one["rotation"].values.tolist() == both["rotation"].values[k : k + 1].tolist()
+    sizes = body.spectrum(**motion, period=0.5, size=[1.0, 2.0])
+    assert sizes["rotation"].values[0] == both["rotation"].values[0]
+    with pytest.raises(rocking.InvalidArgumentError, match=r"period.*one number"):
+        body.spectrum(**motion, period=[0.5, 0.6], size=[1.0, 2.0])
+
+
+def test_limits_of_the_inclination_and_of_factors_of_a_record():
+    with pytest.raises(rocking.InvalidArgumentError, match=r"more than -10\.62 degrees"):
+        rocking.RigidBody(0.15, 0.25, 0.8, inclination=-0.5)
+    with pytest.raises(rocking.InvalidArgumentError, match=r"less than 17\.35 degrees"):
+        rocking.RigidBody(0.15, 0.25, 0.8, inclination=0.5)
+    ground = record("napa_HNE", 0.005)
+    for body in (rocking.RigidBody(0.2, 0.2, 0.8), rocking.Block(0.4, 1.6)):
+        with pytest.raises(rocking.InvalidArgumentError, match=r"highest.*\(0, 1e\+06\]"):
+            body.thresholds(ground, highest=1e7)
+    falling = rocking.Record(ground.acceleration, 0.005, "m/s2", vertical=np.full(6997, -0.6 * STANDARD_GRAVITY))
+    for body in (rocking.RigidBody(0.2, 0.2, 0.8, gravity=3.7), rocking.Block(0.4, 1.6, gravity=3.7)):
+        with pytest.raises(rocking.InvalidArgumentError, match=r"scale. = 1\.0 .*below 0\.628825.*-5\.884 m/s2"):
+            body.response(falling)
+
+
+def test_labels_of_tilts_and_sizes_are_kept():
+    body, angles = rocking.RigidBody(0.15, 0.25, 0.8), xr.DataArray([0.0, 0.05], dims="angle")
+    assert body.tilted(angles).response("sine", **MOTION)["rotation"].dims == ("angle",)
+    sizes = body.scaled(xr.DataArray([1.0, 2.0], dims="s")).response("sine", **MOTION)
+    assert sizes["rotation"].dims == ("s",)
+    assert sizes["outcome"].values[0] == body.response("sine", **MOTION).outcome
+
+
+def test_outlines_that_cross_themselves_at_a_vertex():
+    with pytest.raises(rocking.InvalidArgumentError, match="does not cross itself"):
+        rocking.RigidBody.from_polygon([(0, 0), (1, 0), (0.5, 0.5), (0.3, 0.8), (0.7, 0.8), (0.5, 0.5)])

@@ -187,13 +187,19 @@ def test_unknown_pulses_are_rejected(name):
 
 
 def test_parameters_belong_to_one_pulse():
-    with pytest.raises(InvalidArgumentError, match="pulse sine"):
+    with pytest.raises(InvalidArgumentError, match=r"`cycles` = 2\.0 .* for sine: no parameters"):
         rocking.pulse("sine", cycles=2.0)
-    with pytest.raises(InvalidArgumentError, match="mavroeidis_papageorgiou"):
+    with pytest.raises(InvalidArgumentError, match=r"`colour`.*mavroeidis_papageorgiou: cycles and phase"):
         rocking.pulse("mavroeidis_papageorgiou", colour=2.0)
     for name, value in (("cycles", 1.0), ("cycles", 21.0), ("phase", 7.0), ("phase", math.nan)):
         with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
             rocking.pulse("mavroeidis_papageorgiou", **{name: value})
+
+
+def test_the_phase_may_be_a_text():
+    assert rocking.pulse("mavroeidis_papageorgiou", phase="30 deg") == rocking.pulse(
+        "mavroeidis_papageorgiou", phase=np.radians(30.0)
+    )
 
 
 def test_abstract_pulse_cannot_be_instantiated():

@@ -116,3 +116,12 @@ def test_discounted_integral_of_a_smooth_pulse_with_many_extremes():
     for start in (0.0, 1.1):
         exact = cf.discounted_integral(sinusoid, 0.5, start)
         assert cf.discounted_integral(smooth, 0.5, start) == pytest.approx(exact, rel=1e-12, abs=1e-15)
+
+
+def test_a_peak_of_equal_samples_is_an_extreme():
+    flat, pointed = rocking.SampledPulse([0.0, 1.0, 1.0, 0.0]), rocking.SampledPulse([0.0, 1.0, 1.0 - 1e-9, 0.0])
+    assert len(flat.stationary) == 1
+    assert len(rocking.SampledPulse([0.0, 1.0, 1.0, -0.5, -0.5, 0.2]).stationary) == 2
+    assert rocking.SampledPulse([0.0, 0.5, 0.5, 1.0]).stationary == ()  # no extreme
+    for of in (lambda one: cf.first_uplift_phase(one, 3.0), lambda one: cf.margin_without_impact(one, 3.0, 1.0)):
+        assert of(flat) == pytest.approx(of(pointed), rel=1e-8)

@@ -107,3 +107,11 @@ def test_invalid_arguments_are_named(arguments, name):
     with pytest.raises(InvalidArgumentError) as error:
         rocking.suites.fit_pulse(given.pop("record"), **given)
     assert error.value.parameter == name
+
+
+def test_a_weak_record_is_fitted():
+    strong = record_of("ricker", 1.2)
+    weak = rocking.Record(1e-4 * strong.acceleration, strong.time_step, "m/s2")
+    fit = rocking.suites.fit_pulse(weak, blocks=[rocking.Block(0.4, 1.6)])
+    assert fit.pulse.name == "ricker"
+    assert fit.peak_acceleration == pytest.approx(2e-4, rel=1e-3)
