@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
-from rocking._excitation.records.readers.read_record import read_record
+from rocking._excitation.records.readers.read_record import parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 from rocking._model.block import RectangularBlock
 from rocking._model.checks import check_number
@@ -87,8 +87,13 @@ class RecordFiles:
         InvalidArgumentError, RecordFileError
             As `rocking.read_record`.
         """
-        motion = read_record(
-            path, unit=self.unit, time_step=self.time_step, component=self.component, vertical=self.vertical
+        motion = parse_record(  # read_record would take a file of the name `vertical` in the working directory
+            read_content("path", path),
+            path.name,
+            unit=self.unit,
+            time_step=self.time_step,
+            component=self.component,
+            vertical=self.vertical,
         )
         corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
         about = path.stem, corrected.source, corrected.remarks

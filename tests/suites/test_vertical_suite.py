@@ -1,5 +1,7 @@
 """Suites of records with a vertical component: both components are scaled to each level, flight is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.thresholds import overturning_scale
+from rocking.suites.configuration import RecordFiles
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from tests.suites.motions import noise
@@ -66,3 +69,16 @@ def test_friction_demand_is_that_of_the_history() -> None:
     history = BLOCKS[0].history(record, scale=scale, restitution=eta, contact=True)
     demand = float(found["friction_demand"].values[0, 0])
     assert demand == pytest.approx(history.attrs["largest_friction_demand"], rel=1e-9)
+
+
+def test_the_vertical_component_is_never_another_file(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.csv").write_text("time_s,NS_g,up\n0,1,4\n0.5,2,5\n1,3,6\n")
+    (tmp_path / "up").write_text("unit: g\ndt: 0.5\n7\n8\n9\n")
+    files = RecordFiles(tmp_path, "*.csv", "g", None, "NS_g", "up", None)
+    (path,) = files.paths()
+    np.testing.assert_allclose(files.read(path).vertical, STANDARD_GRAVITY * np.array([4.0, 5.0, 6.0]), rtol=1e-15)
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'a.csv' .* allowed: a component of a.csv"):
+        replace(files, vertical="a.csv").read(path)
+    with pytest.raises(InvalidArgumentError, match=r"`path` = .*none.csv.* a file that can be read"):
+        files.read(tmp_path / "none.csv")

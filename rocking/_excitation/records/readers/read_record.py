@@ -63,12 +63,16 @@ def read_record(
     InvalidArgumentError
         If a file cannot be read, an argument is out of range, or the components differ in step or length.
     """
-    content, name = _content("path", path), Path(path).name
+    content, name = read_content("path", path), Path(path).name
     stated: _Stated = {"unit": unit, "time_step": time_step}
-    if vertical is None or not (isinstance(vertical, PathLike) or Path(vertical).is_file()):
-        return parse_record(content, name, **stated, component=component, vertical=vertical)
     found = parse_record(content, name, **stated, component=component)
-    return _with_vertical(found, parse_record(_content("vertical", vertical), Path(vertical).name, **stated))
+    if vertical is None:
+        return found
+    if isinstance(vertical, PathLike) or Path(vertical).is_file():
+        upwards = parse_record(read_content("vertical", vertical), Path(vertical).name, **stated)
+    else:
+        upwards = _vertical(content, name, vertical, f"a file, or a component of {name}", **stated)
+    return _with_vertical(found, upwards)
 
 
 class _Stated(TypedDict):
@@ -78,8 +82,8 @@ class _Stated(TypedDict):
     time_step: Scalar | None
 
 
-def _content(parameter: str, path: str | PathLike[str]) -> bytes:
-    """The bytes of a file, one more than is allowed at most."""
+def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
+    """The bytes of a file, one more than is allowed at most; an argument of this name if it cannot be read."""
     try:
         with Path(path).open("rb") as stream:
             return stream.read(MAX_BYTES + 1)
@@ -128,11 +132,23 @@ def parse_record(
     found = _parsed(content, name, unit, time_step, component, stop)
     if vertical is None:
         return found
+    return _with_vertical(found, _vertical(content, name, vertical, f"a component of {name}", unit, time_step, stop))
+
+
+def _vertical(
+    content: bytes,
+    name: str,
+    vertical: str,
+    allowed: str,
+    unit: str | None,
+    time_step: Scalar | None,
+    stop: StopFlag | None = None,
+) -> Record:
+    """The vertical component in the file of the horizontal one; `allowed` is what an error says of its name."""
     try:
-        upwards = _parsed(content, name, unit, time_step, vertical, stop)
+        return _parsed(content, name, unit, time_step, vertical, stop)
     except RecordFileError as error:
-        raise InvalidArgumentError("vertical", vertical, f"a file, or a component of {name} ({error})") from None
-    return _with_vertical(found, upwards)
+        raise InvalidArgumentError("vertical", vertical, f"{allowed} ({error})") from None
 
 
 def _parsed(
@@ -151,8 +167,8 @@ def _parsed(
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
     if seismic.is_seismic(content):
         return seismic.read(content, name, unit, step, component)
-    _check_text(content, name)
     file = TextFile(name, content, stop)
+    _check_text(file.content, name)
     try:
         return _read_text(file, unit, step, component)
     except RecordFileError:
