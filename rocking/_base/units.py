@@ -40,7 +40,7 @@ UNITS: dict[str, dict[str, float]] = {
         "in/s2": 0.0254,
         "ft/s2": 0.3048,
     },
-    "s": {"s": 1.0, "ms": 0.001, "min": 60.0},
+    "s": {"s": 1.0, "ms": 0.001, "us": 1e-6, "min": 60.0},
     "rad": {"rad": 1.0, "deg": math.pi / 180.0, "mrad": 0.001},
     "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
     "-": {"%": 0.01},
@@ -63,7 +63,7 @@ USUAL = {"m": ("m",), "m/s": ("m/s",), "m/s2": ("m/s2", "g"), "s": ("s",), "rad"
 MAX_LENGTH = 64
 """Longest text that is read as a quantity or a unit [characters]."""
 
-_OTHER_NAMES = {
+_OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "m": ("metre", "metres", "meter", "meters"),
     "cm": ("centimetre", "centimetres", "centimeter", "centimeters"),
     "mm": ("millimetre", "millimetres", "millimeter", "millimeters"),
@@ -72,6 +72,8 @@ _OTHER_NAMES = {
     "ft": ("foot", "feet"),
     "gal": ("gals",),
     "g": ("gs", "gravity"),
+    "ms": ("millis",),
+    "us": ("\u00b5s", "\u03bcs", "micros"),
     "min": ("minute", "minutes"),
     "rad": ("radian", "radians"),
     "deg": ("degree", "degrees", "°"),

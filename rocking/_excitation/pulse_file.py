@@ -69,11 +69,11 @@ def read_pulse_file(path: str | PathLike[str], most: int) -> PulseFile:
             content = stream.read(MAX_BYTES + 1)
     except OSError as error:
         raise InvalidArgumentError("path", str(path), f"a file that can be read ({error.strerror})") from None
-    text = TextFile(file.name, content)
     try:
         if len(content) > MAX_BYTES:
-            raise text.error(None, "a larger file", f"at most {MAX_BYTES} bytes")
-        if content.removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{":
+            raise RecordFileError(file.name, None, "a larger file", f"at most {MAX_BYTES} bytes")
+        text = TextFile(file.name, content)
+        if text.content.removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{":
             return PulseFile({"name": file.stem} | _parse_json(text), text, None)
         first, time, acceleration = read_samples(text, most)
     except RecordFileError as error:

@@ -78,6 +78,11 @@ def pairs(separator: str = ",", header: str = "time_s,acceleration_g\n", step: f
     return header + "\n".join(lines) + "\n"
 
 
+def times_in(name: str, per_second: float) -> str:
+    lines = (f"{k * STEP * per_second:g},{v:.6f}\n" for k, v in enumerate(values()))
+    return f"{name},a_g\n" + "".join(lines)
+
+
 def single(header: str = "") -> str:
     return header + "\n".join(f"{v:.6f}" for v in values()) + "\n"
 
@@ -149,6 +154,19 @@ ODD = {
     "csv with rounded times": File(pairs(step=0.0078125, digits=4), step=0.0078125),
     "csv with times in ms": File("time_ms,a_g\n" + "".join(f"{10 * k},{v:.6f}\n" for k, v in enumerate(values()))),
     "csv with blank lines between the rows": File(pairs().replace("\n", "\n\n")),
+    "csv with times in microseconds": File(times_in("time [µs]", 1e6).encode("latin-1")),
+    "csv with units after slashes": File(times_in("Zeit / ms", 1e3).replace("a_g", "a/g")),
+    "csv with other words before the unit": File(times_in("Time (since trigger) [msec]", 1e3)),
+    "csv with a line of units": File("time,acc\n" + times_in("[ms]", 1e3).replace("a_g", "[g]")),
+    "blanks, with blanks before the units": File(
+        times_in("t [ms]", 1e3).replace("a_g", "acc (m / s2)").replace(",", " "), unit="m/s2"
+    ),
+    "tabs and decimal commas": File(pairs("\t", "Zeit\ta (g)\n").replace(".", ",")),
+    "UTF-16": File(pairs("\t").encode("utf-16")),
+    "UTF-16 of the other order": File(b"\xfe\xff" + at2().encode("utf-16-be")),
+    "csv with a title of one word and integers": File(
+        "Record\n0,1\n1,-2\n", {"unit": "g"}, samples=np.array([1.0, -2.0]), step=1.0
+    ),
     "csv named like AT2 values": File(pairs(header="time (sec),acceleration (G)\n")),
 }
 
@@ -214,6 +232,20 @@ DAMAGED = {
     "csv with two units": File("unit: gal\n" + pairs(), error="the unit g in a column name; expected gal"),
     "csv of velocity": File(pairs(header="time (s),velocity (m/s)\n"), {"unit": "g"}, error="velocity"),
     "csv with a missing row": File(replaced(pairs(), "0.010,0.122560\n", ""), error="uniform steps"),
+    **{
+        f"csv with the times {name}": File(times_in(name, 1.0), error="line 1: found the column .* s, ms, us, min")
+        for name in ("t [foo]", "Time since trigger (cm)", "t/ns", "time h", "time_g")
+    },
+    "csv with a name too many": File(
+        times_in("t [ms],no", 1e3), {"unit": "g"}, error="line 1: found t .*names of 2 columns, as in line 2"
+    ),
+    "one column with decimal commas": File(
+        "a [g]\n0,1\n1,2\n2,5\n", {"unit": "g"}, error="line 2: found 0,1; expected semicolons or tabs"
+    ),
+    "csv with a comment between the rows": File(
+        replaced(pairs(), "0.010,", "# gap\n0.010,"), error="line 3: found the comment # gap; .* above the first row"
+    ),
+    "UTF-16 cut in a character": File(pairs().encode("utf-16")[:-1], error="UTF-16 with truncated data"),
     "csv with a repeated row": File(pairs() + pairs(header="").splitlines()[-1] + "\n", error="uniform steps"),
     "csv with falling times": File("t,a_g\n2,1\n1,2\n0,1\n", error="times that increase"),
     "csv with an empty field": File(replaced(pairs(), "0.122560", ""), error="line 3"),

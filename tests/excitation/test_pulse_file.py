@@ -18,6 +18,7 @@ TEXTS = {
     "commas": "0,0\n0.5,1\n0.75,-0.25\n2,0\n",
     "semicolons and decimal commas": "time;acceleration\n0;0\n0,5;1\n0,75;-0,25\n2;0\n",
     "blanks": "# a pulse\n0 0\n 0.5  1\n\n0.75 -.25\n2 0\n",
+    "any unit": "time [weeks],acceleration [furlong]\n0,0\n0.5,1\n0.75,-0.25\n2,0\n",
     "the times last": "acc,time\n0,0\n1,0.5\n-0.25,0.75\n0,2\n",
     "JSON": json.dumps({"acceleration": VALUES, "time": TIMES}),
     "JSON without times": json.dumps({"acceleration": VALUES, "time": None}),
@@ -37,6 +38,12 @@ def test_every_form_holds_the_pulse(form: str, tmp_path: Path) -> None:
     timed = "0.75" in text or "0,75" in text
     expected = rocking.SampledPulse(VALUES, TIMES if timed else None, name="ramp")
     assert rocking.SampledPulse.from_file(written(tmp_path, text)) == expected
+
+
+def test_a_pulse_in_utf_16(tmp_path: Path) -> None:
+    path = tmp_path / "ramp.csv"
+    path.write_text(TEXTS["commas"], encoding="utf-16")
+    assert rocking.SampledPulse.from_file(path) == rocking.SampledPulse(VALUES, TIMES, name="ramp")
 
 
 def test_period_and_name_of_a_file(tmp_path: Path) -> None:

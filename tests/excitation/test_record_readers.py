@@ -11,6 +11,8 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
+from rocking._excitation.records.readers.columns import read_rotations
+from rocking._excitation.records.readers.lines import TextFile
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import UNITS
 from rocking._numba.cancellation import StopFlag
@@ -201,3 +203,45 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
     path.write_text(at2())
     with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):
         rocking.read_record(path, vertical="up")
+
+
+def test_titles_and_names_of_times_without_a_unit_are_no_units() -> None:
+    for name in ("Time (s)", "T[sec]", "time", "t", "Zeit", "time sec.", "time since trigger", "Elapsed time [s]"):
+        assert parse_record(f"{name},a [g]\n0,1\n0.5,2\n1,3\n".encode(), "f").time_step == 0.5, name
+
+
+@pytest.mark.parametrize(
+    ("header", "degrees", "second", "radian"),
+    [
+        ("time,rotation", None, 1.0, 1.0),
+        ("time,rotation", True, 1.0, np.radians(1.0)),
+        ("time [ms],rotation [deg]", None, 1e-3, np.radians(1.0)),
+        ("time [ms],rotation [deg]", True, 1e-3, np.radians(1.0)),
+        ("t/min,theta / mrad", None, 60.0, 1e-3),
+        ("time_s,theta (°)", None, 1.0, np.radians(1.0)),
+    ],
+)
+def test_rotations_are_in_the_units_of_the_header(header: str, degrees: bool | None, second: float, radian: float):
+    file = TextFile("trace", f"{header}\n0,1\n5,2\n10,3\n".encode())
+    time, rotation = read_rotations(file, 9, degrees)
+    np.testing.assert_allclose(time, second * np.array([0.0, 5.0, 10.0]), rtol=1e-15)
+    np.testing.assert_allclose(rotation, radian * np.array([1.0, 2.0, 3.0]), rtol=1e-15)
+    swapped = ",".join(reversed(header.split(",")))
+    found = read_rotations(TextFile("trace", f"{swapped}\n1,0\n2,5\n3,10\n".encode()), 9, degrees)
+    np.testing.assert_array_equal(found, (time, rotation))
+
+
+@pytest.mark.parametrize(
+    ("header", "degrees", "said"),
+    [
+        ("t,rotation [rad]", True, "rotation .rad.; expected rotations in deg, as `degrees` says"),
+        ("t,rotation_deg", False, "rotation_deg; expected rotations in rad"),
+        ("t,rotation [mrad]", True, "expected rotations in deg"),
+        ("t,rotation [rad/s]", None, "one of the units rad, deg, mrad"),
+        ("t,top [mm]", None, "a column of rotations"),
+        ("t [foo],rotation", None, "one of the units s, ms, us, min"),
+    ],
+)
+def test_rotations_in_other_units_are_refused(header: str, degrees: bool | None, said: str) -> None:
+    with pytest.raises(RecordFileError, match=f"trace, line 1: found the column .*{said}"):
+        read_rotations(TextFile("trace", f"{header}\n0,1\n5,2\n".encode()), 9, degrees)

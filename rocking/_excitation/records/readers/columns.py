@@ -1,8 +1,8 @@
 """Columns of numbers, CSV or blank-separated: times and accelerations, or accelerations alone.
 
 Lines before the first row of numbers are the header. It may name the columns, with the unit in the name
-(`acceleration_g`, `acc (cm/s2)`), and hold settings such as `unit: g`, `dt = 0.01` or `sampling rate: 100 Hz`, also
-after a `#`. What it does not state has to be given as an argument.
+(`acceleration_g`, `acc (cm/s2)`, `t/ms`), and hold settings such as `unit: g`, `dt = 0.01` or `sampling rate: 100 Hz`,
+also after a `#`. What it does not state has to be given as an argument.
 """
 
 from __future__ import annotations
@@ -12,11 +12,13 @@ from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import RecordFileError
+from rocking._base.units import UNITS, unit_name
 from rocking._excitation.records.readers.lines import (
     MAX_SAMPLES,
     NUMBER,
@@ -40,6 +42,9 @@ MAX_UNIT_PARTS = 8
 """Most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2."""
 
 _COMMENT = "#%!*/\"'"
+
+_DECIMAL_COMMA = (";", "\t")
+"""Separators of columns beside which a comma is the decimal sign."""
 
 
 def read(file: TextFile, unit: str | None, time_step: float | None, component: str | None) -> Record:
@@ -81,23 +86,58 @@ def read_samples(file: TextFile, most: int) -> tuple[int, NDArray[np.float64] | 
     RecordFileError
         If the file holds anything else.
     """
-    first = _first_row(file, "one column of accelerations, or two of times and accelerations")
+    first, _, _, (*times, values) = _samples(file, most, "accelerations")
+    return first, times[0] if times else None, values
+
+
+def read_rotations(file: TextFile, most: int, degrees: bool | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times [s] and rotations [rad], at most `most` rows, in the units that the names of the columns state.
+
+    Without units these are seconds, and degrees or radians as `degrees` says; None: radians, unless the file states
+    another unit.
+
+    Raises
+    ------
+    RecordFileError
+        If the file holds anything else, or rotations in another unit than `degrees` says.
+    """
+    first, line, names, columns = _samples(file, most, "rotations")
+    if len(columns) == 1:
+        raise file.error(first, "one column", "a column of times and one of rotations")
+    stated, given = _stated_unit(file, line, names[1], "rad"), "deg" if degrees else "rad"
+    if stated not in (None, given) and degrees is not None:
+        raise file.error(line, f"the column {names[1]}", f"rotations in {given}, as `degrees` says")
+    return columns[0] * _time_factor(file, line, names[0]), columns[1] * UNITS["rad"][stated or given]
+
+
+class _Samples(NamedTuple):
+    """Index of the first row, line of the names, names and values of the columns: times come first."""
+
+    first: int
+    line: int | None
+    names: list[str]
+    columns: list[NDArray[np.float64]]
+
+
+def _samples(file: TextFile, most: int, kind: str) -> _Samples:
+    """One column, or two with times; `kind` is what the other one holds, in messages."""
+    expected = f"one column of {kind}, or two of times and {kind}"
+    first = _first_row(file, expected)
     separator = _separator(file.head[first])
     width = len(_fields(file.head[first], separator))
     if width > 2:
-        raise file.error(first, f"{width} columns", "one column of accelerations, or two of times and accelerations")
-    names_line, names = _column_names(file, first, separator, width)
-    times, _ = _time_column(file, first, names)
-    chosen = 0 if times is None else 1 - times
-    _check_name(file, names_line, names[chosen])
-    columns = _table(file, first, separator, width, [*range(width)], most)
-    return first, None if times is None else columns[times], columns[chosen]
+        raise file.error(first, f"{width} columns", expected)
+    line, names = _column_names(file, first, separator, width)
+    times, _ = _time_column(file, first, names, kind)
+    order = [0] if times is None else [times, 1 - times]
+    _check_name(file, line, names[order[-1]], kind)
+    return _Samples(first, line, [names[k] for k in order], _table(file, first, separator, width, order, most))
 
 
-def _check_name(file: TextFile, line: int | None, name: str) -> None:
+def _check_name(file: TextFile, line: int | None, name: str, kind: str = "accelerations") -> None:
     """Refuse a column of velocities or displacements, by its name."""
     if re.match(r"vel|dis", name, re.I) or re.search(r"[(\[](mm|cm|m)(/s)?[)\]]", name, re.I):
-        raise file.error(line, f"the column {name}", "a column of accelerations")
+        raise file.error(line, f"the column {name}", f"a column of {kind}")
 
 
 def _agreed_step(file: TextFile, first: int, settings: _Settings, measured: float | None, given: float | None) -> float:
@@ -125,7 +165,7 @@ def _is_row(line: str) -> bool:
     """Whether all fields of a line are numbers."""
     separator = _separator(line)
     fields = _fields(line, separator)
-    if separator == ";":
+    if separator in _DECIMAL_COMMA:
         fields = [field.replace(",", ".") for field in fields]
     return bool(line.strip()) and all(NUMBER.fullmatch(field) for field in fields)
 
@@ -153,7 +193,7 @@ def _table(
     mark = None if separator is None else separator.encode()
     found = [array("d") for _ in columns]
     for k, raw in file.rows(first):
-        lines = [line.replace(b",", b".") for line in raw] if separator == ";" else raw  # decimal commas
+        lines = [line.replace(b",", b".") for line in raw] if separator in _DECIMAL_COMMA else raw
         # blank lines between rows of several columns are left out: the times show whether a row is missing
         rows = [line.split(mark) for line in lines if line or width == 1]
         try:
@@ -174,6 +214,8 @@ def _table(
 
 def _row(file: TextFile, index: int, line: str, separator: str | None, width: int, first: int) -> list[float]:
     """The numbers of a line."""
+    if line.startswith(("#", "%", "!")):  # it may stand for rows that are missing
+        raise file.error(index, f"the comment {line}", "comments only above the first row")
     fields = _fields(line, separator)
     if len(fields) != width:
         raise file.error(index, f"{len(fields)} columns", f"{width}, as in line {first + 1}")
@@ -187,11 +229,38 @@ def _column_names(file: TextFile, first: int, separator: str | None, width: int)
     """Line and names of the columns, from the last header line with as many fields; numbered if there is none."""
     for k in range(first - 1, -1, -1):
         line = file.head[k].strip().lstrip(_COMMENT).strip()
+        if separator is None:  # blanks before and in the brackets of a unit separate no columns
+            line = _BRACKETS.sub(lambda found: "".join(found[0].split()), line)
         for mark in (separator, ",", ";", "\t"):
             names = [name for name in _fields(line, mark) if name]
             if len(names) == width and not any(re.search(r"[:=]", name) for name in names):
                 return k, names
+    _check_unnamed(file, first, separator, width)
     return None, [f"column {k + 1}" for k in range(width)]
+
+
+_BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[][^()\[\]]*+[)\]]")
+
+
+def _check_unnamed(file: TextFile, first: int, separator: str | None, width: int) -> None:
+    """Refuse rows whose last header line, no setting and no comment, names columns in another number.
+
+    Titles are such lines as well. It names columns if it states a unit of times other than seconds, or if it has fewer
+    names and commas are decimal signs in all rows of the head.
+    """
+    k = next((k for k in range(first - 1, -1, -1) if file.head[k].strip()), 0)
+    line = file.head[k].strip()
+    if k == first or re.search(r"[:=]", line) or line.startswith(tuple("#%!*/")):
+        return
+    if any(unit_name(text, "s") not in (None, "s") for text in re.findall(r"[(\[]([^()\[\]]*)[)\]]", line)):
+        raise file.error(k, line, f"names of {width} columns, as in line {first + 1}")
+    rows = [row for row in file.head[first:] if row.strip()]
+    if separator == "," and len(_fields(line, ",")) < width and all(map(_DECIMAL_COMMAS.fullmatch, rows)):
+        raise file.error(first, file.head[first].strip(), "semicolons or tabs between columns with decimal commas")
+
+
+_DECIMAL_COMMAS = re.compile(r"\s*+[+-]?\d++,\d++(?:,[+-]?\d++,\d++)*+\s*+")
+"""A row that may be of numbers with decimal commas only."""
 
 
 @dataclass
@@ -250,7 +319,7 @@ def _stated_step(file: TextFile, line: int, text: str, number: re.Match[str] | N
     return 1.0 / value if rate else value * (1e-3 if (number[2] or "").lower() == "ms" else 1.0)
 
 
-def _time_column(file: TextFile, first: int, names: list[str]) -> tuple[int | None, bool]:
+def _time_column(file: TextFile, first: int, names: list[str], kind: str = "accelerations") -> tuple[int | None, bool]:
     """Index of the column of times, None for one column only, and whether that is certain.
 
     It is named so, or the first of two and more without names. The first of columns with other names holds times if its
@@ -259,7 +328,7 @@ def _time_column(file: TextFile, first: int, names: list[str]) -> tuple[int | No
     named = [k for k, name in enumerate(names) if re.match(r"(time|t|zeit|temps|tempo|tiempo)(\b|_|$)", name, re.I)]
     if len(names) == 1:
         if named:
-            raise file.error(first, "a column of times only", "a column of accelerations")
+            raise file.error(first, "a column of times only", f"a column of {kind}")
         return None, True
     if len(named) > 1:
         raise file.error(None, f"columns {', '.join(names[k] for k in named)}", "one column of times")
@@ -273,13 +342,28 @@ def _rises(values: NDArray[np.float64]) -> bool:
 
 def _time_factor(file: TextFile, line: int | None, name: str) -> float:
     """Seconds in the unit of the column of times, seconds if its name states none."""
-    unit = re.fullmatch(r"[A-Za-z]++[\s_]*+[(\[]?\s*+([a-z]*+)\.?\s*+[)\]]?", name.strip(), re.I)
-    text = unit[1].lower() if unit else ""
-    if text in ("", "s", "sec", "second", "seconds") or name.startswith("column") or parse_unit(text):
-        return 1.0
-    if text in ("ms", "msec", "milliseconds"):
-        return 1e-3
-    raise file.error(line, name, "times in s or ms")
+    unit = _stated_unit(file, line, name, "s")
+    if unit is None and re.fullmatch(r"[a-z]++[\s_]++[a-z]++\.?", name, re.I):  # such as time h
+        raise _no_unit(file, line, name, "s")
+    return UNITS["s"][unit or "s"]
+
+
+def _stated_unit(file: TextFile, line: int | None, name: str, quantity: str) -> str | None:
+    """The unit of times or rotations in a column name; None if there is none.
+
+    Raises
+    ------
+    RecordFileError
+        If anything else is in brackets or after a slash.
+    """
+    unit = _unit_in_name(name, quantity)
+    if unit is None and re.search(r"[(\[/]", name):
+        raise _no_unit(file, line, name, quantity)
+    return unit
+
+
+def _no_unit(file: TextFile, line: int | None, name: str, quantity: str) -> RecordFileError:
+    return file.error(line, f"the column {name}", f"one of the units {', '.join(UNITS[quantity])}")
 
 
 def _uniform_step(file: TextFile, first: int, times: NDArray[np.float64]) -> float:
@@ -314,7 +398,7 @@ def _chosen(file: TextFile, line: int | None, names: list[str], columns: list[in
     plain = component.strip().lower()
     whole = [column for column, name in zip(columns, names, strict=True) if name.lower() == plain]
     parts = [
-        column for column, name in zip(columns, names, strict=True) if re.split(r"[\s_(\[]", name.lower())[0] == plain
+        column for column, name in zip(columns, names, strict=True) if re.split(r"[\s_(\[/]", name.lower())[0] == plain
     ]
     for found in (whole, parts):
         if len(found) == 1:
@@ -322,10 +406,10 @@ def _chosen(file: TextFile, line: int | None, names: list[str], columns: list[in
     raise file.error(line, f"components {', '.join(names)}", f"component {component}")
 
 
-def _unit_in_name(name: str) -> str | None:
-    """The unit in a column name, in brackets or after the last blank or underscore."""
-    bracketed = re.search(r"[(\[]([^()\[\]]*)[)\]]", name)
-    if bracketed:
-        return parse_unit(bracketed[1])
-    parts = re.split(r"[\s_,]+", name.strip())[1:][-MAX_UNIT_PARTS:]
-    return next((unit for k in range(len(parts)) if (unit := parse_unit("".join(parts[k:])))), None)
+def _unit_in_name(name: str, quantity: str = "m/s2") -> str | None:
+    """The unit of a quantity in a column name: in brackets, or after a blank, an underscore or a slash."""
+    texts = re.findall(r"[(\[]([^()\[\]]*)[)\]]", name)
+    if not texts:
+        parts = re.split(r"[\s_,]+", name.strip())[-MAX_UNIT_PARTS:]
+        texts = [*("".join(parts[k:]) for k in range(len(parts))), name.partition("/")[2]]
+    return next((unit for text in texts if (unit := unit_name(text.strip(" ."), quantity))), None)

@@ -46,7 +46,7 @@ are often off by a few. A larger one is a damaged file."""
 
 @dataclass(frozen=True)
 class TextFile:
-    """A text file in UTF-8, with or without a byte order mark, or in Latin-1.
+    """A text file in UTF-8, with or without a byte order mark, in UTF-16 with it, or in Latin-1.
 
     Lines are numbered from 1 in messages, from 0 in arguments. Rows are read in chunks of `CHUNK` bytes, as the lines
     of a whole file take twenty times its memory; `stop` is checked before each.
@@ -55,6 +55,14 @@ class TextFile:
     name: str
     content: bytes
     stop: StopFlag | None = None
+
+    def __post_init__(self) -> None:
+        """Convert UTF-16 to UTF-8, as numbers are read from bytes."""
+        if self.content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            try:
+                object.__setattr__(self, "content", self.content.decode("utf-16").encode())
+            except UnicodeDecodeError as error:
+                raise self.error(None, f"UTF-16 with {error.reason}", "text") from None
 
     @cached_property
     def head(self) -> list[str]:
