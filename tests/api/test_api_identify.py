@@ -24,9 +24,9 @@ def trace():
     return {"time": (np.arange(noisy.size) / 60).tolist(), "rotation": noisy.tolist()}
 
 
-def as_csv(trace, factor=1.0):
+def as_csv(trace, factor=1.0, header="time,rotation"):
     rows = zip(trace["time"], trace["rotation"], strict=True)
-    return "time,rotation\n" + "".join(f"{time!r},{factor * rotation!r}\n" for time, rotation in rows)
+    return f"{header}\n" + "".join(f"{time!r},{factor * rotation!r}\n" for time, rotation in rows)
 
 
 def test_the_block_is_that_of_a_direct_call(client, trace):
@@ -42,6 +42,17 @@ def test_the_block_is_that_of_a_direct_call(client, trace):
     degrees = client.post(URL + "?degrees=true&confidence=0.9", content=as_csv(trace, 180 / math.pi), headers=CSV)
     (row,) = csv.DictReader(io.StringIO(degrees.text))
     assert float(row["alpha"]) == pytest.approx(answer["alpha"][0], rel=1e-6)  # of the fit
+
+
+def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
+    body = as_csv(trace, 180 / math.pi, "time [s],rotation [deg]")
+    expected = client.post(URL, json=trace).json()["alpha"]
+    for query in ("", "?degrees=true"):
+        (row,) = csv.DictReader(io.StringIO(client.post(URL + query, content=body, headers=CSV).text))
+        assert float(row["alpha"]) == pytest.approx(expected[0], rel=1e-6)
+    assert_problem(client.post(URL + "?degrees=false", content=body, headers=CSV), 422)
+    radians = as_csv(trace, 1.0, "time [s],rotation [rad]")
+    assert_problem(client.post(URL + "?degrees=true", content=radians, headers=CSV), 422)
 
 
 @pytest.mark.parametrize(

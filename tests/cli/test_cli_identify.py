@@ -33,6 +33,25 @@ def test_degrees(file):
     assert "degrees" in refused("identify", str(file))
 
 
+def test_units_of_the_header(file):
+    time, rotation = trace()
+    columns = np.column_stack([1000.0 * time, np.degrees(rotation)])
+    np.savetxt(file, columns, delimiter=",", header="time [ms],rotation [deg]", comments="")
+    for options in ([], ["--degrees"]):
+        found = json.loads(run("identify", str(file), "--format=json", *options))
+        assert found["alpha"] == pytest.approx([0.25], rel=1e-3)
+        assert found["frequency_parameter"] == pytest.approx([2.5], rel=1e-2)
+    file.write_text(file.read_text().replace("deg", "rad", 1))
+    assert "rotations in deg" in refused("identify", str(file), "--degrees")
+
+
+def test_confidence(file):
+    expected = identify_free_rocking(*trace(), confidence=0.6)["alpha_upper"].item()
+    found = json.loads(run("identify", str(file), "--format=json", "--confidence", "0.6"))
+    assert found["alpha_upper"] == pytest.approx([expected], rel=1e-6)
+    assert "--confidence" in refused("identify", str(file), "--confidence", "1")
+
+
 def test_errors_name_the_file(file):
     assert "No such file" in refused("identify", str(file.with_name("none.csv")))
     file.write_text("1\n2\n3\n")

@@ -142,7 +142,8 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     Path("hammer.csv").write_text(hammer[1])
     trace: dict[str, Any] = {}
     exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/identify.md").read_text(), re.DOTALL)[0], trace)
-    np.savetxt("trace.csv", np.column_stack([trace["time"], np.degrees(trace["rotation"])]), delimiter=",")
+    rows = np.column_stack([1000.0 * trace["time"], np.degrees(trace["rotation"])])
+    np.savetxt("trace.csv", rows, delimiter=",", header="time [ms],rotation [deg]", comments="")
     exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/statue.md").read_text(), re.DOTALL)[0], {})
     pages = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md"))]
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]

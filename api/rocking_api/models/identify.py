@@ -24,7 +24,9 @@ class IdentifyParams(Params):
         description="1 for a body with equal edges, 2 for one with a right and a left edge [-]",
         json_schema_extra={"minimum": 1, "maximum": 2},
     )
-    degrees: bool = Field(False, description="the rotations are in degrees, not in radians")
+    degrees: bool = Field(
+        False, description="the rotations are in degrees, not in radians, where the header of CSV states no unit"
+    )
     confidence: float = Field(
         0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
     )

@@ -9,8 +9,8 @@ import numpy as np
 from fastapi import APIRouter, Request, Response
 from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError, finite
-from rocking._excitation.records.readers.columns import read_samples
+from rocking._base.errors import finite
+from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.body import body_form
@@ -67,25 +67,26 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
 async def post_identify(request: Request, service: ServiceDep) -> Response:
     """Restitution, slenderness angle and frequency parameter with intervals, as `rocking.identify_free_rocking`.
 
-    The body is JSON, or CSV with a column of times and one of rotations; the response has the same format, or that of
-    `format` or `Accept`. CSV has a row for each edge.
+    The body is JSON, or CSV with a column of times and one of rotations, in the units of its header or in s and rad.
+    The response has the same format, or that of `format` or `Accept`. CSV has a row for each edge.
     """
     given = body_form(request, _FORMS)
     params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
-    time, rotation = await service.run_parser(lambda stop: _read(body, stop), request, large=True)
+    time, rotation = await service.run_parser(lambda stop: _read(params, body, stop), request, large=True)
     return await service.run_heavy(
         params, lambda stop: _identified(params, request, time, rotation, form, stop), request
     )
 
 
-def _read(body: Trace | bytes, stop: StopFlag) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _read(
+    params: IdentifyParams, body: Trace | bytes, stop: StopFlag
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times [s] and rotations [rad]."""
     if isinstance(body, Trace):
-        return np.array(body.time), np.array(body.rotation)
-    _, time, rotation = read_samples(TextFile("trace", body, stop), MAX_SAMPLES)
-    if time is None:
-        raise InvalidArgumentError("body", "one column", "a column of times and one of rotations")
-    return time, rotation
+        return np.array(body.time), (math.pi / 180.0 if params.degrees else 1.0) * np.array(body.rotation)
+    stated = params.degrees if "degrees" in params.model_fields_set else None
+    return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated)
 
 
 def _identified(
@@ -99,8 +100,7 @@ def _identified(
     # scipy.stats takes longer to import than the service to start
     from rocking._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
 
-    factor = math.pi / 180.0 if params.degrees else 1.0
-    found = identify_free_rocking(time, factor * rotation, edges=params.edges, confidence=params.confidence, stop=stop)
+    found = identify_free_rocking(time, rotation, edges=params.edges, confidence=params.confidence, stop=stop)
     edges = {name: found[name].values.tolist() for name in EDGE_COLUMNS}
     if form == "csv":
         return csv_response(edges, "identified")
