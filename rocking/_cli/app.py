@@ -150,6 +150,7 @@ def history(
 @app.command()
 @with_options
 def spectrum(
+    context: typer.Context,
     block: SpectrumOptions,
     output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
@@ -160,13 +161,14 @@ def spectrum(
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
-        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max)
+        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
         printing.spectrum(params, window, points, printing.output_format(output, block))
 
 
 @app.command()
 @with_options
 def boundary(
+    context: typer.Context,
     block: WindowOptions,
     output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.2,
@@ -176,7 +178,7 @@ def boundary(
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
+        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
         printing.boundary(params, window, printing.output_format(output, block))
 
 

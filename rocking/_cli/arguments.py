@@ -134,7 +134,9 @@ def read_params(options: ProblemOptions) -> Params:
     return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "period"))
 
 
-def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
+def read_spectrum(
+    options: SpectrumOptions, low: float, high: float, context: typer.Context
+) -> tuple[Params, tuple[float, float]]:
     """A block under pulses of one amplitude, at the lowest frequency ratio, and the window of frequency ratios.
 
     Raises
@@ -151,11 +153,13 @@ def read_spectrum(options: SpectrumOptions, low: float, high: float) -> tuple[Pa
         return Params(read_pulse(options.pulse), options.slenderness, window[0], eta, angle or None), window
     _refuse_groups(options, ("slenderness", "alpha"))
     block = read_block(options)
-    window = _window(options, block, low, high)
+    window = _window(options, block, low, high, context)
     return _of_problem(options, block, _given(options, "peak_acceleration"), _period(block, window[0])), window
 
 
-def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Params, tuple[float, float]]:
+def read_boundary(
+    options: WindowOptions, low: float, high: float, context: typer.Context
+) -> tuple[Params, tuple[float, float]]:
     """A block without amplitude, and the window of frequency ratios.
 
     Raises
@@ -169,7 +173,7 @@ def read_boundary(options: WindowOptions, low: float, high: float) -> tuple[Para
         return Params(read_pulse(options.pulse), 1.0, window[0], read_eta(options.restitution), angle or None), window
     _refuse_groups(options, ("alpha",))
     block = read_block(options)
-    window = _window(options, block, low, high)
+    window = _window(options, block, low, high, context)
     return _of_problem(options, block, block.uplift_acceleration, _period(block, window[0])), window
 
 
@@ -280,8 +284,15 @@ def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | 
     return Params(pulse, **groups, problem=problem)
 
 
-def _window(options: WindowOptions, block: Block, low: float, high: float) -> tuple[float, float]:
+def _window(
+    options: WindowOptions, block: Block, low: float, high: float, context: typer.Context
+) -> tuple[float, float]:
     """Frequency ratios of the periods, by default as for groups."""
+    for name, ratio, period in (("min", low, "period_max"), ("max", high, "period_min")):  # two options for one end
+        source = context.get_parameter_source(f"frequency_ratio_{name}")
+        if getattr(options, period) is not None and source is not None and source.name == "COMMANDLINE":
+            option = f"--{period.replace('_', '-')}"
+            raise InvalidArgumentError(f"frequency_ratio_{name}", ratio, f"either this or {option}")
     shortest = None if options.period_min is None else _positive(options, "period_min")
     longest = None if options.period_max is None else _positive(options, "period_max")
     if shortest is not None and longest is not None:

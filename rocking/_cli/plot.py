@@ -111,6 +111,7 @@ def record(
 @plot.command()
 @with_options
 def spectrum(
+    context: typer.Context,
     block: SpectrumOptions,
     picture: PictureOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
@@ -120,7 +121,7 @@ def spectrum(
     from rocking._cli import arguments
 
     with _picture(picture) as draw:
-        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max)
+        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
 
         def panel(pictures: Any, figure: Any) -> None:
             ax = pictures.spectrum(_spectrum(params, window), figure.add_subplot(), label="survives")
@@ -132,6 +133,7 @@ def spectrum(
 @plot.command()
 @with_options
 def boundary(
+    context: typer.Context,
     block: WindowOptions,
     picture: PictureOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.2,
@@ -141,13 +143,14 @@ def boundary(
     from rocking._cli import arguments
 
     with _picture(picture) as draw:
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
+        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
         draw(lambda pictures, figure: pictures.boundary(_boundary(params, window), figure.add_subplot()).legend())
 
 
 @plot.command("map")
 @with_options
 def control_map(
+    context: typer.Context,
     block: WindowOptions,
     picture: PictureOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
@@ -157,7 +160,7 @@ def control_map(
     from rocking._cli import arguments
 
     with _picture(picture) as draw:
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max)
+        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
         draw(lambda pictures, figure: pictures.control_map(_map(params, window), figure.add_subplot()))
 
 

@@ -530,6 +530,19 @@ def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
     assert "triangle.csv, line 2: one" in damaged
 
 
+TWO_ENDS = [
+    [*command.split(), *UNITS[:count], "--period-max", "0.8s", "--frequency-ratio-min", "0.5"]
+    for command, count in (
+        ("spectrum", 8),
+        ("boundary", 6),
+        ("plot spectrum", 8),
+        ("plot boundary", 6),
+        ("plot map", 6),
+    )
+]
+"""Commands with two options for one end of a window, the second with its default in some."""
+
+
 @pytest.mark.parametrize(
     ("arguments", "option", "allowed"),
     [
@@ -551,6 +564,9 @@ def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
          "--points", "[2,"),
         (["boundary", "--pulse", "sine", "--restitution", "0.85", "--frequency-ratio-max", "0.1"],
          "--frequency-ratio-max", "(0.2, 1e+09]"),
+        *((command, "--frequency-ratio-min", "either this or --period-max") for command in TWO_ENDS),
+        ([*TWO_ENDS[1][:-4], "--period-min", "0.4s", "--frequency-ratio-max", "12"],
+         "--frequency-ratio-max", "either this or --period-min"),
         (["serve", "--port", "99999"], "--port", "65535"),
         (["serve", "--results", ""], "--results", "the name of a folder"),
         (["serve", "--results", "nowhere"], "--results", "a folder that exists"),
