@@ -10,6 +10,10 @@ HOST ?= 127.0.0.1
 PORT ?= 8000
 RESULTS ?= results
 
+# A blank separates prerequisites unless it is escaped.
+EMPTY :=
+MANIFEST = $(subst $(EMPTY) ,\ ,$(RESULTS))/manifest.json
+
 # The lock is resolved for Python 3.11; a newer version is used only if there is no 3.11.
 PYTHON ?= $(shell for p in python3.11 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
@@ -25,7 +29,7 @@ help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 18
 
 reproduce: .venv/project ## make data sets, figures and claims of the paper in results/ (CONFIG=FILE: another configuration)
-	$(RUN) $(if $(CONFIG),--configfile $(CONFIG))
+	$(RUN) $(if $(CONFIG),--configfile '$(CONFIG)')
 
 # Data sets of all pulses lie in folders of their own: `make serve RESULTS=atlas-small/results`.
 atlas-small atlas: .venv/project
@@ -35,10 +39,10 @@ atlas-small: ## make data sets of all nine pulses in atlas-small/results, ten mi
 atlas: ## the same on a fine grid, 27 restitutions and 10 angles, in atlas/results, some hours; it may be interrupted
 
 verify: .venv/project ## compare every file in results/ with the manifest and list differences (RESULTS=: others; AGAINST=: other manifest)
-	python -m workflow.verify $(dir $(RESULTS)) $(if $(AGAINST),--against $(AGAINST))
+	python -m workflow.verify "$$(dirname '$(RESULTS)')" $(if $(AGAINST),--against '$(AGAINST)')
 
-deposit: .venv/project | $(RESULTS)/manifest.json ## archive the data sets for a data repository in build/rocking-data.zip (RESULTS=: others)
-	python -m workflow.deposit $(dir $(RESULTS))
+deposit: .venv/project | $(MANIFEST) ## archive the data sets for a data repository in build/rocking-data.zip (RESULTS=: others)
+	python -m workflow.deposit "$$(dirname '$(RESULTS)')"
 
 test: .venv/project browser ## run format, lint and type checks and all tests, including a small run of the workflow
 	ruff format --check .
@@ -49,15 +53,15 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 browser: .venv/project ## fetch Chromium for the tests of the web page if there is none (ROCKING_NO_BROWSER=1: skip them)
 	@test -n '$(ROCKING_NO_BROWSER)' || { python -m tests.api.explorer.chromium && python -m tests.api.explorer.axe; }
 
-serve: .venv/project | $(RESULTS)/manifest.json ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=, RESULTS=)
-	rocking serve --host $(HOST) --port $(PORT) --results $(RESULTS)
+serve: .venv/project | $(MANIFEST) ## start the HTTP service over results/, which is made first if missing (HOST=, PORT=, RESULTS=)
+	rocking serve --host $(HOST) --port $(PORT) --results '$(RESULTS)'
 
 docs: .venv/project | results/manifest.json ## build the guide in build/docs; its examples read results/, which is made first if missing (GUIDE_URL=: address of the site)
 	GUIDE_URL=$(GUIDE_URL) sphinx-build -W --keep-going -q -b html docs build/docs
 	@echo 'open build/docs/index.html, or make serve and http://$(HOST):$(PORT)/guide/'
 
 bench: .venv/project ## run the benchmarks: run time, error, interpolation, service, ablations; about 13 minutes
-	$(RUN) $(if $(CONFIG),--configfile $(CONFIG) --) bench
+	$(RUN) $(if $(CONFIG),--configfile '$(CONFIG)' --) bench
 
 stress: .venv/project ## compare 3,800 hard cases with 192-bit references; one to two minutes
 	python -m stress

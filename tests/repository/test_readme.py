@@ -84,7 +84,7 @@ def test_every_command_has_a_test() -> None:
         ("environment", ":"),
         ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
         ("test", "pytest"),
-        ("serve", "rocking serve --host 127.0.0.1 --port 8000 --results results"),
+        ("serve", "rocking serve --host 127.0.0.1 --port 8000 --results 'results'"),
     ],
 )
 def test_make_targets_of_the_readme(target: str, program: str) -> None:
@@ -97,6 +97,17 @@ def test_a_folder_without_data_sets_is_not_served() -> None:
     done = subprocess.run(["make", "serve", "RESULTS=nowhere"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "RESULTS=nowhere is not allowed" in done.stderr
+
+
+def test_paths_with_blanks_are_one_argument(tmp_path: Path) -> None:
+    results = tmp_path / "two words" / "results"
+    results.mkdir(parents=True)
+    (results / "manifest.json").touch()
+    assert shlex.split(recipe("serve", f"RESULTS={results}"))[-1] == str(results)
+    for target in ("verify", "deposit"):
+        assert shlex.split(recipe(target, f"RESULTS={results}"))[-1] == f"$(dirname '{results}')"
+    for target in ("reproduce", "bench"):
+        assert "two words.yaml" in shlex.split(recipe(target, "CONFIG=two words.yaml"))
 
 
 def test_readme_is_short() -> None:
