@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking._datasets.cube import read_dataset
+from rocking._datasets.cube import read_dataset, write_dataset
 from tests.api.conftest import assert_problem, client_of
 
 NAME = "spectra/sine/eta-0.85"
@@ -43,9 +43,8 @@ def test_csv_has_a_row_for_each_node(client, expected):
     ("params", "name"),
     [
         ({"slenderness_min": 0.6, "slenderness_max": 0.5}, "slenderness_max"),
-        ({"slenderness_min": 0.501, "slenderness_max": 0.502}, "slenderness"),
-        ({"alpha_deg_min": 10.0}, "alpha"),
-        ({"frequency_ratio_min": "nan"}, "frequency_ratio_max"),
+        ({"frequency_ratio_min": "nan"}, "frequency_ratio_min"),
+        ({"alpha_deg_max": "nan"}, "alpha_deg_max"),
         ({"variables": "height"}, "variables"),
         ({"format": "json"}, "format"),
         ({"colour": 1}, "colour"),
@@ -53,6 +52,30 @@ def test_csv_has_a_row_for_each_node(client, expected):
 )
 def test_other_requests_are_explained(client, params, name):
     assert_problem(client.get(URL, params=params), 422, name)
+
+
+@pytest.mark.parametrize(
+    ("params", "name", "value", "allowed"),
+    [
+        ({"alpha_deg_min": 30.5}, "alpha_deg_min", 30.5, "a range with nodes; they span 0 to 30 deg"),
+        ({"alpha_deg_max": -1}, "alpha_deg_max", -1.0, "a range with nodes; they span 0 to 30 deg"),
+        ({"alpha_deg_min": 12, "alpha_deg_max": 7}, "alpha_deg_max", 7.0, "at least alpha_deg_min, 12"),
+        ({"slenderness_min": "inf"}, "slenderness_min", "inf", "a range with nodes; they span 0.05 to 0.95"),
+        ({"slenderness_min": 0.501, "slenderness_max": 0.502}, "slenderness_min", 0.501,
+         "a range with nodes up to slenderness_max, 0.502; they span 0.05 to 0.95"),
+    ],
+)  # fmt: skip
+def test_a_range_without_nodes_is_named_by_its_parameter_in_its_unit(own_results, params, name, value, allowed):
+    path = own_results / f"{NAME}.nc"
+    cube = read_dataset(path)
+    parts = [cube.assign_coords(alpha=[np.radians(degrees)]) for degrees in (0.0, 10.0, 30.0)]
+    path.unlink()
+    write_dataset(xr.concat(parts, "alpha", data_vars="minimal"), path)
+    with client_of(own_results) as client:
+        problem = assert_problem(client.get(URL, params=params), 422, name)
+        part = client.get(URL, params=RANGES | {"alpha_deg_min": 30, "format": "csv"}).text
+    assert (problem["value"], problem["allowed"]) == (value, allowed)
+    assert part.count(f"\n{np.radians(30.0)},") == part.count("\n") - 1 > 0
 
 
 def test_the_format_is_one_that_is_offered(client):

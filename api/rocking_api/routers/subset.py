@@ -31,6 +31,14 @@ FOUND: dict[int | str, dict[str, Any]] = {
 }
 
 
+AXES = {
+    "alpha": ("alpha_deg", 180.0 / math.pi, " deg"),
+    "slenderness": ("slenderness", 1.0, ""),
+    "frequency_ratio": ("frequency_ratio", 1.0, ""),
+}
+"""Of each axis the name of its parameters without `_min` and `_max`, their value per that of the axis, their unit."""
+
+
 class SubsetParams(Params):
     """Ranges of the axes, both ends included; an absent end is that of the cube."""
 
@@ -44,7 +52,7 @@ class SubsetParams(Params):
     format: FileFormat = None
 
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Smallest and largest value of each axis in its own unit.
+        """Smallest and largest value of each axis in the unit of the parameters.
 
         Raises
         ------
@@ -52,12 +60,15 @@ class SubsetParams(Params):
             If the smallest is above the largest, or not a number.
         """
         found = {}
-        for axis, name in zip(DIMENSIONS, ("alpha_deg", "slenderness", "frequency_ratio"), strict=True):
-            low, high = (getattr(self, f"{name}_{end}") for end in ("min", "max"))
-            factor = math.pi / 180.0 if axis == "alpha" else 1.0
-            low, high = -math.inf if low is None else low * factor, math.inf if high is None else high * factor
-            if not low <= high:
-                raise InvalidArgumentError(f"{name}_max", high / factor, f"at least {name}_min, {low / factor:g}")
+        for axis, (name, *_) in AXES.items():
+            ends = {f"{name}_min": -math.inf, f"{name}_max": math.inf}
+            ends |= {end: given for end in ends if (given := getattr(self, end)) is not None}
+            for end, value in ends.items():
+                if math.isnan(value):
+                    raise InvalidArgumentError(end, value, "a number")
+            low, high = ends.values()
+            if low > high:
+                raise InvalidArgumentError(f"{name}_max", high, f"at least {name}_min, {low:g}")
             found[axis] = low, high
         return found
 
@@ -84,14 +95,16 @@ def _subset(
             raise InvalidArgumentError("variables", variable, f"one of {', '.join(map(str, cube.data_vars))}")
     part = cube[wanted]
     for axis, (low, high) in ranges.items():
-        # the ends of a range in degrees are rounded
-        inside = (part[axis] >= low - 1e-12 * abs(low)) & (part[axis] <= high + 1e-12 * abs(high))
-        part = part.isel({axis: np.flatnonzero(inside.values)})
-        if not part.sizes[axis]:
-            values = cube[axis].values
-            raise InvalidArgumentError(
-                axis, f"{low:g} to {high:g}", f"a range with nodes; they span {values[0]:g} to {values[-1]:g}"
-            )
+        name, factor, unit = AXES[axis]
+        nodes = cube[axis].values * factor
+        # nodes in degrees are rounded
+        inside = (nodes >= low - 1e-12 * abs(low)) & (nodes <= high + 1e-12 * abs(high))
+        if not inside.any():
+            end, value = ("max", high) if high < nodes[0] else ("min", low)
+            between = f" up to {name}_max, {high:g}{unit}" if nodes[0] <= high < nodes[-1] else ""
+            allowed = f"a range with nodes{between}; they span {nodes[0]:g} to {nodes[-1]:g}{unit}"
+            raise InvalidArgumentError(f"{name}_{end}", value, allowed)
+        part = part.isel({axis: np.flatnonzero(inside)})
     points = math.prod(part.sizes.values())
     if points > service.settings.max_points:
         raise TooLargeError("points", points, f"at most {service.settings.max_points}")
