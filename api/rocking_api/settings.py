@@ -6,14 +6,23 @@ import os
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 
 def _nonempty(folder: Any) -> Any:
     if folder == "":  # Path("") is the current folder, which must not be published by accident
         raise ValueError("the name of a folder")
     return folder
+
+
+def _origins(given: Any) -> Any:
+    if not isinstance(given, str):
+        return given
+    try:
+        return TypeAdapter(tuple[str, ...]).validate_json(given)
+    except ValidationError:
+        raise ValueError('a JSON list of origins, such as ["https://example.org"]') from None
 
 
 def _user_cache() -> Path:
@@ -57,4 +66,7 @@ class Settings(BaseSettings):
     )
     stop_seconds: int = Field(default=30, ge=1, description="time for running requests at shutdown [s]")
     access_log: bool = Field(default=True, description="one line of JSON for each request")
-    cors_origins: tuple[str, ...] = Field(default=(), description="web origins that may read the responses")
+    # pydantic-settings would report text that is no JSON by an error without its value
+    cors_origins: Annotated[tuple[str, ...], NoDecode, BeforeValidator(_origins)] = Field(
+        default=(), description="web origins that may read the responses"
+    )

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 import rocking_api
+import typer
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
+from rocking_api.command import main
 from rocking_api.execution.kernels import Kernels
 from rocking_api.settings import Settings
 
@@ -236,6 +238,22 @@ def test_an_empty_name_of_the_results_is_refused(monkeypatch):
         Settings()
 
 
+@pytest.mark.parametrize("value", ["https://a.org", "[1]", '"https://a.org"', ""])
+def test_origins_that_are_no_list_are_refused_in_one_line(monkeypatch, capsys, value):
+    monkeypatch.setenv("ROCKING_CORS_ORIGINS", value)
+    with pytest.raises(typer.Exit) as caught:
+        main(None, "127.0.0.1", 0)
+    assert caught.value.exit_code == 2
+    allowed = 'a JSON list of origins, such as ["https://example.org"]'
+    assert capsys.readouterr().err == f"Error: ROCKING_CORS_ORIGINS = {value!r} is not allowed; allowed: {allowed}\n"
+
+
+@pytest.mark.parametrize("path", ["/health", "/ready"])
+def test_probes_may_ask_for_the_head_only(client, path):
+    head, whole = client.head(path), client.get(path)
+    assert (head.status_code, head.headers["cache-control"]) == (whole.status_code, "no-store")
+
+
 def test_unknown_route_is_a_problem(client):
     assert_problem(client.get("/v2/response"), 404)
 
@@ -273,4 +291,6 @@ def test_other_origins_are_allowed_only_by_a_setting(results, client):
 def test_settings_come_from_the_environment(monkeypatch, tmp_path):
     monkeypatch.setenv("ROCKING_RESULTS", str(tmp_path))
     monkeypatch.setenv("ROCKING_MAX_POINTS", "7")
-    assert (Settings().results, Settings().max_points) == (tmp_path, 7)
+    monkeypatch.setenv("ROCKING_CORS_ORIGINS", '["https://a.org"]')
+    found = Settings()
+    assert (found.results, found.max_points, found.cors_origins) == (tmp_path, 7, ("https://a.org",))

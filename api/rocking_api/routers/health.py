@@ -14,6 +14,7 @@ from rocking_api.service import Service, ServiceDep
 router = APIRouter(tags=["health"], route_class=ParamsRoute)
 
 
+@router.head("/health", include_in_schema=False)
 @router.get("/health", summary="State and versions", response_model=Health)
 async def get_health(request: Request, service: ServiceDep) -> Response:
     """Always 200 while the process answers, whatever the state of the data sets: for what restarts it.
@@ -24,6 +25,7 @@ async def get_health(request: Request, service: ServiceDep) -> Response:
     return await _health(request, service)
 
 
+@router.head("/ready", include_in_schema=False)
 @router.get("/ready", summary="Whether all of it can be served", response_model=Health)
 async def get_ready(request: Request, service: ServiceDep) -> Response:
     """503 while the solver is loaded, or while a data set that exists cannot be used: for what distributes requests.
