@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from http import HTTPStatus
+from http import HTTPMethod, HTTPStatus
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException
+from starlette.routing import BaseRoute, Match, Mount
 
 from rocking._base.errors import DatasetError, InvalidArgumentError, SeveralArgumentsError
 from rocking._datasets.catalogue import UnknownDatasetError
@@ -184,11 +185,19 @@ def refusal(text: str, parameter: str, value: Any, allowed: str) -> InvalidArgum
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     headers = error.headers
-    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        described = await request.app.state.service.run_io(request.app.openapi)
-        if methods := described["paths"].get(request.url.path):
-            headers = {"Allow": ", ".join(method.upper() for method in methods)}  # methods of all routes of the path
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and (methods := _methods(request)):
+        headers = {"Allow": ", ".join(methods)}
     return problem_response(error.status_code, str(error.detail), headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """The methods of all routes of a path, of which each knows its own only; none of a mounted folder."""
+
+    def match(route: BaseRoute, method: str) -> Match:
+        return route.matches({"type": "http", "path": request.scope["path"], "root_path": "", "method": method})[0]
+
+    routes = [one for one in request.app.routes if not isinstance(one, Mount) and match(one, "") is not Match.NONE]
+    return [method for method in HTTPMethod if any(match(one, method) is Match.FULL for one in routes)]
 
 
 def plain(value: Any) -> float | str | None:
