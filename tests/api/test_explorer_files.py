@@ -4,11 +4,12 @@ import gzip
 import hashlib
 import re
 from pathlib import Path
+from urllib.parse import urlencode
 
 import pytest
 import rocking_api
 from rocking_api.execution.executor import BusyError
-from rocking_api.routers.object_page import SHAPES, fields_of, page_of
+from rocking_api.routers.object_page import EXAMPLES, SHAPES, SITE, fields_of, page_of
 from rocking_api.routers.objects_page import DEFAULTS
 from rocking_api.routers.pages import PAGES, html
 
@@ -129,9 +130,13 @@ def test_no_style_or_script_inside_the_page(client):
 
 
 def test_files_are_revalidated(client):
-    assert client.get("/").headers["cache-control"] == "no-cache"
-    for path in ("/static/explorer/main.js", "/static/uplot/uPlot.iife.min.js"):
+    pages = [page.path for page in PAGES if page.path != "/guide/"]
+    asked = f"/object?{urlencode(SITE | EXAMPLES['rectangle'])}"
+    described = "/v1/datasets/spectra/sine/eta-0.85"
+    answers = ["/v1/datasets", described, f"{described}.zarr/.zgroup", "/v1/suites", "/v1/suites/demonstration"]
+    for path in (*pages, asked, "/objects?sample=1", *answers, "/static/explorer/main.js"):
         first = client.get(path)
-        assert first.headers["cache-control"] == "no-cache"
-    again = client.get(path, headers={"if-none-match": first.headers["etag"]})
-    assert (again.status_code, again.content) == (304, b"")
+        assert (first.status_code, first.headers["cache-control"]) == (200, "no-cache"), path
+        again = client.get(path, headers={"if-none-match": first.headers["etag"]})
+        assert (again.status_code, again.content, again.headers["cache-control"]) == (304, b"", "no-cache"), path
+    assert "etag" not in client.get("/health").headers

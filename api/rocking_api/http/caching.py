@@ -35,15 +35,21 @@ def not_modified(request: Request, sha256: str, control: str = REVALIDATE) -> Re
 def revalidated(request: Request, response: Response) -> Response:
     """The response with an ETag of its body, or 304 in its place.
 
-    It is unchanged if it has a Cache-Control header, is an error, or is streamed.
+    Without Cache-Control it may be stored for a short time. It is unchanged if it must not be stored, has an ETag, is
+    an error, or is streamed.
     """
     body = getattr(response, "body", None)
-    controlled = any(name == b"cache-control" for name, _ in response.raw_headers)
-    if body is None or response.status_code != 200 or controlled:
+    if body is None or response.status_code != 200:
+        return response
+    headers = dict(response.raw_headers)
+    control = headers.get(b"cache-control", SHORT.encode()).decode()
+    if control == "no-store" or b"etag" in headers:
         return response
     digest = hashlib.sha256(body).hexdigest()
-    unchanged = not_modified(request, digest, SHORT)
+    unchanged = not_modified(request, digest, control)
     if unchanged is None:
-        response.raw_headers += [(b"etag", f'"{digest}"'.encode()), (b"cache-control", SHORT.encode())]
+        response.raw_headers.append((b"etag", f'"{digest}"'.encode()))
+        if b"cache-control" not in headers:
+            response.raw_headers.append((b"cache-control", control.encode()))
         return response
     return unchanged

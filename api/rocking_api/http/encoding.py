@@ -6,6 +6,7 @@ netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and requ
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, Protocol
 
@@ -50,6 +51,8 @@ ROWS = 5_000
 
 _SOURCES = ["cube", "solver"]
 
+_WEIGHT = re.compile(r"0(\.[0-9]{0,3})?|1(\.0{0,3})?")  # RFC 9110, 12.4.2; another is ignored
+
 
 def negotiated_form(
     request: Request,
@@ -59,16 +62,38 @@ def negotiated_form(
 ) -> Form:
     """Format of the response.
 
-    As requested, else the first media type of the Accept header that is offered, else the default; without one the
-    first that is offered.
+    As requested, else the one that the Accept header prefers, of equal ones the first that it names; else the default,
+    which is the first that is offered unless stated. text/html means the default: browsers also name application/xml,
+    and must not get NRML.
     """
     if requested is not None:
         return requested
-    for part in request.headers.get("accept", "").split(","):
-        for form in offered:
-            if part.split(";")[0].strip() == MEDIA_TYPES[form]:
-                return form
-    return default or offered[0]
+    request.state.negotiated = True  # `ParamsRoute` adds the header Vary
+    default = default or offered[0]
+    quality = _accepted(request.headers.get("accept", ""))
+    named = list(quality)
+    if quality.get("text/html", 0.0) > 0.0:
+        named.insert(0, MEDIA_TYPES[default])
+        quality[named[0]] = quality["text/html"]
+        offered = [form for form in offered if form != "nrml"]
+
+    def rank(form: Form) -> tuple[float, bool, int]:
+        media = MEDIA_TYPES[form]
+        ranges = (media, media.partition("/")[0] + "/*", "*/*")  # the most specific holds (RFC 9110, 12.5.1)
+        q = next((quality[one] for one in ranges if one in quality), 0.0)
+        return q, media in quality, -named.index(media) if media in quality else 0
+
+    return max((default, *offered), key=rank)
+
+
+def _accepted(header: str) -> dict[str, float]:
+    """The quality of each media range of an Accept header, -1 if it is excluded (q=0)."""
+    found = {}
+    for part in header.lower().split(","):
+        media, *parameters = (text.strip() for text in part.split(";"))
+        weight = next((text[2:] for text in parameters if text.startswith("q=")), "")
+        found[media] = (float(weight) if _WEIGHT.fullmatch(weight) else 1.0) or -1.0
+    return found
 
 
 def json_response(answer: Answer, request: Request, headers: Mapping[str, str] | None = None) -> Response:

@@ -33,7 +33,7 @@ _OBJECT = TypeAdapter(dict[str, Any])
 class ParamsRoute(APIRoute):
     """Route of an endpoint whose arguments are those of the path and any of `params`, `request` and `service`.
 
-    `params` is a parameter model, read from the query. A response of a GET without Cache-Control gets an ETag and may
+    `params` is a parameter model, read from the query. A response of a GET gets an ETag, and without Cache-Control may
     be stored for a minute.
     """
 
@@ -51,7 +51,10 @@ class ParamsRoute(APIRoute):
                 arguments["service"] = request.app.state.service
             result = await endpoint(**arguments)
             response = json_response(result, request) if isinstance(result, Answer) else result
-            return revalidated(request, response) if shared else response
+            response = revalidated(request, response) if shared else response
+            if getattr(request.state, "negotiated", False):
+                response.headers.add_vary_header("Accept")
+            return response
 
         return handle
 

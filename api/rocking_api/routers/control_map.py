@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Annotated, Any
 
 import numpy as np
@@ -16,7 +15,6 @@ from rocking._model.checks import check_window
 from rocking._model.response import Response as Found
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
-from rocking_api.http.caching import not_modified
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
@@ -85,11 +83,7 @@ class MapResponse(Answer):
 )
 async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
-    answer = await _answer(params, request, service)
-    digest = hashlib.sha256(answer.body).hexdigest()
-    known = not_modified(request, digest)
-    response = answer if known is None else known
-    response.headers["ETag"] = f'"{digest}"'
+    response = await _answer(params, request, service)
     response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
     return response
 

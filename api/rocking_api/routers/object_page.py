@@ -21,6 +21,7 @@ from rocking._base.units import Scalar
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
 from rocking_api.dial import dial_of, worst_directions
+from rocking_api.http.caching import revalidated
 from rocking_api.http.parameters import query_parameters
 from rocking_api.mesh_reader import ENDINGS, MAX_MESH, can_read_meshes, read_mesh
 from rocking_api.routers.pages import POLICY, html
@@ -84,13 +85,13 @@ async def get_object_page(request: Request, service: ServiceDep) -> Response:
     asked = query_parameters(request)
     given = fields_of(asked)
     if given["shape"] == "mesh" or not _is_asked(asked):
-        return page_of(given)
+        return revalidated(request, page_of(given))
     try:
         site, one = await service.run_io(lambda: (site_of(given), _object(given)))
         found = await _assessed(one.planes_around, one.restitution, site, request, service)
     except InvalidArgumentError as error:
         return page_of(given, error=error)
-    return page_of(given, found=found, footprint=one.footprint)
+    return revalidated(request, page_of(given, found=found, footprint=one.footprint))
 
 
 @router.post("")

@@ -19,6 +19,7 @@ from rocking._assessment.tables import ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
 from rocking._numba.cancellation import StopFlag
+from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
 from rocking_api.routers.assess import MAX_BODY, check_table
@@ -40,10 +41,10 @@ router = APIRouter(prefix=PATH, include_in_schema=False)
 
 
 @router.get("")
-async def get_objects_page(sample: str | None = None) -> Response:
+async def get_objects_page(request: Request, sample: str | None = None) -> Response:
     """The page, empty or with the table of the guide."""
     table = "" if sample is None else (STATIC / "collection.csv").read_text("utf-8")
-    return _page(DEFAULTS | {"table": table})
+    return revalidated(request, _page(DEFAULTS | {"table": table}))
 
 
 @router.post("")

@@ -15,6 +15,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
+from rocking_api.http.caching import revalidated
 from rocking_api.http.files import without_range
 
 STATIC = Path(__file__).parents[1] / "static"
@@ -70,9 +71,9 @@ def html(template: str, title: str, path: str = "", **values: Any) -> str:
 
 
 def _add(page: Page) -> None:
-    async def get_page() -> HTMLResponse:
+    async def get_page(request: Request) -> Response:
         headers = {"Content-Security-Policy": page.policy, **_REVALIDATE}
-        return HTMLResponse(html(page.template, page.title, page.path), headers=headers)
+        return revalidated(request, HTMLResponse(html(page.template, page.title, page.path), headers=headers))
 
     router.add_api_route(page.path, get_page, methods=["GET"], summary=page.title)
 
@@ -91,13 +92,13 @@ def add_error_pages(app: FastAPI) -> None:
 def _with_page(handler: Callable[..., Any]) -> Callable[[Request, Exception], Awaitable[Response]]:
     async def handle(request: Request, error: Exception) -> Response:
         response: Response = await handler(request, error)
+        response.headers.add_vary_header("Accept")
         if "text/html" not in request.headers.get("accept", "") or response.status_code < 400:
             return response
         problem = json.loads(bytes(response.body))
         text = html("error.html", problem["title"], problem=problem, address=request.url.path)
         kept = {name: value for name, value in response.headers.items() if not name.startswith("content-")}
-        headers = kept | {"Content-Security-Policy": POLICY, "Vary": "Accept"}
-        return HTMLResponse(text, response.status_code, headers)
+        return HTMLResponse(text, response.status_code, kept | {"Content-Security-Policy": POLICY})
 
     return handle
 
