@@ -10,8 +10,8 @@ OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 PACKAGE = "http://schemas.openxmlformats.org/package/2006"
 
 
-def xlsx_bytes(rows: Sequence[Sequence[str | float]]) -> bytes:
-    """The file of one sheet with these cells, texts and numbers."""
+def xlsx_bytes(rows: Sequence[Sequence[str | float]], last: str = "") -> bytes:
+    """The file of one sheet with these cells, texts and numbers, and one more cell in a place such as XFD1048576."""
 
     def cell(value: str | float) -> str:
         if isinstance(value, str):
@@ -23,6 +23,7 @@ def xlsx_bytes(rows: Sequence[Sequence[str | float]]) -> bytes:
         return f'<Relationships xmlns="{PACKAGE}/relationships">{relationship}</Relationships>'
 
     cells = "".join(f"<row>{''.join(map(cell, row))}</row>" for row in rows)
+    cells += f'<row><c r="{last}"><v>1</v></c></row>' if last else ""
     parts = {
         "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types"/>',
         "_rels/.rels": link("officeDocument", "xl/workbook.xml"),

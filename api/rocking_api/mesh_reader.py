@@ -1,35 +1,23 @@
-"""Mesh files of clients, read in a process of their own with limits of time and memory.
-
-A file of a few bytes can ask for any number of triangles, and a parser in a thread cannot be stopped.
-"""
+"""Mesh files of clients, read by another process: `rocking_api.mesh_process`."""
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
-import subprocess
-import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path, PurePath
-from tempfile import TemporaryDirectory
+from pathlib import PurePath
 
 from rocking._assessment.objects import STEP, Plane
-from rocking._base.errors import InvalidArgumentError, one_of
+from rocking._base.errors import one_of
 from rocking._base.units import UNITS
 from rocking._model.body import PolygonProperties
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.errors import UnsupportedBodyError
-from rocking_api.mesh_process import MEMORY, SECONDS
+from rocking_api.limited_process import result_of
 
 MAX_MESH = 16 * 1024 * 1024
 """Largest file [bytes]: 330,000 triangles of a binary STL file, which take 5 s of processor time."""
 
 ENDINGS = (".stl", ".ply", ".obj", ".glb")
-
-_POLL = 0.1
-"""Time between two looks at the stop flag [s]."""
 
 
 @dataclass(frozen=True)
@@ -74,31 +62,6 @@ def read_mesh(raw: bytes, name: str, unit: str, stop: StopFlag) -> MeshShape:
         raise UnsupportedBodyError("mesh", ending or name, f"one of {', '.join(ENDINGS)}")
     if not can_read_meshes():
         raise UnsupportedBodyError("mesh", ending, 'dimensions: meshes need pip install "rocking[mesh]" on the service')
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / f"mesh{ending}"
-        path.write_bytes(raw)
-        code, output = _run([sys.executable, "-m", "rocking_api.mesh_process", str(path), unit, str(STEP)], stop)
-    if code:
-        limits = f"a mesh that is read within {SECONDS} s and {MEMORY // 1024**2} MiB"
-        raise InvalidArgumentError("mesh", name, limits)
-    found = json.loads(output)
-    if "allowed" in found:
-        raise InvalidArgumentError("mesh", name, found["allowed"])
+    found = result_of("rocking_api.mesh_process", raw, "mesh", name, stop, (unit, str(STEP)))
     planes = {float(angle): Plane.of(PolygonProperties(*values)) for angle, values in found["planes"].items()}
     return MeshShape(planes, [(x, y) for x, y in found["footprint"]], found["closed"])
-
-
-def _run(command: list[str], stop: StopFlag) -> tuple[int, bytes]:
-    """Exit code and output of a process, which ends with the flag."""
-    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    with subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
-    ) as process:
-        try:
-            while True:
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    output, _ = process.communicate(timeout=_POLL)
-                    return process.returncode, output
-                stop.check()
-        finally:
-            process.kill()

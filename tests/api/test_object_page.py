@@ -13,7 +13,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 import pytest
-from rocking_api import mesh_process, mesh_reader
+from rocking_api import limited_process, mesh_reader
 from rocking_api.dial import RADIUS, dial_of, worst_directions
 from rocking_api.routers import object_page
 
@@ -210,7 +210,7 @@ def test_meshes_of_other_formats_units_and_sizes_are_refused(client, slab, monke
 def test_health_answers_while_a_mesh_takes_long_and_its_process_ends_at_the_limit(client, monkeypatch):
     monkeypatch.setattr(client.app.state.service.parser, "_seconds", 1.0)
     command = ["python", "-c", "import time; time.sleep(60)"]
-    run = mesh_reader._run
+    run = limited_process._run
     ended = threading.Event()
 
     def slow(_, stop):
@@ -219,7 +219,7 @@ def test_health_answers_while_a_mesh_takes_long_and_its_process_ends_at_the_limi
         finally:
             ended.set()
 
-    monkeypatch.setattr(mesh_reader, "_run", slow)
+    monkeypatch.setattr(limited_process, "_run", slow)
     answers = []
     thread = threading.Thread(target=lambda: answers.append(posted(client, b"", "a.stl")))
     began = time.monotonic()
@@ -233,9 +233,9 @@ def test_health_answers_while_a_mesh_takes_long_and_its_process_ends_at_the_limi
 
 
 def test_a_process_that_exceeds_its_memory_or_fails_is_an_error_of_the_file(client, monkeypatch):
-    monkeypatch.setattr(mesh_reader, "_run", lambda *_: (-9, b""))
+    monkeypatch.setattr(limited_process, "_run", lambda *_: (-9, b""))
     problem = assert_problem(posted(client, b"", "a.stl"), 422, "mesh")
-    assert f"within {mesh_process.SECONDS} s" in problem["detail"]
+    assert f"within {limited_process.SECONDS} s" in problem["detail"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
@@ -243,7 +243,8 @@ def test_a_process_that_exceeds_its_memory_or_fails_is_an_error_of_the_file(clie
 def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path, limit):
     path = tmp_path / "slab.stl"
     slab.subdivide_loop(7).export(path)  # 196,608 triangles, of 50 bytes each
-    code = f"from rocking_api import mesh_process as m; m.{limit}; m.main({str(path)!r}, 'mm', '15')"
+    code = "from rocking_api import limited_process as m, mesh_process"
+    code += f"; m.{limit}; mesh_process.main({str(path)!r}, 'mm', '15')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
     assert b"planes" not in done.stdout
     assert done.returncode or b"allowed" in done.stdout

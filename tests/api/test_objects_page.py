@@ -2,9 +2,11 @@
 
 import io
 import re
+import sys
 import zipfile
 
 import pytest
+from rocking_api.routers import objects_page
 
 import rocking
 from rocking._assessment.columns import VERDICTS
@@ -88,6 +90,22 @@ def test_a_sheet_becomes_text_with_its_cells(client):
     text = client.post("/objects/text?name=a.xlsx", content=content).text
     assert text.splitlines() == ["object;width [cm];height [cm]", "vase;22;55.5", "jug;20;40.1250"]
     assert [one.height for one in objects_of_csv(text).objects] == [0.555, 0.40125]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
+def test_a_sheet_whose_cells_are_far_apart_ends_its_own_process_only(client):
+    """The reader allocates the rectangle between them: 2**34 cells, 550 GB, and aborts."""
+    content = xlsx_bytes([["object"]], last="XFD1048576")
+    problem = assert_problem(client.post("/objects/text?name=far.xlsx", content=content), 422, "table")
+    assert problem["value"] == "far.xlsx"
+    assert problem["allowed"] == "a table that is read within 20 s and 1024 MiB"
+    assert client.get("/health").status_code == 200
+
+
+def test_sheets_need_their_package(client, monkeypatch):
+    monkeypatch.setattr(objects_page, "find_spec", lambda _: None)
+    problem = assert_problem(client.post("/objects/text?name=a.xlsx", content=xlsx_bytes([["object"]])), 415, "table")
+    assert "rocking[sheets]" in problem["detail"]
 
 
 def test_objects_on_a_floor_feel_its_motion(client, found):

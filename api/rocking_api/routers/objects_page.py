@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from pathlib import PurePath
 from urllib.parse import parse_qs
 
@@ -17,11 +18,12 @@ from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
 from rocking._assessment.tables import ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError, plain_numbers
-from rocking._dimensional.table_reader import SHEETS, csv_of_sheet, text_of
+from rocking._dimensional.table_reader import SHEETS, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.limited_process import result_of
 from rocking_api.routers.assess import MAX_BODY, check_table
 from rocking_api.routers.object_page import SITE, address_of, site_of
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
@@ -80,23 +82,24 @@ async def post_csv(request: Request, service: ServiceDep) -> Response:
 async def post_text(request: Request, service: ServiceDep, name: str = "") -> Response:
     """The text of a file, of a sheet as CSV."""
     body = await service.read_body(request, MAX_BODY)
-    text = await service.run_parser(lambda _: _text(body, PurePath(name).suffix.lower()), request, large=True)
+    text = await service.run_parser(lambda stop: _text(body, name, stop), request, large=True)
     return PlainTextResponse(text)
 
 
-def _text(raw: bytes, ending: str) -> str:
+def _text(raw: bytes, name: str, stop: StopFlag) -> str:
+    ending = PurePath(name).suffix.lower()
     if ending not in SHEETS:
         return text_of(raw)
+    if find_spec("python_calamine") is None:
+        raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
     try:
         size = sum(one.file_size for one in zipfile.ZipFile(io.BytesIO(raw)).infolist())
     except zipfile.BadZipFile:
-        raise InvalidArgumentError("table", ending, "a sheet, which is a zip archive") from None
-    if size > MAX_SHEET:
+        raise InvalidArgumentError("table", name, "a sheet, which is a zip archive") from None
+    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the process
         raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
-    try:
-        return csv_of_sheet(raw, "table")
-    except ImportError as error:
-        raise UnsupportedBodyError("table", ending, f"CSV, because this service cannot read sheets: {error}") from None
+    text: str = result_of("rocking_api.sheet_process", raw, "table", name, stop)["text"]
+    return text
 
 
 async def _form(request: Request, service: Service) -> dict[str, str]:
