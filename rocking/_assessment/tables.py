@@ -11,7 +11,16 @@ from typing import Any
 from rocking._assessment.columns import INPUTS
 from rocking._assessment.objects import Object
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.table_reader import BadRow, Schema, Table, read_bytes, read_csv, read_file, text_of
+from rocking._dimensional.table_reader import (
+    BadRow,
+    Schema,
+    Table,
+    TooManyRowsError,
+    read_bytes,
+    read_csv,
+    read_file,
+    text_of,
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -53,12 +62,15 @@ def read_objects(source: str | PathLike[str]) -> ObjectTable:
     return _objects(read_file(source, SCHEMA))
 
 
-def objects_of_text(raw: bytes, *, json: bool) -> ObjectTable:
-    """Objects from the bytes of a text, JSON or CSV; the errors of `read_objects`."""
-    return objects_of_json(text_of(raw)) if json else objects_of_csv(text_of(raw))
+def objects_of_text(raw: bytes, *, json: bool, most: int | None = None) -> ObjectTable:
+    """Objects from the bytes of a text, JSON or CSV; the errors of `read_objects`.
+
+    Beyond `most` rows the table is refused by `TooManyRowsError`, before an object is made.
+    """
+    return objects_of_json(text_of(raw), most) if json else objects_of_csv(text_of(raw), most)
 
 
-def objects_of_json(text: str) -> ObjectTable:
+def objects_of_json(text: str, most: int | None = None) -> ObjectTable:
     """Objects from JSON: a list of objects with the names of the columns as keys; numbers are in SI units."""
     try:
         given = json.loads(text)
@@ -66,6 +78,8 @@ def objects_of_json(text: str) -> ObjectTable:
         raise InvalidArgumentError("objects", str(error), "JSON") from None
     if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
         raise InvalidArgumentError("objects", type(given).__name__, "a list of objects, one for each row")
+    if most is not None and len(given) > most:
+        raise TooManyRowsError("objects", len(given), f"at most {most}")
     known = {one.name for one in fields(Object)}
     found, bad = [], []
     for row, one in enumerate(given, start=1):
@@ -78,9 +92,9 @@ def objects_of_json(text: str) -> ObjectTable:
     return ObjectTable(found, bad)
 
 
-def objects_of_csv(text: str) -> ObjectTable:
+def objects_of_csv(text: str, most: int | None = None) -> ObjectTable:
     """Objects from text with separated columns; the errors of `read_objects`."""
-    return _objects(read_csv(text, SCHEMA))
+    return _objects(read_csv(text, SCHEMA, most))
 
 
 def _objects(table: Table[Object]) -> ObjectTable:

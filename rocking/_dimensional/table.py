@@ -83,9 +83,11 @@ class BlockTable:
             raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
 
 
-def read_table(text: str, pulse: str | AbstractPulse, restitution: float | str = "momentum") -> BlockTable:
-    """Read a table of blocks from text, as `read_blocks` does from a file."""
-    return _blocks(read_csv(text, _schema(pulse, {"restitution": restitution})))
+def read_table(
+    text: str, pulse: str | AbstractPulse, restitution: float | str = "momentum", *, most: int | None = None
+) -> BlockTable:
+    """Read a table of blocks from text, as `read_blocks` does from a file; of at most `most` blocks."""
+    return _blocks(read_csv(text, _schema(pulse, {"restitution": restitution}), most))
 
 
 def read_blocks(

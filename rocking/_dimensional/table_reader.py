@@ -15,7 +15,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import chain, islice
 from os import PathLike
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -46,12 +46,12 @@ TOTALS = {
     *("total", "totals", "sum", "mean", "average", "summe", "gesamt", "mittelwert"),
     *("totale", "somma", "somme", "suma"),
 }
-"""First words of rows that are no objects."""
+"""First cells of rows that are no objects."""
 
 EMPTY = ("", "-", "\u2013", "n/a", "?")
 """Cells without a value."""
 
-_UNIT = re.compile(r"[\[(]\s*([^\[\]()]*?)\s*[\])]\s*$|[,/]\s*([^\s,/]{1,8})\s*$|\bin\s+([a-zA-Z]{1,8})\s*$")
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/]\s*([^\s,/]{1,8})\s*$|\bin\s+([a-zA-Z]{1,8})\s*$")
 _GAP = r"[\s'\u2019]"
 _NUMBER = re.compile(
     r"\s*([+-]?[0-9][0-9.,'\u2019 \u00a0\u202f]*|[+-]?[.,][0-9]+)((?:(?<=[0-9.,])e[+-]?[0-9]+)?)\s*(.*?)\s*",
@@ -109,6 +109,10 @@ RESTITUTION = Column(
     "coefficient of restitution; by default from the angular momentum",
     ("coefficient of restitution", "eta", "stosszahl", "restituzione", "restitucion"),
 )
+
+
+class TooManyRowsError(InvalidArgumentError):
+    """A table has more rows than the caller takes; none of them was made an item."""
 
 
 @dataclass(frozen=True)
@@ -228,8 +232,14 @@ def text_of(raw: bytes) -> str:
         return raw.decode("cp1252", "replace")
 
 
-def read_csv(text: str, schema: Schema[Item]) -> Table[Item]:
-    """A table from text with separated columns; the errors of `read_file`, and a line that is not CSV."""
+def read_csv(text: str, schema: Schema[Item], most: int | None = None) -> Table[Item]:
+    """A table from text with separated columns; the errors of `read_file`, a line that is not CSV, those of `most`."""
+    delimiter = _delimiter(text, schema)
+    # where commas separate the columns, a single point is the decimal sign
+    return read_rows(_lines(text, delimiter, schema), schema, usual="." if delimiter == "," else "", most=most)
+
+
+def _delimiter(text: str, schema: Schema[Any]) -> str:
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(schema.argument, f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
     sizes = dict.fromkeys(DELIMITERS, 0)
@@ -239,8 +249,7 @@ def read_csv(text: str, schema: Schema[Item]) -> Table[Item]:
     delimiter = max(DELIMITERS, key=sizes.__getitem__)
     if not sizes[delimiter]:
         _header(list(islice(_lines(text, delimiter, schema), HEADER_ROWS)), schema)  # says what is missing
-    # where commas separate the columns, a single point is the decimal sign
-    return read_rows(list(_lines(text, delimiter, schema)), schema, usual="." if delimiter == "," else "")
+    return delimiter
 
 
 def _lines(text: str, delimiter: str, schema: Schema[Any]) -> Iterator[list[str]]:
@@ -274,6 +283,8 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
         frame = pd.read_excel(io.BytesIO(raw), header=None, dtype=object, engine="calamine")
     except ImportError as error:
         raise ImportError("sheets need the extra `sheets`: pip install 'rocking[sheets]'", name=error.name) from None
+    except MemoryError:
+        raise
     except Exception as error:  # noqa: BLE001  (the reader of sheets has its own errors)
         raise InvalidArgumentError(argument, str(error), "a sheet of a spreadsheet, .xlsx or .ods") from None
     return [list(map(_cell_text, row)) for row in frame.to_numpy().tolist()]
@@ -316,11 +327,15 @@ def _plain(text: str) -> str:
     return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff]+", " ", bare.replace("\u00df", "ss")).split())
 
 
+def _name_and_unit(text: str) -> tuple[str, str]:
+    """The parts of a header; "" without a unit."""
+    found = _UNIT.search(text)
+    return (text[: found.start()], next(filter(None, found.groups()), "").strip()) if found else (text, "")
+
+
 def _column(text: str, names: Mapping[str, Column], argument: str) -> tuple[Column, str] | None:
     """The column that a header names, and its unit."""
-    found = _UNIT.search(text.strip())
-    unit = next((part for part in found.groups() if part), "") if found else ""
-    for name, written in ((text, ""), (text[: found.start()] if found else text, unit)):
+    for name, written in ((text, ""), _name_and_unit(text)):
         one = names.get(_plain(name))
         if one is None:
             continue
@@ -361,10 +376,10 @@ def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
 
 def _joined(upper: str, lower: str) -> str:
     """The name of a column from two lines: the lower one with the unit of the upper, or the reverse."""
-    unit = _UNIT.search(upper)
+    _, unit = _name_and_unit(upper)
     if not lower.strip() or _is_unit(lower):
         return f"{upper} [{lower.strip('[]() ')}]" if lower.strip() else upper
-    return lower if unit is None or _UNIT.search(lower) else f"{lower} [{next(filter(None, unit.groups()))}]"
+    return lower if not unit or _name_and_unit(lower)[1] else f"{lower} [{unit}]"
 
 
 def _is_unit(text: str) -> bool:
@@ -396,13 +411,23 @@ def _with_units(
     return found, last + 1
 
 
-def read_rows(rows: Sequence[Sequence[str]], schema: Schema[Item], usual: str = "") -> Table[Item]:
+def read_rows(
+    rows: Iterable[Sequence[str]], schema: Schema[Item], usual: str = "", most: int | None = None
+) -> Table[Item]:
     """A table from its cells, its header among the first rows; the errors of `read_file`.
 
-    `usual` is the decimal sign where no number settles it; "": the table is refused.
+    `usual` is the decimal sign where no number settles it; "": the table is refused. Beyond `most` rows, without those
+    that are empty or totals, it is refused by `TooManyRowsError`.
     """
-    header = _header(rows, schema)
-    body = list(enumerate(rows[header.last + 1 :], start=header.last + 2))
+    rest = iter(rows)
+    top = list(islice(rest, HEADER_ROWS + 1))  # with a line of units
+    header = _header(top, schema)
+    body: list[tuple[int, Sequence[str]]] = []
+    for number, row in enumerate(chain(top[header.last + 1 :], rest), start=header.last + 2):
+        if _is_item(row):
+            if len(body) == most:
+                raise TooManyRowsError(schema.argument, f"more than {most} rows", f"at most {most}")
+            body.append((number, row))
     numeric = [place for place, (one, _) in header.columns.items() if one.unit]
     measured = [place for place in numeric if header.columns[place][0].unit not in ("-", "kg")]
     decimal = _decimal_sign(
@@ -412,9 +437,6 @@ def read_rows(rows: Sequence[Sequence[str]], schema: Schema[Item], usual: str = 
     )
     items, kept, errors = [], [], []
     for number, row in body:
-        text = " ".join(row)
-        if not any(map(str.isalnum, text)) or text.lower().split()[0].rstrip(":") in TOTALS:
-            continue
         try:
             if any(cell.strip() for cell in row[len(header.texts) :]):
                 raise InvalidArgumentError("row", f"{len(row)} cells", f"{len(header.texts)}, as in the header")
@@ -439,6 +461,14 @@ def read_rows(rows: Sequence[Sequence[str]], schema: Schema[Item], usual: str = 
         for place, (one, unit) in header.columns.items()
     }
     return Table(items, cells, read, units, errors)
+
+
+def _is_item(row: Sequence[str]) -> bool:
+    """Whether a row has values, and is not one of totals."""
+    first = next(filter(None, map(str.strip, row)), "")
+    return (
+        bool(first) and first.lower().removesuffix(":").rstrip() not in TOTALS and any(map(str.isalnum, "".join(row)))
+    )
 
 
 def _written_unit(cell: str, one: Column) -> str:

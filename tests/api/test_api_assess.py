@@ -170,6 +170,8 @@ def test_size_type_and_time_are_limited(client, results, monkeypatch):
     monkeypatch.setattr(router, "MAX_OBJECTS", 2)
     problem = assert_problem(client.post(URL, json=[*ROWS, {}]), 413, "objects")
     assert (problem["value"], problem["allowed"]) == (3, "at most 2")
+    assert client.post(URL, json=ROWS).status_code == 200
+    assert_problem(client.post(URL, content=TABLE, headers=CSV), 413, "objects")
     assert_problem(client.post(URL, content=b" " * (router.MAX_BODY + 1), headers=CSV), 413, "body")
     assert_problem(client.post(URL, content="<x/>", headers={"content-type": "application/xml"}), 415)
     with client_of(results, max_seconds=0.001) as hurried:

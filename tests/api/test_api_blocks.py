@@ -411,3 +411,14 @@ def test_types_of_a_body_and_of_the_response_are_those_that_are_offered(client):
 def test_bodies_with_invalid_blocks_are_explained(client, body, kind, name):
     response = client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": kind})
     assert_problem(response, 415 if name == "Content-Type" else 422, name)
+
+
+def test_blocks_are_counted_as_rows_are_read(client, monkeypatch):
+    url, headers = "/v1/blocks/response?pulse=sine", {"content-type": "text/csv"}
+    for most, status in ((3, 200), (2, 413)):
+        monkeypatch.setattr(blocks, "MAX_BLOCKS", most)
+        assert client.post(url, json={"blocks": ROWS}).status_code == status
+        for end in ("\n", "\r\n", "\r"):
+            response = client.post(url, content=TABLE.replace("\n", end) + end, headers=headers)
+            assert response.status_code == status
+    assert assert_problem(response, 413, "blocks")["allowed"] == "at most 2"

@@ -7,6 +7,7 @@ import pytest
 from rocking._assessment.objects import Object
 from rocking._assessment.tables import objects_of_csv, objects_of_json, read_objects
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.table_reader import TooManyRowsError
 
 TABLES = Path(__file__).parent / "tables"
 
@@ -82,6 +83,26 @@ def test_rows_that_could_be_misread_are_reported(row: str) -> None:
     found = objects_of_csv(f"name,width [m],height [m]\ngood,0.5,1.5\n{row}\n")
     assert [one.name for one in found.objects] == ["good"]
     assert [one.row for one in found.bad_rows] == [3]
+
+
+def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
+    names = ["Total Eclipse (bronze)", "bust", "Mean old man", "Somme, battlefield", "Sum-1"]
+    totals = ["Total:", "SUM", " Mittelwert : "]
+    rows = [f"{name};30;30;60\n" for name in [*names, *totals]]
+    found = objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)};Total;30;60\n")
+    assert [one.name for one in found.objects] == names
+    assert found.bad_rows == []
+
+
+def test_too_many_rows_are_refused_before_an_object_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = ["a,0.5,1", "b,bad,1", "c,0.5,1"]
+    text = "name,width [m],height [m]\n\nTotal,1,1\n" + "\r".join(rows)
+    assert len(objects_of_csv(text, 3).objects) == 2
+    assert len(objects_of_json('[{"width": 1, "height": 2}, {}]', 2).bad_rows) == 1
+    monkeypatch.setattr("rocking._assessment.tables.Object", None)
+    for read in (lambda: objects_of_csv(text, 2), lambda: objects_of_json("[{}, {}, {}]", 2)):
+        with pytest.raises(TooManyRowsError, match="at most 2"):
+            read()
 
 
 @pytest.mark.parametrize("text", ["{", '{"name": 1}', "[1]"])

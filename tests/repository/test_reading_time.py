@@ -24,6 +24,7 @@ FOUND = [
     ("AT2", AT2.format("@ NPTS DT"), "", "1", ""),
     ("AT2", AT2.format("@ NPTS DT"), "1", " ", ""),
     ("AT2", AT2.format("DT= .01 NPTS@;"), "", " ", ""),
+    *(("cell of a header", "@", *parts) for parts in (("[", " ", "x"), ("width [", " ", "] x"))),
     ("query string", "@&a=1&a=2", "", "a№=1&", ""),
     ("points in JSON", "@", "", '"slenderness":[', ""),
 ]

@@ -17,6 +17,7 @@ from starlette.routing import BaseRoute, Match, Mount
 
 from rocking._base.errors import DatasetError, InvalidArgumentError, SeveralArgumentsError
 from rocking._datasets.catalogue import UnknownDatasetError
+from rocking._dimensional.table_reader import TooManyRowsError
 from rocking_api.execution.executor import BusyError, TimeLimitError
 from rocking_api.execution.kernels import NotReadyError
 
@@ -52,6 +53,7 @@ class DamagedDatasetsError(DatasetError):
 STATUS: dict[type[Exception], int] = {
     InvalidArgumentError: HTTPStatus.UNPROCESSABLE_ENTITY,  # OutsideCubeError is one
     TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+    TooManyRowsError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     UnsupportedBodyError: HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
     UnknownDatasetError: HTTPStatus.NOT_FOUND,
     SlowBodyError: HTTPStatus.REQUEST_TIMEOUT,

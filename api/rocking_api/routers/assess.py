@@ -66,7 +66,7 @@ async def post_assess(request: Request, service: ServiceDep) -> Response:
 
 def _read(body: AssessBody | bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, Site]:
     given, raw = (None, body) if isinstance(body, bytes) else (body, json.dumps(body.objects).encode())
-    table = objects_of_text(raw, json=form == "json")
+    table = objects_of_text(raw, json=form == "json", most=MAX_OBJECTS)
     check_table(table, "objects")
     site = params.site(given)
     size = sum(len(one.planes) for one in table.objects) * len(site.motions)
@@ -76,16 +76,13 @@ def _read(body: AssessBody | bytes, form: Form, params: AssessParams) -> tuple[O
 
 
 def check_table(table: ObjectTable, name: str) -> None:
-    """Refuse a table of too many rows, or without an object.
+    """Refuse a table without an object.
 
     Raises
     ------
-    TooLargeError, InvalidArgumentError
+    InvalidArgumentError
         If it is; `name` is that of the table for the message.
     """
-    count = len(table.objects) + len(table.bad_rows)
-    if count > MAX_OBJECTS:
-        raise TooLargeError(name, count, f"at most {MAX_OBJECTS}")
     if not table.objects:
         reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
         raise InvalidArgumentError(name, reasons, "one object or more")

@@ -106,11 +106,11 @@ def _read_table(body: BlockRows | bytes, params: BlocksParams) -> BlockTable:
         raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
-        _check_count(text.count("\n"))
-        table = read_table(text, params.pulse, params.restitution)
+        table = read_table(text, params.pulse, params.restitution, most=MAX_BLOCKS)
         table.check()
     else:
-        _check_count(len(body.blocks))
+        if len(body.blocks) > MAX_BLOCKS:
+            raise TooLargeError("blocks", len(body.blocks), f"at most {MAX_BLOCKS}")
         problems = [
             BlockProblem(
                 Block(row.width, row.height),
@@ -135,11 +135,6 @@ def _read_table(body: BlockRows | bytes, params: BlocksParams) -> BlockTable:
         ):
             BlockRow.check_field(name, value)
     return table
-
-
-def _check_count(count: int) -> None:
-    if count > MAX_BLOCKS + 1:
-        raise TooLargeError("blocks", count, f"at most {MAX_BLOCKS}")
 
 
 def _blocks(

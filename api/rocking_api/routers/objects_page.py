@@ -24,6 +24,7 @@ from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
 from rocking_api.limited_process import result_of
+from rocking_api.models.assess import MAX_OBJECTS
 from rocking_api.routers.assess import MAX_BODY, check_table
 from rocking_api.routers.object_page import SITE, address_of, site_of
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
@@ -115,7 +116,7 @@ async def _form(request: Request, service: Service) -> dict[str, str]:
 
 async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
     site = site_of(given)
-    table = await service.run_parser(lambda _: objects_of_csv(given["table"]), request, large=True)
+    table = await service.run_parser(lambda _: objects_of_csv(given["table"], MAX_OBJECTS), request, large=True)
     check_table(table, "table")
 
     def run(stop: StopFlag) -> Assessment:
