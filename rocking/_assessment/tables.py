@@ -74,8 +74,9 @@ def objects_of_json(text: str, most: int | None = None) -> ObjectTable:
     """Objects from JSON: a list of objects with the names of the columns as keys; numbers are in SI units."""
     try:
         given = json.loads(text)
+        json.dumps(given, ensure_ascii=False).encode()  # an escape such as \ud800 is of no character
     except (ValueError, RecursionError) as error:  # also integers of thousands of digits, brackets within brackets
-        raise InvalidArgumentError("objects", str(error), "JSON") from None
+        raise InvalidArgumentError("objects", str(error), "JSON, with texts that UTF-8 can encode") from None
     if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
         raise InvalidArgumentError("objects", type(given).__name__, "a list of objects, one for each row")
     if most is not None and len(given) > most:

@@ -146,8 +146,10 @@ def test_a_wrong_site_is_refused_by_name(client, query, parameter):
     [
         *(b"", b"{}", b"[1]", b"[]", b"[{}]", b"[" * 100_000, b"[" + b"9" * 5000),
         b'[{"name": [1], "width": 1, "height": 1}]',
+        rb'[{"\ud800": 1}]',
+        rb'[{"name": "\ud800", "width": 0.4, "height": 1.6}]',
     ],
-    ids=range(8),
+    ids=range(10),
 )
 def test_json_that_is_no_table_is_refused(client, body):
     assert_problem(client.post(URL, content=body, headers={"content-type": "application/json"}), 422, "objects")

@@ -4,10 +4,13 @@ import gzip
 import json
 import time
 
+import anyio
 import numpy as np
 import pytest
 import xarray as xr
+from rocking_api.http.errors import error_response
 
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from tests.api.conftest import assert_problem
 
 POINT = {"pulse": "sine", "slenderness": "0.6", "frequency_ratio": "6", "restitution": "0.85"}
@@ -211,3 +214,13 @@ def test_odd_headers(client, header, value):
     for url in ("/v1/response?pulse=sine&slenderness=2&frequency_ratio=1&restitution=1", "/v1/datasets", "/",
                 "/v1/datasets/spectra/sine/eta-0.85.nc"):  # fmt: skip
         assert client.get(url, headers={header: value.encode("latin-1")}).status_code < 500
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_half_of_a_pair_of_escapes_is_repeated_as_text(count):
+    errors = [InvalidArgumentError(f"a{number} \ud800", "b \udc00", "c \udfff") for number in range(count)]
+    response = anyio.run(error_response, None, errors[0] if count == 1 else SeveralArgumentsError(errors))
+    problem = json.loads(response.body)
+    assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a0 \ud800", r"b \udc00", r"c \udfff"]
+    assert r"\ud800" in problem["detail"]
+    assert len(problem.get("errors", [])) == (0 if count == 1 else 2)

@@ -105,7 +105,7 @@ def test_too_many_rows_are_refused_before_an_object_is_made(monkeypatch: pytest.
             read()
 
 
-@pytest.mark.parametrize("text", ["{", '{"name": 1}', "[1]"])
+@pytest.mark.parametrize("text", ["{", '{"name": 1}', "[1]", r'[{"name": "\ud800", "width": 1, "height": 2}]'])
 def test_json_that_is_no_list_of_objects_is_refused(text: str) -> None:
     with pytest.raises(InvalidArgumentError):
         objects_of_json(text)

@@ -118,9 +118,9 @@ RESPONSES: dict[int | str, dict[str, Any]] = {
 
 def problem_response(status: int, detail: str, headers: Mapping[str, str] | None = None, **parts: Any) -> Response:
     """An error response; `parts` are other fields of `Problem`."""
-    parts = {name: text[:MAX_TEXT] if isinstance(text, str) else text for name, text in parts.items()}
+    parts = {name: _text(part) if isinstance(part, str) else part for name, part in parts.items()}
     parts["value"] = plain(parts.get("value"))
-    content = Problem(title=HTTPStatus(status).phrase, status=status, detail=detail[:MAX_TEXT], **parts)
+    content = Problem(title=HTTPStatus(status).phrase, status=status, detail=_text(detail), **parts)
     return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
 
 
@@ -146,7 +146,7 @@ async def error_response(_: Request, error: Exception) -> Response:
     if not found:
         return problem_response(status, str(error), headers)
     errors = [
-        InvalidParameter(name=one.parameter[:MAX_TEXT], value=plain(one.value), allowed=one.allowed[:MAX_TEXT])
+        InvalidParameter(name=_text(one.parameter), value=plain(one.value), allowed=_text(one.allowed))
         for one in found[:MAX_ERRORS]
     ]
     if isinstance(error, DamagedDatasetsError):
@@ -208,4 +208,9 @@ def plain(value: Any) -> float | str | None:
         return value
     if isinstance(value, (bytes, bytearray)):  # a body of any size
         return value[:MAX_TEXT].decode("utf-8", "backslashreplace")
-    return str(value)[:MAX_TEXT]
+    return _text(str(value))
+
+
+def _text(text: str) -> str:
+    """The start of a text that UTF-8 can encode: JSON may hold half of a pair of escapes, as text."""
+    return text[:MAX_TEXT].encode("utf-8", "backslashreplace").decode("utf-8")
