@@ -52,6 +52,7 @@ EMPTY = ("", "-", "\u2013", "n/a", "?")
 """Cells without a value."""
 
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/]\s*([^\s,/]{1,8})\s*$|\bin\s+([a-zA-Z]{1,8})\s*$")
+_MARK = "\ufeff"
 _GAP = r"[\s'\u2019]"
 _NUMBER = re.compile(
     r"\s*([+-]?[0-9][0-9.,'\u2019 \u00a0\u202f]*|[+-]?[.,][0-9]+)((?:(?<=[0-9.,])e[+-]?[0-9]+)?)\s*(.*?)\s*",
@@ -236,7 +237,17 @@ def read_csv(text: str, schema: Schema[Item], most: int | None = None) -> Table[
     """A table from text with separated columns; the errors of `read_file`, a line that is not CSV, those of `most`."""
     delimiter = _delimiter(text, schema)
     # where commas separate the columns, a single point is the decimal sign
-    return read_rows(_lines(text, delimiter, schema), schema, usual="." if delimiter == "," else "", most=most)
+    usual = "." if delimiter == "," else ""
+    return read_rows(_rows(_open(text), delimiter, schema), schema, usual, most)
+
+
+def rows_of_csv(text: str, schema: Schema[Any]) -> Iterator[str]:
+    """The text of each row that `read_csv` counts, with its end; the errors of `read_csv`."""
+    text = text.removeprefix(_MARK)
+    source, start = _open(text), 0
+    for _ in _rows(source, _delimiter(text, schema), schema):
+        yield text[start : source.tell()]
+        start = source.tell()
 
 
 def _delimiter(text: str, schema: Schema[Any]) -> str:
@@ -248,12 +259,16 @@ def _delimiter(text: str, schema: Schema[Any]) -> str:
             sizes[delimiter] = len(_header(_start(text, delimiter, schema), schema).columns)
     delimiter = max(DELIMITERS, key=sizes.__getitem__)
     if not sizes[delimiter]:
-        _header(list(islice(_lines(text, delimiter, schema), HEADER_ROWS)), schema)  # says what is missing
+        _header(list(islice(_rows(_open(text), delimiter, schema), HEADER_ROWS)), schema)  # says what is missing
     return delimiter
 
 
-def _lines(text: str, delimiter: str, schema: Schema[Any]) -> Iterator[list[str]]:
-    rows = csv.reader(io.StringIO(text.removeprefix("\ufeff"), newline=""), delimiter=delimiter, strict=True)
+def _open(text: str) -> io.StringIO:
+    return io.StringIO(text.removeprefix(_MARK), newline="")
+
+
+def _rows(source: Iterable[str], delimiter: str, schema: Schema[Any]) -> Iterator[list[str]]:
+    rows = csv.reader(source, delimiter=delimiter, strict=True)
     while True:
         line = rows.line_num + 1
         try:
@@ -270,7 +285,7 @@ def _start(text: str, delimiter: str, schema: Schema[Any]) -> list[list[str]]:
     """The rows that may be a header; none from a line on that is not CSV."""
     rows: list[list[str]] = []
     with suppress(InvalidArgumentError):
-        for row in islice(_lines(text, delimiter, schema), HEADER_ROWS):
+        for row in islice(_rows(_open(text), delimiter, schema), HEADER_ROWS):
             rows.append(row)  # noqa: PERF402  (the rows before an error are kept)
     return rows
 

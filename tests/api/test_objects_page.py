@@ -1,16 +1,20 @@
 """The page of objects as the service renders it: rows, rows that cannot be read, report, CSV, sheets, hostile input."""
 
+import html
 import io
 import re
 import sys
+import tracemalloc
 import zipfile
+from urllib.parse import urlencode
 
 import pytest
 from rocking_api.routers import objects_page
 
 import rocking
 from rocking._assessment.columns import VERDICTS
-from rocking._assessment.tables import objects_of_csv
+from rocking._assessment.tables import SCHEMA, objects_of_csv
+from rocking._dimensional.table_reader import rows_of_csv
 from tests.api.conftest import assert_problem
 from tests.sheets import xlsx_bytes
 
@@ -51,12 +55,58 @@ def test_a_row_that_cannot_be_read_is_mended_in_place(client, text):
     assert len(re.findall(r'<th scope="row">', mended)) == 3
 
 
+ROWS = [
+    *("\n", "My objects\f1\n", "object;width [cm];height [cm];notes\n", 'vase;22;55;"two\nlines\u2028or three"\n'),
+    *("jug;wide;40;a\x0cb\u2028c\r\n", '"slab\n2";5;high;\n', "\n", "cup;;9;"),
+]
+
+
+def test_rows_are_those_of_the_table_whatever_ends_a_line(client):
+    assert list(rows_of_csv("".join(ROWS), SCHEMA)) == ROWS
+    text = client.post("/objects", data={"table": "".join(ROWS), **SITE}).text
+    assert re.findall(r'name="line-(\d)"', text) == ["5", "6", "8"]
+    assert 'value="jug;wide;40;a\x0cb\u2028c"' in text
+    assert ">\n&#34;slab\n2&#34;;5;high;</textarea>" in text  # an input has one line
+    table = re.search(r'<textarea id="table".*?>\n(.*?)</textarea>', text, re.DOTALL)[
+        1
+    ]  # its first line end is dropped
+    assert html.unescape(table) == "".join(ROWS)
+    mended = {"line-5": "jug;20;40;", "line-6": "slab;5;60;", "line-8": "cup;9;9;"}
+    text = client.post("/objects", data={"table": "".join(ROWS), **SITE, **mended}).text
+    assert "were not read" not in text
+    table = re.search(r'<textarea id="table".*?>\n(.*?)</textarea>', text, re.DOTALL)[1]
+    rows = dict(enumerate(ROWS, start=1)) | {5: "jug;20;40;\r\n", 6: "slab;5;60;\n", 8: "cup;9;9;"}
+    assert html.unescape(table) == "".join(rows.values())
+
+
+def test_fields_of_the_form_are_limited(client):
+    given = {"table": TABLE, **SITE}
+    many = {f"line-{number}": "" for number in range(100, 200)}
+    assert_problem(client.post("/objects", data=given | many), 413, "form")
+    assert_problem(client.post("/objects", data=given | {"table": "a" * (objects_page.MAX_BODY + 1)}), 413, "table")
+
+
+def test_escapes_of_a_form_take_little_memory(monkeypatch):
+    body = b"table=" + b"%0A" * 2**18
+    tracemalloc.start()
+    assert objects_page._fields(body)["table"] == "\n" * 2**18
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 10 * len(body)  # 80 by urllib
+    text = "100 %; 1+1 & =\u20ac\r\n" * 5
+    for part in (3, 4, 5):
+        monkeypatch.setattr(objects_page, "PART", part)
+        assert objects_page._fields(urlencode({"table": text}).encode())["table"] == text
+
+
 def test_report_and_csv_are_those_of_the_package(client, found):
     given = {"table": TABLE, **SITE}
     report = client.post("/objects/report", data=given)
     assert "default-src 'none'" in report.headers["content-security-policy"]
     assert f"{found.rows[0]['factor']:.3g}" in report.text
     assert "rocking assess TABLE --pga 0.3g --pgv 30cm/s" in report.text
+    comma = client.post("/objects/report", data=given | {"pga": " 0,3", "pgv": "3e1"})
+    assert "rocking assess TABLE --pga 0.3g --pgv 3e1cm/s" in comma.text
     table = client.post("/objects/assessment.csv", data=given)
     assert "attachment" in table.headers["content-disposition"]
     assert table.text.count("not read") == 1

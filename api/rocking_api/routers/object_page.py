@@ -129,7 +129,7 @@ def site_of(given: dict[str, str]) -> Site:
             if len(given[name]) > MAX_MODES_TEXT:
                 raise InvalidArgumentError(name, f"{len(given[name])} characters", f"at most {MAX_MODES_TEXT}")
             modes[name] = plain_numbers(name, given[name])
-    return Site(_quantity(given, "pga"), _quantity(given, "pgv"), **modes)
+    return Site(quantity_of(given, "pga"), quantity_of(given, "pgv"), **modes)
 
 
 def address_of(one: Object, given: dict[str, str]) -> str:
@@ -164,7 +164,8 @@ def fields_of(asked: dict[str, str]) -> dict[str, str]:
     return empty | first | asked | {"shape": shape}
 
 
-def _quantity(given: dict[str, str], name: str) -> str:
+def quantity_of(given: dict[str, str], name: str) -> str:
+    """The text of a number and its unit from the fields of a form."""
     return f"{given[name].strip().replace(',', '.')} {given[f'{name}_unit']}"
 
 
@@ -183,7 +184,9 @@ def _object(given: dict[str, str]) -> Object:
     others: dict[str, Any] = {"name": given["name"], "restitution": _restitution(given)}
     if given["shape"] == "outline":
         return Object.from_outline(_vertices(given["vertices"]), **others)
-    lengths: dict[str, Any] = {name: _quantity(given, name) for name in LENGTHS[given["shape"]] if given[name].strip()}
+    lengths: dict[str, Any] = {
+        name: quantity_of(given, name) for name in LENGTHS[given["shape"]] if given[name].strip()
+    }
     base = "width" if given["shape"] == "rectangle" else "diameter"
     if base not in lengths:
         raise InvalidArgumentError(base, given[base], "a length")

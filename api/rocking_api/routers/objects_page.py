@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import io
+import shlex
 import zipfile
 from datetime import UTC, datetime
 from importlib.util import find_spec
 from pathlib import PurePath
-from urllib.parse import parse_qs
+from urllib.parse import unquote_to_bytes
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, PlainTextResponse
@@ -16,9 +17,9 @@ from rocking._assessment.assess import assess
 from rocking._assessment.columns import VERDICTS
 from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
-from rocking._assessment.tables import ObjectTable, objects_of_csv
+from rocking._assessment.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError, plain_numbers
-from rocking._dimensional.table_reader import SHEETS, text_of
+from rocking._dimensional.table_reader import SHEETS, rows_of_csv, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
@@ -26,7 +27,7 @@ from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
 from rocking_api.limited_process import result_of
 from rocking_api.models.assess import MAX_OBJECTS
 from rocking_api.routers.assess import MAX_BODY, check_table
-from rocking_api.routers.object_page import SITE, address_of, site_of
+from rocking_api.routers.object_page import SITE, address_of, quantity_of, site_of
 from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
 from rocking_api.service import Service, ServiceDep
 
@@ -35,6 +36,15 @@ MAX_SHEET = 32 * 1024 * 1024
 
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
+
+MAX_FIELDS = 100
+"""Most fields of the form [-]: those of the site, and of rows that are corrected."""
+
+MAX_CORRECTED = 50
+"""Most rows that are corrected at a time [-]."""
+
+PART = 65536
+"""Characters of a form whose escapes are replaced at a time [-]."""
 
 PATH = "/objects"
 
@@ -63,11 +73,14 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
     given = await _form(request, service)
     table, found = await _assessed(given, request, service)
-    command = f"rocking assess TABLE --pga {given['pga']}{given['pga_unit']} --pgv {given['pgv']}{given['pgv_unit']}"
+    words = ["rocking", "assess", "TABLE"]
+    for name in ("pga", "pgv"):
+        words += [f"--{name}", quantity_of(given, name).replace(" ", "")]
     if given["floor_periods"].strip():
-        periods = ",".join(f"{one:g}s" for one in plain_numbers("floor_periods", given["floor_periods"]))
-        command += f" --floor {periods} --floor-participation {given['floor_participation'].replace(' ', '')}"
-    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), command)
+        periods, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
+        words += ["--floor", ",".join(f"{one}s" for one in periods)]
+        words += ["--floor-participation", ",".join(map(str, participation))]
+    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(words))
     text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
@@ -104,14 +117,38 @@ def _text(raw: bytes, name: str, stop: StopFlag) -> str:
 
 
 async def _form(request: Request, service: Service) -> dict[str, str]:
-    """The fields of the form; fields `line-N` take the place of lines of the table."""
     body = await service.read_body(request, 3 * MAX_BODY)  # with signs that are escaped
-    given = await service.run_io(lambda: parse_qs(body.decode("utf-8", "replace"), keep_blank_values=True))
-    fields = DEFAULTS | {name: values[-1] for name, values in given.items()}
-    lines = fields["table"].splitlines()
-    for number in range(len(lines)):
-        lines[number] = fields.pop(f"line-{number + 1}", lines[number])
-    return fields | {"table": "\n".join(lines)}
+    return await service.run_parser(lambda _: _fields(body), request)
+
+
+def _fields(body: bytes) -> dict[str, str]:
+    """The fields of the form; fields `line-N` take the place of rows of the table."""
+    count = body.count(b"&") + 1
+    if count > MAX_FIELDS:
+        raise TooLargeError("form", f"{count} fields", f"at most {MAX_FIELDS}")
+    parts = (part.partition(b"=") for part in body.split(b"&"))
+    fields = DEFAULTS | {_unescaped(name): _unescaped(value) for name, _, value in parts}
+    if len(fields["table"]) > MAX_BODY:
+        raise TooLargeError("table", f"{len(fields['table'])} characters", f"at most {MAX_BODY}")
+    if any(name.startswith("line-") for name in fields):
+        rows = list(rows_of_csv(fields["table"], SCHEMA))
+        for number, row in enumerate(rows, start=1):
+            text = row.rstrip("\r\n")
+            rows[number - 1] = fields.get(f"line-{number}", text) + row[len(text) :]
+        fields["table"] = "".join(rows)
+    return fields
+
+
+def _unescaped(raw: bytes) -> str:
+    """A text of a form; by parts, because `unquote_to_bytes` keeps 80 bytes of memory for each byte of escapes."""
+    found, start = bytearray(), 0
+    while start < len(raw):
+        end = start + PART
+        cut = raw.rfind(b"%", end - 2, end)  # an escape that the end would divide
+        end = end if cut < 0 else cut
+        found += unquote_to_bytes(raw[start:end].replace(b"+", b" "))
+        start = end
+    return found.decode("utf-8", "replace")
 
 
 async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
@@ -127,12 +164,16 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
 
 
 def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
+    bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
+    shown = {one.row for one in bad_rows}
+    rows = enumerate(rows_of_csv(given["table"], SCHEMA), start=1) if shown else ()
     text = html(
         "objects.html",
         "Which objects overturn?",
         PATH,
         given=given,
-        lines=given["table"].splitlines(),
+        bad_rows=bad_rows,
+        lines={number: row.rstrip("\r\n") for number, row in rows if number in shown},
         table=table,
         found=found,
         verdicts=VERDICTS,
