@@ -203,7 +203,7 @@ def _methods(request: Request) -> list[str]:
 
 
 def plain(value: Any) -> float | str | None:
-    """A value that JSON can represent; nan and inf as text."""
+    """A value that JSON can represent; nan and inf here as text."""
     if value is None or (isinstance(value, (int, float)) and -MAX_NUMBER <= value <= MAX_NUMBER):
         return value
     if isinstance(value, (bytes, bytearray)):  # a body of any size
@@ -212,5 +212,5 @@ def plain(value: Any) -> float | str | None:
 
 
 def _text(text: str) -> str:
-    """The start of a text that UTF-8 can encode: JSON may hold half of a pair of escapes, as text."""
+    """The start of a text that UTF-8 can encode: JSON may hold half of a pair of escapes, here as text."""
     return text[:MAX_TEXT].encode("utf-8", "backslashreplace").decode("utf-8")
