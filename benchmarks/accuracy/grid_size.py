@@ -61,7 +61,7 @@ def build_cubes(folder: Path, config: dict[str, Any], scales: tuple[float, ...])
     curves = folder / "boundaries.nc"
     progress("grid size: boundaries")
     settings = config["boundary"] | {"alpha_deg": ANGLES, "restitution": RESTITUTION}
-    overturning.main(pulse=PULSE, samples=[], **settings, boundaries=curves, provenance={})
+    overturning.main(pulse=PULSE, samples=[], **settings, boundaries=curves, provenance={}, threads=1)
     boundary, angles = read_dataset(curves), [math.radians(angle) for angle in ANGLES]
     for scale in scales:
         plane = axes(config, scale)

@@ -137,7 +137,7 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
     "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
-    "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""),
+    "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -151,7 +151,7 @@ TEXTS = {
 
 COMMON = {
     *("edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"),
-    *("seed", "friction", "damping", "participation"),
+    *("seed", "friction", "damping", "participation", "confidence"),
 }
 VARIANTS = (
     {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
