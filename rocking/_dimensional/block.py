@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, final, overload
 
+from rocking._base.errors import integer
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.body import Motion, RespondingBody, as_numbers
 from rocking._dimensional.body_response import BodyResponse
@@ -98,6 +100,8 @@ class RespondingBlock(AbstractBlock, RespondingBody):
         >>> Block("40 cm", "160 cm").response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
         False
         """
+        if threads is not None:
+            threads = integer("threads", threads, 1, math.inf)
         numbers = as_numbers(peak_acceleration=peak_acceleration, period=period, scale=scale, restitution=restitution)
         if numbers:
             return respond(BlockProblem(self, motion, **numbers), thresholds=thresholds, stop=stop)

@@ -94,9 +94,6 @@ FREQUENCY_RATIO = Parameter("frequency_ratio", "omega_g/p", "-", 1e-9, 1e9, "bot
 FREQUENCY_PARAMETER = Parameter("frequency_parameter", "p", "rad/s", 1e-6, 1e6, "both", "frequency parameter")
 """Of a block under a recorded motion, whose time is in seconds."""
 
-VERTICAL_SCALE = Parameter("vertical_scale", "", "-", 0.0, 1e6, "both", "factor of the vertical component")
-"""Of a recorded motion."""
-
 RESTITUTION = Parameter("restitution", "eta", "-", 0.0, 1.0, "both", "coefficient of restitution")
 
 ALPHA = Parameter("alpha", "alpha", "rad", 0.0, 1.57, "both", "slenderness angle (slender limit without)")

@@ -16,7 +16,7 @@ from rocking._base.units import Quantity
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
 from rocking._model.labelled import Index, variable, with_index
 from rocking._model.outcome import Outcome
-from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS, VERTICAL_SCALE
+from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -114,11 +114,14 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
             one.name: one.variable(names, getattr(self, one.name)) for one in (*RESPONSE_FIELDS, OVERTURNED)
         }
         coordinates: dict[str, Any] = {}
-        for group in (*GROUPS, FREQUENCY_PARAMETER, VERTICAL_SCALE):
+        for group in (*GROUPS, FREQUENCY_PARAMETER):
             value = self.groups.get(group.name)
             if value is not None:
                 unit = "1" if group.unit == "-" else group.unit
                 coordinates[group.name] = variable(*along_own_axes(value, names), unit, group.label)
+        if (factor := self.groups.get("vertical_scale")) is not None:
+            about = "factor of the vertical component"
+            coordinates["vertical_scale"] = variable(*along_own_axes(factor, names), "1", about)
         attributes = {"pulse": self.pulse} if self.pulse else {}
         found = xr.Dataset(variables, coordinates, attributes)
         return with_index(found, names[-1], self.index) if names and dims is None else found

@@ -204,6 +204,7 @@ for kind, body in (("Block", BLOCK), ("EquivalentBlock", FRAME)):
     CALLS |= {
         f"{kind}.boundary": (body.boundary, [{"motion": "sine", "restitution": 0.9}]),
         f"{kind}.history": (body.history, [{"duration": 1.0, "samples": 10} | more for more in (PULSE, SCALED)]),
+        f"{kind}.response": (body.response, [PULSE | {"threads": 1}]),
         f"{kind}.spectrum": (body.spectrum, [PULSE, SCALED | {"size": [1.0]}]),
         f"{kind}.thresholds": (
             body.thresholds,
@@ -249,7 +250,7 @@ def scalars(function: Callable[..., Any]) -> list[str]:
     """Return the names of the arguments that are annotated as one number."""
     try:
         parameters = inspect.signature(function).parameters.values()
-    except ValueError:  # an enumeration
+    except ValueError:  # an enumeration, an error
         return []
     return [one.name for one in parameters if SCALAR.fullmatch(str(one.annotation))]
 

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
-from rocking._model.checks import check, check_number
-from rocking._model.parameters import VERTICAL_SCALE
+
+HIGHEST_VERTICAL_SCALE = 1e6
+"""Largest factor of a vertical component [-]."""
 
 FLIGHT_MARGIN = 1e-9
 """Relative distance of `highest_vertical_scale` from the factor at which the acceleration reaches -g [-]."""
@@ -27,7 +28,7 @@ def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> ND
         If a factor is not in [0, 1e6], is neither 1 nor None for a record without a vertical component, or is so large
         that the acceleration reaches -g.
     """
-    factor = check(VERTICAL_SCALE, 1.0 if vertical_scale is None else vertical_scale)
+    factor = in_range("vertical_scale", 1.0 if vertical_scale is None else vertical_scale, 0.0, HIGHEST_VERTICAL_SCALE)
     if motion.vertical is None:
         if (factor != 1.0).any():
             allowed = "1 or None: the record has no vertical component"
@@ -39,8 +40,8 @@ def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> ND
 
 def check_one_vertical_scale(motion: Record, vertical_scale: Scalar | None) -> float:
     """The same for one number."""
-    factor = check_number(VERTICAL_SCALE, 1.0 if vertical_scale is None else vertical_scale)
-    return float(check_vertical_scale(motion, factor))
+    factor = 1.0 if vertical_scale is None else vertical_scale
+    return float(check_vertical_scale(motion, number("vertical_scale", factor, 0.0, HIGHEST_VERTICAL_SCALE)))
 
 
 def reject_flight(parameter: str, motion: Record, factor: float, gravity: float = STANDARD_GRAVITY) -> None:
