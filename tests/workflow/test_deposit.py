@@ -90,4 +90,4 @@ def test_make_deposit_archives_the_folder_that_is_named() -> None:
     command = ["make", "--dry-run", "--old-file=.venv/project", "deposit", "RESULTS=tests/results"]
     done = subprocess.run(command, cwd=PROJECT, capture_output=True, text=True, check=False)
     assert "no tests/results/manifest.json" in done.stdout
-    assert done.stdout.splitlines()[-1] == "python -m workflow.deposit tests/"
+    assert done.stdout.splitlines()[-1] == """python -m workflow.deposit "$(dirname 'tests/results')\""""
