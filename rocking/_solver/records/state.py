@@ -20,8 +20,8 @@ from rocking._solver.state import (
     aligned_record,
 )
 
-MIN_ORDER = 6
-"""Smallest degree of the Taylor steps."""
+MIN_ORDER = 14
+"""Lowest degree [-]: lower ones need more steps where the motion is strong, and take longer in all."""
 
 BLOCK_STATE = np.dtype(
     [
