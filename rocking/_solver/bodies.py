@@ -13,7 +13,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, NO_FLIGHTS, solver_state
-from rocking._solver.records.record_response import pulse_rows, solve_bodies
+from rocking._solver.records.record_response import solve_bodies, solve_bodies_under_pulse
 from rocking._solver.records.samples import motion_samples
 from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
 
@@ -37,10 +37,7 @@ def solve_motion(
     if isinstance(motion, Record):
         return solve_bodies(motion_samples(motion), cells, threads, stop, each_side=True)
     if motion.samples is not None:
-        rows = pulse_rows(motion, float(cells["rate"].min(initial=math.inf)))
-        sampled = cells.copy()
-        sampled["rate"] = 1.0 / cells["rate"]
-        return solve_bodies(rows, sampled, threads, stop, each_side=True)
+        return solve_bodies_under_pulse(motion, cells, threads, stop, each_side=True)
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, EDGE_COLUMNS))
     omega = cells["rate"].copy()  # kernels need contiguous arrays
 

@@ -121,16 +121,36 @@ def solve_pulse(
     """
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
-    return solve_bodies(
-        pulse_rows(pulse, float(omega.min(initial=math.inf))),
-        block_cells(1.0 / omega, slenderness, eta, alpha),
-        threads,
-        stop,
-    )[0]
+    return solve_bodies_under_pulse(pulse, block_cells(omega, slenderness, eta, alpha), threads, stop)[0]
 
 
-def pulse_rows(pulse: AbstractPulse, lowest: float) -> Array:
-    """`pulse_samples` with intervals of at most `MAX_INTERVAL` at frequency ratios from `lowest` on.
+def solve_bodies_under_pulse(
+    pulse: AbstractPulse,
+    cells: NDArray[np.void],
+    threads: int | None,
+    stop: StopFlag | None,
+    each_side: bool = False,
+) -> tuple[NDArray[np.void], Array]:
+    """`solve_bodies` under a sampled pulse; `rate` of the cells is the frequency ratio, errors as `solve_pulse`."""
+    parts = interval_parts(pulse, cells["rate"])
+    sampled = cells.copy()
+    sampled["rate"] = 1.0 / cells["rate"]
+    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
+    for division in np.unique(parts):
+        own, rows = parts == division, pulse_samples(pulse, int(division))
+        records[own], of_edges = solve_bodies(rows, sampled[own], threads, stop, each_side)
+        if each_side:
+            edges[own] = of_edges
+    return records, edges
+
+
+def pulse_rows(pulse: AbstractPulse, frequency_ratio: float) -> Array:
+    """`pulse_samples` as for the response at this frequency ratio; errors as `interval_parts`."""
+    return pulse_samples(pulse, int(interval_parts(pulse, np.array([frequency_ratio]))[0]))
+
+
+def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.int64]:
+    """Parts of each sample interval, at most `MAX_INTERVAL` long, at each of the frequency ratios: powers of two.
 
     Raises
     ------
@@ -138,15 +158,16 @@ def pulse_rows(pulse: AbstractPulse, lowest: float) -> Array:
         If that takes more than `MAX_DIVIDED` intervals.
     """
     phases = pulse_samples(pulse)[TIME]
-    longest = float(np.diff(phases).max())
-    parts = max(1, math.ceil(longest / (MAX_INTERVAL * lowest)))
-    most = max(1, MAX_DIVIDED // phases.size)
-    if parts > most:
-        least = longest / (MAX_INTERVAL * most)
+    longest, most = float(np.diff(phases).max()), max(1, MAX_DIVIDED // phases.size)
+    least = longest / (MAX_INTERVAL * most)
+    lowest = float(frequency_ratio.min(initial=math.inf))
+    if lowest < least:
         raise InvalidArgumentError(
             "frequency_ratio", lowest, f"at least {least:.3g} for this pulse of {phases.size} samples"
         )
-    return pulse_samples(pulse, parts)
+    needed = np.log2(np.maximum(longest / (MAX_INTERVAL * frequency_ratio), 1.0))
+    # powers of two, so that an array needs few divisions; each is the cell's own, not that of the lowest ratio
+    return np.left_shift(1, np.ceil(needed).astype(np.int64))
 
 
 def solve_bodies(
