@@ -1,10 +1,10 @@
 """Simulated wall time of the workflow on more cores: `python -m benchmarks.cost.scaling FOLDER [FOLDER ...]`.
 
-The job times are those of a finished run, from Snakemake's records in `logs/benchmarks`: processor time, one core for
-each job. The simulation starts a waiting job whenever a core is free, first those of the higher priority of the
-rules, then the longer ones. In the column of Slurm each job sent to the cluster takes `SLURM_OVERHEAD` more, and the
-jobs that the rules keep local run on a core of their own without it, as with `profiles/slurm`. Figures follow the
-boundaries of the sine and the cosine, the claims all data sets and figures, the manifest all of these.
+The times of the jobs are those of a finished run with at most one job for each core, from Snakemake's records in
+`logs/benchmarks`. The simulation starts a waiting job whenever a core is free, first those of higher priority, then the
+longer ones. In the column of Slurm each job sent to the cluster takes `SLURM_OVERHEAD` more, and the
+jobs that the rules keep local run on a core of their own without it, as with `profiles/slurm`. Figures follow all
+data sets that they may read.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks.cost.stages import number, record_of
+from benchmarks.cost.stages import record_of
 from benchmarks.measure import save
+from rocking._interpolation.slices import windows_of
+from workflow.configuration import tenths
 
 CORES = (1, 2, 4, 16, 64, 256)
 
@@ -40,38 +42,41 @@ def jobs_of(times: Mapping[str, float]) -> dict[str, Job]:
     Parameters
     ----------
     times : mapping
-        Processor time of each job [s] by the name of its record, such as `overturning-sine-20`.
+        Time of each job [s] by the name of its record, such as `overturning-sine-0.85`.
     """
 
     def named(pattern: str) -> frozenset[str]:
         return frozenset(name for name in times if re.fullmatch(pattern, name))
 
-    curves, cubes = named("overturning-[a-z0-9_]+"), named("spectra-[a-z0-9_]+")
+    boundaries, cubes = named(r"overturning-.*-\d\.\d\d"), named(r"spectra-.*-\d\.\d\d")
     drawn = named("(figure|table)-.*")
+    products = boundaries | cubes | drawn | named("claims")
+    restitution = sorted({float(name.rpartition("-")[2]) for name in boundaries})
+    of_tenth = tenths({"restitution": restitution})
     found: dict[str, Job] = {}
     for name, seconds in times.items():
         kind, _, rest = name.partition("-")
-        if re.fullmatch("overturning-.*-.*", name):
-            job = Job(seconds, frozenset(), 3, local=False)
-        elif kind == "overturning":
-            job = Job(seconds, named(f"{name}-.*"), 3, local=True)
-        elif "-rows-" in name:
-            job = Job(seconds, named(f"overturning-{rest.partition('-')[0]}"), 2, local=False)
+        pulse, _, which = rest.partition("-")
+        after, priority = frozenset[str](), 0
+        if name in boundaries:
+            after, priority = named(f"pulses-{pulse}-.*"), 3
+        elif name in cubes:
+            place = restitution.index(float(which))
+            window = {*restitution[slice(*windows_of(len(restitution), place, place + 1))]}
+            read = "|".join(tenth for tenth, some in of_tenth.items() if window & {*some})
+            after, priority = named(rf"spectra-{pulse}-({read})\.[0-9a-f]{{16}}"), 3
         elif kind == "spectra":
-            job = Job(seconds, named(f"{name}-rows-.*"), 3, local=False)
+            read = "|".join(f"{eta:.2f}" for eta in of_tenth[which.rpartition(".")[0]])
+            after, priority = named(f"overturning-{pulse}-({read})"), 2
         elif name in drawn:
-            read = named("spectra-sine") if name == "figure-scale-law" else named("overturning-(sine|cosine)")
-            job = Job(seconds, read, 0, local=True)
+            after = named(".*-(sine|cosine)-.*") & (cubes if name == "figure-scale-law" else boundaries)
         elif kind == "checks":
-            job = Job(seconds, named(f"(overturning|spectra)-{rest}"), 0, local=False)
-        elif name == "claims":
-            job = Job(seconds, curves | cubes | drawn, 0, local=True)
-        else:
-            before = curves | cubes | drawn | named("claims")
-            if name == "check_results":
-                before |= named("manifest|checks-.*")
-            job = Job(seconds, before - {name}, 0, local=True)
-        found[name] = job
+            after = named(f".*-{rest}-.*") & (boundaries | cubes)
+        elif name in ("claims", "manifest", "check_results"):
+            after = (products | (named("manifest|checks-.*") if name == "check_results" else set())) - {name}
+            priority = int(name == "claims")
+        local = name in drawn or kind in ("pulses", "manifest")
+        found[name] = Job(seconds, after, priority, local)
     return found
 
 
@@ -120,19 +125,19 @@ def longest_chain(jobs: Mapping[str, Job]) -> tuple[float, list[str]]:
 def measure(folders: Iterable[Path]) -> dict[str, Any]:
     """Simulate the run whose records lie in some folders; times [s]."""
     paths = (path for folder in folders for path in sorted(folder.glob("*.tsv")))
-    times = {path.stem: number(record_of(path)["cpu_time"]) for path in paths}
+    times = {path.stem: float(record_of(path)["s"]) for path in paths}
     jobs = jobs_of(times)
     chain, names = longest_chain(jobs)
     rows = [
         {"cores": cores, "local": wall_time(jobs, cores), "slurm": wall_time(jobs, cores, SLURM_OVERHEAD)}
         for cores in CORES
     ]
-    return {"jobs": len(jobs), "processor": sum(times.values()), "chain": chain, "chain_jobs": names, "rows": rows}
+    return {"jobs": len(jobs), "seconds": sum(times.values()), "chain": chain, "chain_jobs": names, "rows": rows}
 
 
 def table(found: Mapping[str, Any]) -> str:
     """The simulation as text."""
-    lines = [f"{found['jobs']} jobs, {found['processor']:.0f} s of processor time", "cores   local s   Slurm s"]
+    lines = [f"{found['jobs']} jobs, {found['seconds']:.0f} s on one core", "cores   local s   Slurm s"]
     lines += [f"{row['cores']:5}{row['local']:10.0f}{row['slurm']:10.0f}" for row in found["rows"]]
     return "\n".join([*lines, f"longest chain {found['chain']:.0f} s: " + ", ".join(found["chain_jobs"])])
 

@@ -223,6 +223,8 @@ def test_stages_add_up(tmp_path: Path) -> None:
     assert rows["spectrum cubes"]["seconds"] == 7.0
     assert rows["manifest"]["processor_seconds"] == 0.0
     assert list(rows) == ["spectrum cubes", "figures and table", "manifest"]
+    by_pulse = [row["kind"] for row in stages.measure(tmp_path, stages.kind_and_pulse_of)]
+    assert by_pulse == ["spectrum cubes, cosine", "spectrum cubes, sine", "figures and table", "manifest"]
 
 
 def test_the_fastest_baseline_is_chosen_among_those_that_reach_the_error() -> None:
