@@ -2,9 +2,9 @@
 
 The times of the jobs are those of a finished run with at most one job for each core, from Snakemake's records in
 `logs/benchmarks`. The simulation starts a waiting job whenever a core is free, first those of higher priority, then the
-longer ones. In the column of Slurm each job sent to the cluster takes `SLURM_OVERHEAD` more, and the
-jobs that the rules keep local run on a core of their own without it, as with `profiles/slurm`. Figures follow all
-data sets that they may read.
+longer ones. In the column of Slurm each job sent to the cluster takes `SLURM_OVERHEAD` more, and the jobs that the
+rules keep local run on a core of their own without it, as with `profiles/slurm`. Figures follow all data sets that they
+may read.
 """
 
 from __future__ import annotations

@@ -150,7 +150,7 @@ def pulse_rows(pulse: AbstractPulse, frequency_ratio: float) -> Array:
 
 
 def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.int64]:
-    """Parts of each sample interval, at most `MAX_INTERVAL` long, at each of the frequency ratios: powers of two.
+    """Parts of each sample interval, at most `MAX_INTERVAL` long, at each frequency ratio: powers of two, or the most.
 
     Raises
     ------
@@ -167,7 +167,7 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
         )
     needed = np.log2(np.maximum(longest / (MAX_INTERVAL * frequency_ratio), 1.0))
     # powers of two, so that an array needs few divisions; each is the cell's own, not that of the lowest ratio
-    return np.left_shift(1, np.ceil(needed).astype(np.int64))
+    return np.minimum(np.left_shift(1, np.ceil(needed).astype(np.int64)), most)
 
 
 def solve_bodies(
