@@ -167,7 +167,7 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
         )
     needed = np.log2(np.maximum(longest / (MAX_INTERVAL * frequency_ratio), 1.0))
     # powers of two, so that an array needs few divisions; each is the cell's own, not that of the lowest ratio
-    return np.minimum(np.left_shift(1, np.ceil(needed).astype(np.int64)), most)
+    return np.left_shift(1, np.ceil(needed).astype(np.int64)).clip(max=most)
 
 
 def solve_bodies(
