@@ -200,6 +200,7 @@ def assess(
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
     from rocking._cli.record import file_errors
+    from rocking._excitation.pulses import split_pulses
     from rocking.suites.hazard_files import read_hazard
 
     with option_errors(HINTS), file_errors():
@@ -215,7 +216,7 @@ def assess(
             None if period_min is None or period_max is None else (period_min, period_max),
             _read(record or (), pair or (), vertical or (), unit, time_step),
             None if hazard is None else read_hazard(hazard),
-            None if shapes is None else shapes.split(","),
+            None if shapes is None else split_pulses(shapes),
             moving_ground,
             None if floor_periods is None else floor_periods.split(","),
             plain_numbers("floor_damping", floor_damping),

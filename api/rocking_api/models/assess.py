@@ -10,7 +10,7 @@ from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
 from rocking._base.errors import plain_numbers
 from rocking._dimensional.table_reader import Column
-from rocking._excitation.pulses import as_pulse
+from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
@@ -53,7 +53,7 @@ class AssessParams(Params):
     )
     shapes: str | None = Field(
         None,
-        description="pulses by name, separated by commas; absent: all that leave the ground at rest",
+        description="pulses, separated by commas; absent: all that leave the ground at rest",
         examples=["sine,ricker"],
     )
     moving_ground: bool = Field(False, description="also half sine and rectangular, which leave the ground moving")
@@ -79,7 +79,7 @@ class AssessParams(Params):
         if name.startswith("floor_") and value is not None:
             plain_numbers(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
-            for shape in str(value).split(","):
+            for shape in split_pulses(str(value)):
                 as_pulse(shape)
 
     def site(self, given: AssessBody | None) -> Site:
@@ -99,7 +99,7 @@ class AssessParams(Params):
             periods,
             [] if given is None else [one.motion(k) for k, one in enumerate(given.records, start=1)],
             None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
-            None if self.shapes is None else self.shapes.split(","),
+            None if self.shapes is None else split_pulses(self.shapes),
             self.moving_ground,
             None if self.floor_periods is None else plain_numbers("floor_periods", self.floor_periods),
             plain_numbers("floor_damping", self.floor_damping),
