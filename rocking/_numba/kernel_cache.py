@@ -1,8 +1,8 @@
 """The cache of machine code on disk: one folder for each state of the sources, in it one for each entry.
 
 The cache of numba tracks the file of the called function, its place and its time, not the files of the kernels that it
-calls. Here the name of the folder contains a digest of the sources of the kernels and of the modules of the package
-that they import: a change in any of them leads to recompilation.
+calls. Here the name of the folder contains a digest of the sources of the kernels, of the modules of this package that
+they import, and of the versions of the other packages: a change in any of them leads to recompilation.
 
 numba loads whatever it finds, and fails where it cannot write. Here the folder of an entry holds a digest of its files,
 which is compared before they are loaded: what is damaged is made again; where the folder cannot be written, the entry
@@ -27,8 +27,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
+import llvmlite  # type: ignore[import-untyped]
 import numba
-from llvmlite import binding  # type: ignore[import-untyped]
+import numpy as np
+from llvmlite import binding
 
 from rocking._base.source_tree import SourceTree, imported_names
 from rocking._numba.way import INTERNALS
@@ -46,6 +48,9 @@ COMPILERS = {"numba", "llvmlite"}
 
 DECORATORS = {"kernel", "specialised_kernel", "array_kernel", "jitable", "entry", "light_entry", "array_entry"}
 """and those with a function that one of these names of `rocking._numba.compilation` decorates."""
+
+MADE_WITH = (llvmlite, np, numba)
+"""Packages that modules with compiled code import: their versions count, not their files."""
 
 NOT_KEPT = threading.Event()
 """Set when machine code was compiled that could not be written to the disk."""
@@ -69,7 +74,7 @@ def cache_folder() -> str | None:
     given = os.environ.get("NUMBA_CACHE_DIR")
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "rocking"
     parents = [Path(given)] if given else [PACKAGE / "__pycache__", user]
-    sources = SourceTree(PACKAGE.parent)
+    sources = SourceTree(PACKAGE.parent, {PACKAGE.name})
     # a file in the folder tells for which state of the whole package it is: imports are followed once for each state
     marker = f"sources-{_digest(sources, sources.package())}"
     known = (found.parent.name for parent in parents for found in parent.glob(f"kernels-*/{marker}"))
@@ -82,7 +87,7 @@ def cache_folder() -> str | None:
 
 
 def kernel_digest(sources: SourceTree) -> str:
-    """Digest of what compiled code depends on: processor, Python, numba, and the kernel files with their imports.
+    """Digest of what compiled code depends on: processor, Python, `MADE_WITH`, kernel files with what they import here.
 
     The processor is that of the machine, or the one that NUMBA_CPU_NAME and NUMBA_CPU_FEATURES name: the folder is then
     found on every machine.
@@ -192,8 +197,8 @@ def _digest(sources: SourceTree, files: Iterable[Path]) -> str:
     name = binding.get_host_cpu_name() if config.CPU_NAME is None else config.CPU_NAME
     features = binding.get_host_cpu_features().flatten() if config.CPU_FEATURES is None else config.CPU_FEATURES
     way = "plain" if INTERNALS is None else "faster"
-    made_by = sys.version, numba.__version__, way, name, features, sources.digest_of(files)
-    return hashlib.sha256("\n".join(made_by).encode()).hexdigest()[:16]
+    made_by = sys.version, *(f"{one.__name__} {one.__version__}" for one in MADE_WITH), way, name, features
+    return hashlib.sha256("\n".join([*made_by, sources.digest_of(files)]).encode()).hexdigest()[:16]
 
 
 def _is_writable(folder: Path, marker: str | None = None) -> bool:

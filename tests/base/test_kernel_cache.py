@@ -292,7 +292,7 @@ def package(tmp_path):
 
 
 def digest_of(package):
-    return kernel_cache.kernel_digest(SourceTree(package.parent))
+    return kernel_cache.kernel_digest(SourceTree(package.parent, {"rocking"}))
 
 
 @pytest.mark.parametrize(
