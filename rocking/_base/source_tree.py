@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-"""Folder of the package and, in a checkout, of `workflow/` and `environment.lock`; in an installation of all packages."""
+"""Folder of the package and, in a checkout, of `workflow/` and `environment.lock`; in an installation of all others."""
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 """Attributes of statements that hold statements."""

@@ -318,6 +318,9 @@ class PackageCacheLocator(UserProvidedCacheLocator):
         """The folder that was set for the entry."""
         return str(Path(self._cache_path))
 
+    def ensure_cache_path(self) -> None:
+        """Nothing: numba would refuse a folder that can only be read."""
+
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
         """None: numba's own is a digest of the path, which fails for a path that the locale cannot express."""

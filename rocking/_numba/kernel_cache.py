@@ -40,6 +40,10 @@ PACKAGE = Path(__file__).parents[1]
 DIGEST = "sha256"
 """File with the digest of the other files of an entry."""
 
+COMPLETE = "complete"
+"""File in the folder of a state that marks it as complete: it serves where it can only be read, as in an installation
+of another user or in a container."""
+
 LATENCY = 1.0
 """How long the files of an entry may differ from their digest [s]: a process writes them first, then the digest."""
 
@@ -69,7 +73,7 @@ class Make(Protocol):
 def cache_folder() -> str | None:
     """Folder of the compiled kernels: below NUMBA_CACHE_DIR if set, else beside the package, else in the user cache.
 
-    None, with a warning, if none of them is writable.
+    None, with a warning, if none of them is writable or, by the faster way, complete.
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "rocking"
@@ -80,7 +84,7 @@ def cache_folder() -> str | None:
     known = (found.parent.name for parent in parents for found in parent.glob(f"kernels-*/{marker}"))
     name = next(known, None) or f"kernels-{kernel_digest(sources)}"
     for parent in parents:
-        if _is_writable(parent / name, marker):
+        if _is_writable(parent / name, marker) or _can_be_read(parent / name):
             return str(parent / name)
     _warn_not_kept("no cache folder is writable")
     return None
@@ -108,7 +112,7 @@ def keep_on_disk(make: Make, function: Callable[..., Any]) -> Any:
     if parent is None:
         return make(cache=False)
     folder = Path(parent, f"{function.__module__}.{function.__qualname__.replace('<locals>.', '')}")
-    if not _is_writable(folder):
+    if not _is_writable(folder) and not _can_be_read(Path(parent)):
         _warn_not_kept(f"{folder} is not writable")
         return make(cache=False)
     config: Any = numba.config  # its attributes are made at run time
@@ -211,6 +215,11 @@ def _is_writable(folder: Path, marker: str | None = None) -> bool:
     except OSError:
         return False
     return True
+
+
+def _can_be_read(folder: Path) -> bool:
+    """Whether it holds all entries; the plain way writes into each."""
+    return INTERNALS is not None and (folder / COMPLETE).exists()
 
 
 def _warn_not_kept(reason: str) -> None:
