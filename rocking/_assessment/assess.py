@@ -105,7 +105,7 @@ def assess(
         if progress is not None:
             progress(share / parts)
 
-    motions, bodies = site.motions, Bodies.of(given)
+    motions, bodies = site.find_motions(stop), Bodies.of(given)
     body = bodies.scaled()
     factors = factors_of(body, motions, stop, advance)
     overturned, rotation, displacement = responses_of(body, motions, stop)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +22,8 @@ from rocking.suites.hazard_curve import check_hazard_curve
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from rocking._numba.cancellation import StopFlag
 
 Array = NDArray[np.float64]
 
@@ -163,15 +164,25 @@ class Site:
                 raise InvalidArgumentError("shapes", self.shapes, "one or more pulses")
             object.__setattr__(self, "shapes", tuple(as_pulse(shape) for shape in self.shapes))
 
-    @cached_property
+    @property
     def motions(self) -> list[Motion]:
         """The motions, each once; of a pulse its mirror image is not listed, which is assessed as well."""
+        return self.find_motions(None)
+
+    def find_motions(self, stop: StopFlag | None) -> list[Motion]:
+        """`motions`, which are found once; `stop` cancels the work, which is long on a floor."""
+        if "_motions" not in self.__dict__:
+            object.__setattr__(self, "_motions", self._found(stop))
+        found: list[Motion] = self.__dict__["_motions"]
+        return found
+
+    def _found(self, stop: StopFlag | None) -> list[Motion]:
         found = self._records() if self.records else self._pulses()
         if self.floor_periods is None:
             return found
         floors, size = [], 0
         for one in found:
-            floors.append(self._on_floor(one))
+            floors.append(self._on_floor(one, stop))
             size += floors[-1].motion.samples  # type: ignore[operator]
             if size > MOST_SAMPLES:
                 allowed = f"periods at which all motions together have at most {MOST_SAMPLES} samples"
@@ -206,11 +217,12 @@ class Site:
             chosen = [(f"{one.name}, {t:.3g} s", one, t) for one in pulses for t in tried]
         return [Motion(name, one, pga[0], t, group, pga[0]) for group, (name, one, t) in enumerate(chosen)]
 
-    def _on_floor(self, motion: Motion) -> Motion:
+    def _on_floor(self, motion: Motion, stop: StopFlag | None) -> Motion:
         given = motion.motion
         ground = given if isinstance(given, Record) else sampled(motion)
         modes: Any = (self.floor_periods, self.floor_damping, self.floor_participation)
-        found = floor_motion(ground, **dict(zip(("periods", "damping", "participation"), modes, strict=True)))
+        names = "periods", "damping", "participation"
+        found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
         scale = motion.peak_acceleration / ground.peak_acceleration
         return replace(motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0)
 

@@ -14,6 +14,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.units import UNITS
+from rocking._dimensional.mesh_parts import with_few_parts
 from rocking._model.body import PolygonProperties
 
 FOOTPRINT = 1e-3
@@ -123,8 +124,9 @@ def _mesh(path: str | Path) -> trimesh.Trimesh:
 def _loaded(path: Path, _changed: int, _size: int) -> trimesh.Trimesh:
     """The mesh of a file, kept for the other directions: loading it and its inertia take most of the time."""
     # from its bytes: a file that holds all of its mesh is given no way to name others
-    source = path if path.suffix.lower() == ".gltf" else io.BytesIO(path.read_bytes())
-    return trimesh.load_mesh(source, file_type=path.suffix[1:].lower(), process=True, skip_materials=True)
+    kind = path.suffix[1:].lower()
+    source = path if kind == "gltf" else io.BytesIO(with_few_parts(path.read_bytes(), kind))
+    return trimesh.load_mesh(source, file_type=kind, process=True, skip_materials=True)
 
 
 def _horizontal(direction: float) -> NDArray[np.float64]:

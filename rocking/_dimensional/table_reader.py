@@ -18,10 +18,13 @@ from dataclasses import dataclass, field
 from itertools import chain, islice
 from os import PathLike
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import MAX_LENGTH, UNITS, USUAL, unit_name
+
+if TYPE_CHECKING:
+    from rocking._numba.cancellation import StopFlag  # numba takes longer to load than a table
 
 Item = TypeVar("Item")
 
@@ -39,6 +42,12 @@ MAX_CHARACTERS = 20_000_000
 MAX_COLUMNS = 1000
 """Most columns of a table."""
 
+EMPTY_ROWS = 20_000
+"""Most rows of a table that are empty, or totals, where its rows are limited: more than of any table of a person."""
+
+SHEET_COLUMNS, SHEET_CELLS = 16_384, 1_000_000
+"""Most columns and cells of a sheet, up to its last ones that are not empty: one cell far out makes all of them."""
+
 MAX_NAME = 200
 """Longest name of a column with its unit [characters]."""
 
@@ -52,7 +61,9 @@ EMPTY = ("", "-", "\u2013", "n/a", "?")
 """Cells without a value."""
 
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/]\s*([^\s,/]{1,8})\s*$|\bin\s+([a-zA-Z]{1,8})\s*$")
-_MARK = "\ufeff"
+MARK = "\ufeff"
+"""What some programs put before a text of UTF-8."""
+
 _GAP = r"[\s'\u2019]"
 _NUMBER = re.compile(
     r"\s*([+-]?[0-9][0-9.,'\u2019 \u00a0\u202f]*|[+-]?[.,][0-9]+)((?:(?<=[0-9.,])e[+-]?[0-9]+)?)\s*(.*?)\s*",
@@ -233,19 +244,22 @@ def text_of(raw: bytes) -> str:
         return raw.decode("cp1252", "replace")
 
 
-def read_csv(text: str, schema: Schema[Item], most: int | None = None) -> Table[Item]:
-    """A table from text with separated columns; the errors of `read_file`, a line that is not CSV, those of `most`."""
+def read_csv(text: str, schema: Schema[Item], most: int | None = None, stop: StopFlag | None = None) -> Table[Item]:
+    """A table from text with separated columns; the errors of `read_file`, a line that is not CSV, those of `most`.
+
+    `stop` cancels the work, also where `most` bounds it: rows that are empty or totals do not count.
+    """
     delimiter = _delimiter(text, schema)
     # where commas separate the columns, a single point is the decimal sign
     usual = "." if delimiter == "," else ""
-    return read_rows(_rows(_open(text), delimiter, schema), schema, usual, most)
+    return read_rows(_rows(_open(text), delimiter, schema, stop), schema, usual, most)
 
 
-def rows_of_csv(text: str, schema: Schema[Any]) -> Iterator[str]:
+def rows_of_csv(text: str, schema: Schema[Any], stop: StopFlag | None = None) -> Iterator[str]:
     """The text of each row that `read_csv` counts, with its end; the errors of `read_csv`."""
-    text = text.removeprefix(_MARK)
+    text = text.removeprefix(MARK)
     source, start = _open(text), 0
-    for _ in _rows(source, _delimiter(text, schema), schema):
+    for _ in _rows(source, _delimiter(text, schema), schema, stop):
         yield text[start : source.tell()]
         start = source.tell()
 
@@ -264,12 +278,16 @@ def _delimiter(text: str, schema: Schema[Any]) -> str:
 
 
 def _open(text: str) -> io.StringIO:
-    return io.StringIO(text.removeprefix(_MARK), newline="")
+    return io.StringIO(text.removeprefix(MARK), newline="")
 
 
-def _rows(source: Iterable[str], delimiter: str, schema: Schema[Any]) -> Iterator[list[str]]:
+def _rows(
+    source: Iterable[str], delimiter: str, schema: Schema[Any], stop: StopFlag | None = None
+) -> Iterator[list[str]]:
     rows = csv.reader(source, delimiter=delimiter, strict=True)
     while True:
+        if stop is not None:
+            stop.check()
         line = rows.line_num + 1
         try:
             row = next(rows)
@@ -295,7 +313,15 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
     import pandas as pd  # noqa: PLC0415  (takes long to load, and only sheets need it)
 
     try:
-        frame = pd.read_excel(io.BytesIO(raw), header=None, dtype=object, engine="calamine")
+        with pd.ExcelFile(io.BytesIO(raw), engine="calamine") as file:
+            sheet = file.book.get_sheet_by_index(0)
+            rows, columns = sheet.total_height, sheet.total_width
+            if columns > SHEET_COLUMNS or rows * columns > SHEET_CELLS:
+                allowed = f"at most {SHEET_COLUMNS} columns and {SHEET_CELLS} cells"
+                raise InvalidArgumentError(argument, f"a sheet of {rows} rows and {columns} columns", allowed)
+            frame = pd.read_excel(file, header=None, dtype=object)
+    except InvalidArgumentError:
+        raise
     except ImportError as error:
         raise ImportError("sheets need the extra `sheets`: pip install 'rocking[sheets]'", name=error.name) from None
     except MemoryError:
@@ -443,6 +469,9 @@ def read_rows(
             if len(body) == most:
                 raise TooManyRowsError(schema.argument, f"more than {most} rows", f"at most {most}")
             body.append((number, row))
+        elif most is not None and number - len(body) > EMPTY_ROWS:
+            allowed = f"at most {EMPTY_ROWS} rows that are empty or totals"
+            raise TooManyRowsError(schema.argument, f"{number} rows", allowed)
     numeric = [place for place, (one, _) in header.columns.items() if one.unit]
     measured = [place for place in numeric if header.columns[place][0].unit not in ("-", "kg")]
     decimal = _decimal_sign(

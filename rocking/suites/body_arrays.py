@@ -13,7 +13,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.equivalent_block import EquivalentBlock
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import AbstractBlock, RectangularBlock
-from rocking._model.labelled import broadcast_by_name, with_index
+from rocking._model.labelled import broadcast_by_name, with_index, without_place
 
 Analyse = Callable[[Sequence[AbstractBlock]], xr.Dataset]
 
@@ -46,7 +46,8 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
         raise InvalidArgumentError("blocks", taken[0], "dimensions other than " + ", ".join(OWN_DIMENSIONS))
 
     def part(chunk: xr.Dataset) -> xr.Dataset:
-        bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
+        with without_place():
+            bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
         names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
         found = _over(analyse(_blocks_of(bodies)), names, bodies.shape).assign_coords(chunk.coords)
         return with_index(found, names[-1], body.index) if names else found

@@ -18,7 +18,7 @@ def test_data_sets_left_are_counted_one_by_one(monkeypatch):
         return "damaged" if name == NAMES[1] else None
 
     cubes = SimpleNamespace(
-        catalogue=SimpleNamespace(names=lambda: NAMES), problem=problem, problems=lambda: {NAMES[1]: "damaged"}
+        catalogue=SimpleNamespace(scan=lambda: (NAMES, {})), problem=problem, problems=lambda: {NAMES[1]: "damaged"}
     )
 
     async def counted():

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
-from rocking._base.errors import plain_numbers
+from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
@@ -25,6 +25,21 @@ MAX_RECORDS = 100
 
 MAX_SAMPLES = 20_000
 """Most variants of an object [-]."""
+
+MAX_MODES = 20
+"""Most modes of a building [-]."""
+
+MAX_SHAPES = 50
+"""Most pulse shapes of a site [-]."""
+
+MAX_LEVELS = 1000
+"""Most levels of a hazard curve [-]."""
+
+MAX_RECORD = 1_000_000
+"""Most samples of a component of a record [-]."""
+
+Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
+Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
 
 _STRENGTH: dict[str, Any] = {"minimum": STRENGTHS[0], "maximum": STRENGTHS[1]}
 _LENGTH: dict[str, Any] = {"minimum": LENGTH[0], "maximum": LENGTH[1]}
@@ -77,9 +92,9 @@ class AssessParams(Params):
     def check_field(cls, name: str, value: Any) -> None:
         super().check_field(name, value)
         if name.startswith("floor_") and value is not None:
-            plain_numbers(name, str(value))  # a query with an error elsewhere has its numbers read
+            modes_of(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
-            for shape in split_pulses(str(value)):
+            for shape in _parts(name, value, MAX_SHAPES, "shapes"):
                 as_pulse(shape)
 
     def site(self, given: AssessBody | None) -> Site:
@@ -101,10 +116,30 @@ class AssessParams(Params):
             None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
             None if self.shapes is None else split_pulses(self.shapes),
             self.moving_ground,
-            None if self.floor_periods is None else plain_numbers("floor_periods", self.floor_periods),
-            plain_numbers("floor_damping", self.floor_damping),
-            plain_numbers("floor_participation", self.floor_participation),
+            None if self.floor_periods is None else modes_of("floor_periods", self.floor_periods),
+            modes_of("floor_damping", self.floor_damping),
+            modes_of("floor_participation", self.floor_participation),
         )
+
+
+def modes_of(name: str, text: str) -> list[float]:
+    """The numbers of the modes of a building, separated by commas.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the text holds anything else, or more than `MAX_MODES`.
+    """
+    _parts(name, text, MAX_MODES, "modes")
+    return plain_numbers(name, text)
+
+
+def _parts(name: str, text: str, most: int, what: str) -> list[str]:
+    """The parts of a text that commas separate, at most so many; those within brackets separate none."""
+    parts = split_pulses(text)
+    if len(parts) > most:
+        raise InvalidArgumentError(name, f"{len(parts)} {what}", f"at most {most} {what}")
+    return parts
 
 
 class SuiteRecordBody(BaseModel):
@@ -112,11 +147,11 @@ class SuiteRecordBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    acceleration: list[float] = Field(description="horizontal acceleration at uniform steps, in `unit`")
-    second: list[float] | None = Field(
+    acceleration: Samples = Field(description="horizontal acceleration at uniform steps, in `unit`")
+    second: Samples | None = Field(
         None, description="other horizontal component: the pair is assessed at all angles and counts as one record"
     )
-    vertical: list[float] | None = Field(None, description="vertical acceleration, upwards")
+    vertical: Samples | None = Field(None, description="vertical acceleration, upwards")
     time_step: float = Field(description="time between samples [s]")
     unit: str = Field("m/s2", description="unit of the samples")
     name: str = Field("", description="name for the answer", max_length=40)
@@ -133,8 +168,8 @@ class HazardBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    intensity: list[float] = Field(description="peak ground accelerations, ascending [m/s2]")
-    annual_rate: list[float] = Field(description="annual rates of exceedance [1/year]")
+    intensity: Levels = Field(description="peak ground accelerations, ascending [m/s2]")
+    annual_rate: Levels = Field(description="annual rates of exceedance [1/year]")
 
 
 class AssessBody(AssessParams):
