@@ -57,7 +57,7 @@ def offset_remark(a: Array) -> str | None:
         return None
     return (
         f"its {name} of {levels[name]:.4g} m/s2 is part of its PGA of {np.abs(a).max():.4g} m/s2, which is "
-        f"{shaking:.4g} m/s2 about it: remove the baseline (`baseline_order`) before it is scaled by its PGA"
+        f"{shaking:.4g} m/s2 about it: remove the baseline (`baseline_order`) before it is scaled"
     )
 
 

@@ -224,7 +224,8 @@ def read_samples(file: TextFile, most: int) -> tuple[int, Array | None, Array]:
         return layout.first, None, _table(layout, [0], most)[0]
     times = (named or [0])[0]
     _check_name(layout, layout.columns[1 - times])
-    return layout.first, *_table(layout, [times, 1 - times], most)
+    time, values = _table(layout, [times, 1 - times], most)
+    return layout.first, time, values
 
 
 def read_rotations(
@@ -264,7 +265,7 @@ def read_rotations(
     if not times:
         (rotation,) = _table(layout, chosen, most)
         step = _agreed_step(layout, rotation.size, None, time_step)
-        return step * np.arange(rotation.size), rotation * UNITS["rad"][unit or given or "rad"]
+        return step * np.arange(rotation.size, dtype=np.float64), rotation * UNITS["rad"][unit or given or "rad"]
     time, rotation = _table(layout, [times[0], chosen[0]], most)
     return time * _time_factor(layout, layout.columns[times[0]]), rotation * UNITS["rad"][unit or given or "rad"]
 
@@ -294,7 +295,7 @@ def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expect
         if counted is None or following[0] != first + 1:
             shown = file.head[first].strip()
             width = len(_split(file.head[following[0]]))
-            allowed = f"rows of {width} numbers, as in line {following[0] + 1}; or the argument `skip`, such as skip=1"
+            allowed = f"rows of {width} numbers, as in line {following[0] + 1}; or the argument `skip`"
             raise file.error(first, shown, allowed)
         first = following[0]
     elif skip is None and following and (counted := _counted(file.head[first])):
@@ -389,14 +390,14 @@ def _columns(
             found.append((k, [_column(name, text, quantity) for name, text in zip(names, texts, strict=True)]))
     if not found:
         return None, [Column(f"column {k + 1}", text) for k, text in enumerate(units or [""] * width)]
-    line, columns = found[0]
+    place, columns = found[0]
     for other, theirs in found[1:]:
         for one, another in zip(columns, theirs, strict=True):
             stated = one.unit(quantity), another.unit(quantity)
             if None not in stated and stated[0] != stated[1]:
                 allowed = f"one line of names, not also {file.head[other].strip()!r} in line {other + 1}"
-                raise file.error(line, file.head[line].strip(), allowed)
-    return line, columns
+                raise file.error(place, file.head[place].strip(), allowed)
+    return place, columns
 
 
 def _row_of_units(line: str, separator: str | None, width: int) -> list[str]:
@@ -647,7 +648,7 @@ def _agreed_step(layout: Layout, count: int, measured: float | None, given: floa
     if counted is not None:
         if counted[0] != count:
             shown = file.head[layout.first - 1].strip()
-            allowed = f"the number of values, {count}, and a time step; or the argument `skip`, such as skip=1"
+            allowed = f"the number of values, {count}, and a time step; or the argument `skip`"
             raise file.error(layout.first - 1, shown, allowed)
         measured = measured or counted[1]
     said = layout.header.step(given)
@@ -778,6 +779,6 @@ def _uniform_step(layout: Layout, times: Array) -> float:
     if step > 0.0 and max(off.max(), -off.min()) <= STEP_TOLERANCE * step:
         return float(f"{step:.12g}")  # removes the rounding of the difference
     wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
-    more = "; or the argument `skip`, such as skip=1" if wrong == 0 and not layout.skipped else ""
+    more = "; or the argument `skip`" if wrong == 0 and not layout.skipped else ""
     found = f"a step of {times[wrong + 1] - times[wrong]:g} s"
     raise file.error(first + wrong + 1, found, f"uniform steps of {middle:g} s{more}")
