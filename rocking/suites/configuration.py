@@ -62,8 +62,8 @@ class RecordFiles:
     time_step: float | None
     component: str | None
     vertical: str | None
-    skip: int | None
     baseline_order: int | None
+    skip: int | None = None
 
     def paths(self) -> list[Path]:
         """The files, in the order of their names.
@@ -243,8 +243,8 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         None if step is None else number("records.time_step", step, *TIME_STEP, unit="s"),
         None if given["component"] is None else str(given["component"]),
         None if given["vertical"] is None else str(given["vertical"]),
-        given["skip"],
         order,
+        given["skip"],
     )
 
 

@@ -1,4 +1,4 @@
-"""Small files of kinds that were misread or that no argument could open: each gives its values, or says what to state."""
+"""Small files of kinds that were misread, or that no argument could open: each is read, or says what to state."""
 
 from pathlib import Path
 
@@ -66,7 +66,7 @@ def test_what_is_not_stated_is_asked_for(file, arguments, said):
 
 def test_frames_are_no_seconds():
     trace = TextFile("frame_counter.csv", (FOLDER / "frame_counter.csv").read_bytes())
-    with pytest.raises(RecordFileError, match="the column frame, a counter.*`time_step`"):
+    with pytest.raises(RecordFileError, match=r"the column frame, a counter.*`time_step`"):
         read_rotations(trace, 10_000, None)
     time, rotation = read_rotations(trace, 10_000, None, 1.0 / 60.0)
     np.testing.assert_allclose(time[:3], [0.0, 1.0 / 60.0, 2.0 / 60.0])

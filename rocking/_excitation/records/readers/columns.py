@@ -40,8 +40,8 @@ STEP_TOLERANCE = 0.02
 MAX_TIME = 1e12
 """Largest time in a column of times [s]; times are often counted from an epoch."""
 
-LONGEST_STEP = 0.2
-"""Longest usual step of a record [s]: a longer one is never taken from a column without a name, or without a remark."""
+LONGEST_STEP = 0.5
+"""Longest step of a record [s] that is taken from times without a unit."""
 
 MAX_UNIT_PARTS = 8
 """Most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2."""
@@ -64,11 +64,13 @@ _COMMENT = "#%!*/\"'"
 _DECIMAL_COMMA = (";", "\t")
 """Separators of columns beside which a comma is the decimal sign."""
 
-_UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:,[+-]?\d++,\d++)*+\s*+")
+_UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:,[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)*+\s*+")
 """A row that may be of numbers with decimal commas only."""
 
-_COMMA_NUMBERS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:\s++[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)++\s*+")
-"""A row of several numbers with decimal commas, separated by blanks."""
+_COMMA_NUMBERS = re.compile(
+    r"\s*+[+-]?\d++(?:,\d++)?+(?:[Ee][+-]?\d++)?+(?:[ ]++[+-]?\d++(?:,\d++)?+(?:[Ee][+-]?\d++)?+)++\s*+"
+)
+"""A row of several numbers, separated by blanks, whose commas are decimal signs."""
 
 _BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[][^()\[\]]*+[)\]]")
 
@@ -76,7 +78,7 @@ KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
     r"(time|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)\b.*|timestamps?|seconds?|sekunden",
     "counter": r"(frame|frames|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|step|bild|punkt|"
-    r"muestra|campione|echantillon|échantillon|no|nr|num|number|nummer|n|i|k|j|id|count|counter|zähler|lfd)"
+    r"messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|count|counter|zähler|lfd)"
     r"( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)",
     "other": r"(vel|dis(?!t)|geschw|versch|spost|depl|spectr|fourier|psa\b|psv\b|period\b|freq|temp(erat|\b)|press|"
     r"strain|arias|cav\b).*",
@@ -85,7 +87,7 @@ KINDS = {
 
 SAMPLES = (
     r"(ground |base |table |input |shock |measured |corrected |uncorrected |raw )?"
-    r"(a|ag|üg|acc|accel|acceler\w*|accn|beschl\w*|aceler\w*|accéler\w*|ivme)( ?(time )?(history|series|values?|data))?"
+    r"(a|ag|üg|acc|accel|acceler\w*|accn|beschl\w*|aceler\w*|accélér\w*|ivme)( ?(time )?(history|series|values?|data))?"
     r"( ?(x|y|z|ns|ew|ud|n s|e w|u d|n|e|u|v|h\d?|\d+))?|"
     r"ns|ew|ud|n s|e w|u d|n|s|e|w|u|z|x|y|v|h\d?|[bh][hnl][enz123]|long|longitudinal|trans|transverse|vert\w*|up|"
     r"north|south|east|west|(chan|channel|ch|col|column) ?\d+|rotations?|angle|theta|θ|phi|winkel|rotación|rotazione"
@@ -112,7 +114,7 @@ class Column:
 
     def unit(self, quantity: str) -> str | None:
         """The unit of a quantity that the name or the row of units states."""
-        own = unit_name(self.unit_text.strip(" .()[]"), quantity) if self.unit_text else None
+        own = units_in(self.unit_text.strip(" .[]"), quantity) if self.unit_text else None
         return own or unit_in_name(self.name, quantity)
 
 
@@ -185,23 +187,29 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     said = in_name or stated.value
     agreed = agreed_unit(file, layout.line if in_name else stated.line, None if said is None else str(said), unit)
     before = [k for k in times if k < chosen] or times
-    measured, remarks = None, list(header.remarks())
+    measured = None
     if before:
         found_times, values = _table(layout, [before[-1], chosen])
-        factor = _time_factor(layout, layout.columns[before[-1]])
-        measured = _uniform_step(layout, found_times * factor)
-        if measured > LONGEST_STEP:
-            remarks.append(f"the time step of {measured:g} s is long for a record: are its times in seconds?")
+        measured = _uniform_step(layout, found_times * _time_factor(layout, layout.columns[before[-1]]))
+        known = time_step or header.step(time_step).value
+        if layout.columns[before[-1]].unit("s") is None:  # the step may say which one it is
+            units = (
+                scale for scale in (1.0, 1e-3, 1e-6) if known and abs(scale * measured / float(known) - 1.0) < 1e-3
+            )
+            measured *= next(units, 1.0)
+            if measured > LONGEST_STEP and time_step is None:
+                found = f"a time step of {measured:g}, without a unit"
+                raise file.error(layout.line, found, "a unit of times, such as time [ms], or the argument `time_step`")
     else:
         (values,) = _table(layout, [chosen])
     file.check_values(values)
     if layout.width == 1 and not layout.skipped and layout.counted is None:
-        _check_leading(layout, values)
+        _check_leading(layout, values, time_step)
     step = _agreed_step(layout, values.size, measured, time_step)
     stem = file.name.rsplit(".", 1)[0]
     name = stem if component is None else f"{stem} {column.name}"
     left = f"; not used: {', '.join(unused)}" if unused else ""
-    return Record(values, step, agreed, name=name, source=f"{file.name} (columns{left})", remarks=remarks)
+    return Record(values, step, agreed, name=name, source=f"{file.name} (columns{left})", remarks=header.remarks())
 
 
 def read_samples(file: TextFile, most: int) -> tuple[int, Array | None, Array]:
@@ -263,6 +271,9 @@ def read_rotations(
     if unit is not None and given is not None and unit != given:
         raise file.error(layout.line, f"the column {column.shown}", f"rotations in {given}, as `degrees` says")
     if not times:
+        if layout.width == 1 and time_step is None and not layout.header.found.get("step"):
+            expected = "a column of times and one of rotations, or the argument `time_step`"
+            raise file.error(layout.first, "one column", expected)
         (rotation,) = _table(layout, chosen, most)
         step = _agreed_step(layout, rotation.size, None, time_step)
         return step * np.arange(rotation.size, dtype=np.float64), rotation * UNITS["rad"][unit or given or "rad"]
@@ -305,13 +316,12 @@ def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expect
             counted = None
     separator, comma = _separator(file.head[first])
     width = len(_fields(file.head[first], separator))
-    above = first if skip is None else rows[0]
-    if counted is not None:
-        above = rows[0]
-    line, columns = _columns(file, above, separator, width, quantity)
+    line, columns = _columns(file, first, separator, width, quantity)
+    if separator == "," and (line is None or "," not in file.head[line]):
+        _check_commas(file, first)
     if line is None:
-        _check_unnamed(file, above, first, separator, width)
-    header = read_header(file, file.head[:above], quantity)
+        _check_unnamed(file, first, width)
+    header = read_header(file, file.head[:first], quantity)
     return Layout(file, first, separator, comma, line, columns, header, counted, skip is not None)
 
 
@@ -343,7 +353,7 @@ def _count_rows(file: TextFile, first: int) -> int:
 
 def _separator(line: str) -> tuple[str | None, bool]:
     """The separator of a row of numbers, None for blanks, and whether commas are decimal signs."""
-    if _COMMA_NUMBERS.fullmatch(line):
+    if "," in line and _COMMA_NUMBERS.fullmatch(line):
         return None, True
     mark = next((mark for mark in (";", "\t", ",") if mark in line.strip()), None)
     return mark, mark in _DECIMAL_COMMA
@@ -360,6 +370,12 @@ def _split(line: str) -> list[str]:
     separator, comma = _separator(line)
     fields = _fields(line.replace(",", ".") if comma else line, separator)
     return fields if separator is not None else [*chain.from_iterable(map(TOUCHING.split, fields))]
+
+
+def _cells(layout: Layout, line: str) -> list[str]:
+    """The texts of the numbers of a row, as the first row separates them."""
+    fields = _fields(line.replace(",", ".") if layout.comma else line, layout.separator)
+    return fields if layout.separator is not None else [*chain.from_iterable(map(TOUCHING.split, fields))]
 
 
 def _is_row(line: str) -> bool:
@@ -379,13 +395,18 @@ def _columns(
     """
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []
+    nearest = True
     for k in range(first - 1, -1, -1):
-        line = file.head[k].strip().strip(_COMMENT if file.head[k].strip()[:1] in "#%!*/" else "").strip()
-        parts = _row_of_units(line, separator, width)
+        whole = file.head[k].strip()
+        line = whole.strip(_COMMENT).strip() if whole[:1] in "#%!*/" else whole
+        parts = _row_of_units(line, separator, width, quantity)
         if parts and not units and not found:
             units = parts
             continue
-        if names := _names(line, separator, width, quantity):
+        surely, direct = bool(units) and not found, nearest  # of one column, a line further above may be a title
+        nearest = nearest and not re.search(r"\w", line)
+        names = _names(line, separator, width, quantity, surely) or _names(whole, separator, width, quantity)
+        if names and (width > 1 or direct or _known(_base(names[0]))):
             texts = units if not found and units else [""] * width
             found.append((k, [_column(name, text, quantity) for name, text in zip(names, texts, strict=True)]))
     if not found:
@@ -400,17 +421,20 @@ def _columns(
     return place, columns
 
 
-def _row_of_units(line: str, separator: str | None, width: int) -> list[str]:
+def _row_of_units(line: str, separator: str | None, width: int, quantity: str) -> list[str]:
     """The texts of a line of units, one of each column; empty if it is none."""
     fields = _fields(line, separator)
     fields = fields if len(fields) == width else line.split()
-    known = [any(unit_name(part.strip(" ."), one) for one in UNITS) for part in fields]
+    known = [
+        units_in(part.strip(" .[]"), quantity) is not None or any(unit_name(part.strip(" ."), one) for one in UNITS)
+        for part in fields
+    ]
     blank = [part in ("", "-", "[-]", "(-)") for part in fields]
     return fields if len(fields) == width > 1 and any(known) and all(map(max, known, blank)) else []
 
 
-def _names(line: str, separator: str | None, width: int, quantity: str) -> list[str]:
-    """The names of as many columns in a line; empty if it is none of names."""
+def _names(line: str, separator: str | None, width: int, quantity: str, surely: bool = False) -> list[str]:
+    """The names of as many columns in a line; empty if it is none of names. `surely`: a line of units is below it."""
     joined = _BRACKETS.sub(lambda found: "".join(found[0].split()), line)  # blanks in brackets separate no columns
     for mark in (separator, ",", ";", "\t", None):
         names = _fields(joined if mark is None else line, mark)
@@ -419,10 +443,10 @@ def _names(line: str, separator: str | None, width: int, quantity: str) -> list[
         if len(names) != width or not all(map(_is_name, names)):
             continue
         columns = [_column(name, "", quantity) for name in names]
-        stated = any(one.unit(quantity) and _is_labelled(one.name) for one in columns)
         known = [one.kind != "" for one in columns]
-        alike = mark is not None and mark == separator and all(len(name.split()) <= 3 for name in names)
-        if stated or all(known) or (width > 1 and (columns[0].kind == "time" or alike)):
+        words = max(len(name.split()) for name in names)
+        alike = mark is not None and mark == separator and width > 1 and (any(known) or words <= 3)
+        if surely or alike or (all(known) and (width > 1 or words <= 3)):
             return names
     return []
 
@@ -439,11 +463,6 @@ def _is_name(text: str) -> bool:
     )
 
 
-def _is_labelled(name: str) -> bool:
-    """Whether the unit in a name is marked: in brackets, after a slash or an underscore, or behind a known name."""
-    return re.search(r"[(\[/]|_", name) is not None or _base(name) != _plain(name)
-
-
 def _plain(name: str) -> str:
     """A name in lower case, without brackets and signs but those of numbers."""
     without = re.sub(r"[(\[][^()\[\]]*[)\]]?", " ", name.lower())
@@ -452,13 +471,11 @@ def _plain(name: str) -> str:
 
 def _base(name: str) -> str:
     """A plain name without the unit behind it, if what is left is known; else the plain name."""
-    plain = _plain(name)
-    words = plain.split()
+    words = re.split(r"[\s_]+", name.strip())
     for k in range(1, len(words)):
-        tail = "".join(re.split(r"[\s_,]+", name.strip())[-k:])
-        if any(unit_name(tail, one) for one in UNITS) and _known(" ".join(words[:-k])):
-            return " ".join(words[:-k])
-    return plain
+        if any(unit_name("".join(words[k:]), one) for one in UNITS) and _known(base := _plain(" ".join(words[:k]))):
+            return base
+    return _plain(name)
 
 
 def _known(plain: str) -> str:
@@ -491,23 +508,28 @@ def unit_in_name(name: str, quantity: str) -> str | None:
     texts = re.findall(r"[(\[]([^()\[\]]*)[)\]]", name)
     if texts:
         return next((unit for text in texts if (unit := units_in(text.strip(" ."), quantity))), None)
-    parts = re.split(r"[\s_,]+", name.strip())[-MAX_UNIT_PARTS:]
-    texts = [*("".join(parts[k:]) for k in range(len(parts))), name.partition("/")[2]]
+    parts = re.split(r"_+", name.strip())[-MAX_UNIT_PARTS:]
+    words = name.split()[-MAX_UNIT_PARTS:]
+    texts = ["".join(parts[k:]) for k in range(1, len(parts))] + [name.partition("/")[2]]
+    texts += ["".join(words[k:]) for k in range(1, len(words)) if _known(_plain(" ".join(words[:k])))]
     return next((unit for text in texts if (unit := unit_name(text.strip(" ."), quantity))), None)
 
 
-def _check_unnamed(file: TextFile, above: int, first: int, separator: str | None, width: int) -> None:
-    """Refuse rows that may be of decimal commas, and those whose last header line names columns in another number.
+def _check_commas(file: TextFile, first: int) -> None:
+    """Refuse rows that may be of numbers with decimal commas."""
+    if all(_UNSIGNED_PAIRS.fullmatch(row) for row in file.head[first:] if row.strip()):
+        allowed = "semicolons or tabs between columns with decimal commas, or names of the columns with commas"
+        raise file.error(first, file.head[first].strip(), allowed)
+
+
+def _check_unnamed(file: TextFile, first: int, width: int) -> None:
+    """Refuse rows whose last header line names columns in another number.
 
     Titles are such lines as well. It names columns if it states a unit of times other than seconds.
     """
-    rows = [row for row in file.head[first:] if row.strip()]
-    if separator == "," and all(map(_UNSIGNED_PAIRS.fullmatch, rows)):
-        allowed = "semicolons or tabs between columns with decimal commas, or names of the columns with commas"
-        raise file.error(first, file.head[first].strip(), allowed)
-    k = next((k for k in range(above - 1, -1, -1) if file.head[k].strip()), above)
+    k = next((k for k in range(first - 1, -1, -1) if file.head[k].strip()), first)
     line = file.head[k].strip()
-    if k == above or re.search(r"[:=]", line) or line.startswith(tuple("#%!*/")):
+    if k == first or re.search(r"[:=]", line) or line.startswith(tuple("#%!*/")):
         return
     if any(unit_name(text, "s") not in (None, "s") for text in re.findall(r"[(\[]([^()\[\]]*)[)\]]", line)):
         raise file.error(k, line, f"names of {width} columns, as in line {first + 1}")
@@ -527,8 +549,8 @@ def _unnamed_times(layout: Layout) -> list[int]:
 
     Whole numbers and long steps may also be a counter, or times in another unit: the column is marked as a counter.
     """
-    lines = [row for row in layout.file.head[layout.first :] if _is_row(row)]
-    if not _rises(np.array([to_float(_split(row)[0]) for row in lines])):
+    cells = [_cells(layout, row)[0] for row in layout.file.head[layout.first :] if row.strip()]
+    if all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells)])):
         return []  # perhaps one series, whose last row is shorter
     (values,) = _table(layout, [0])
     if not _rises(values):
@@ -554,7 +576,8 @@ def _is_wrapped(layout: Layout, component: str | None) -> bool:
     file, width = layout.file, layout.width
     if component == WRAPPED:
         return True
-    lines = [[*map(to_float, _split(row))] for row in file.head[layout.first :] if _is_row(row)]
+    cells = [_cells(layout, row) for row in file.head[layout.first :] if row.strip()]
+    lines = [[*map(to_float, row)] for row in cells if all(map(NUMBER.fullmatch, row))]
     counts = [one.value for one in layout.header.found.get("count", [])] + [layout.counted[0] if layout.counted else 0]
     rows = _count_rows(file, layout.first)
     if any((rows - 1) * width < (count or 0) <= rows * width for count in counts) and rows not in counts:  # type: ignore[operator]
@@ -579,8 +602,9 @@ def _wrapped(layout: Layout, unit: str | None, time_step: float | None) -> Recor
     if layout.separator is None and not layout.comma:
         values = file.values(layout.first)
     else:
-        values = np.concatenate([[to_float(text) for text in _split(decoded(line))]
-                                 for _, lines in file.rows(layout.first) for line in lines if line])  # fmt: skip
+        lines = chain.from_iterable(lines for _, lines in file.rows(layout.first))
+        texts = chain.from_iterable(_cells(layout, decoded(line)) for line in lines if line)
+        values = np.array([file.number(layout.first, text, "a number") for text in texts])
         file.check_values(values)
     rows = _count_rows(file, layout.first)
     if not (rows - 1) * layout.width < values.size <= rows * layout.width:
@@ -613,16 +637,19 @@ def _chosen(layout: Layout, times: list[int], component: str | None) -> tuple[in
             names = ", ".join(columns[k].shown for k in listed)
             raise file.error(layout.line, f"components {names}", "the argument `component`: one of them")
         return samples[0], [columns[k].shown for k in others if k != samples[0]]
-    plain = component.strip().lower()
+    plain = _plain(component)
     for key in (
-        lambda name: [name],
-        lambda name: [re.split(r"[(\[/]", name)[0].strip(), _base(name)],
-        lambda name: [re.split(r"[\s_(\[/]", name)[0]],
-        lambda name: re.split(r"[\s_()\[\]/]+", name),
+        lambda name: [name.lower()] if component.strip().lower() == name.lower() else [],
+        lambda name: [_base(name), _plain(name)],
+        lambda name: _plain(name).split()[:1],
+        lambda name: _plain(name).split(),
     ):
-        found = [k for k in others if plain in key(columns[k].name.lower())]
+        found = [k for k in others if any(_plain(part) == plain for part in key(columns[k].name))]
         if len(found) == 1:
             return found[0], []
+    numbered = re.fullmatch(r"column (\d+)", plain)  # whatever a line above says
+    if numbered and int(numbered[1]) - 1 in others:
+        return int(numbered[1]) - 1, []
     names = ", ".join(columns[k].shown for k in others)
     raise file.error(layout.line, f"components {names}", f"component {component}")
 
@@ -663,7 +690,7 @@ def _agreed_step(layout: Layout, count: int, measured: float | None, given: floa
     return agreed_step(file, layout.first, measured, given)
 
 
-def _check_leading(layout: Layout, values: Array) -> None:
+def _check_leading(layout: Layout, values: Array, time_step: float | None) -> None:
     """Refuse one column whose first numbers are a count, a step or a factor, by their size and their form.
 
     Raises
@@ -672,14 +699,18 @@ def _check_leading(layout: Layout, values: Array) -> None:
         With the argument `skip`, which says how many of them are no samples, 0 included.
     """
     texts = [row.strip() for row in layout.file.head[layout.first :] if row.strip()]
-    forms = [_form(text) for text in texts]
+    forms, digits = zip(*map(_form, texts), strict=True)
+    uniform = len(texts) > 6 and len({*forms[3:]}) == 1
+    exact = len(texts) > 12 and sum(count > 4 for count in digits[3:]) > 0.8 * (len(texts) - 3)
+    said = layout.header.found.get("step", [])
+    steps = [one.value for one in said] + [time_step]
     lead = 0
     for k in range(min(3, values.size - 2)):
         value, others = abs(values[k]), np.abs(values[k + 1 :]).max()
-        counts = value in (values.size - k - 1, values.size - k, values.size, *range(values.size - 3, values.size + 1))
-        written = len(set(forms[3:])) == 1 and forms[k] != forms[-1] and len(forms) > 6
-        named = value == round(value) or value <= LONGEST_STEP or any(abs(value / g - 1.0) < 1e-3 for g in _FACTORS)
-        if value > 0.0 and ((counts and value > 3.0) or value > JUMP * others or (written and named)):
+        counted = value > 3.0 and values.size - 3 <= value <= values.size
+        known = value == round(value) or value <= LONGEST_STEP or any(abs(value / g - 1.0) < 1e-3 for g in _FACTORS)
+        written = (uniform and forms[k] != forms[-1]) or (exact and digits[k] <= 2)
+        if value > 0.0 and (counted or value > JUMP * others or value in steps or (written and known)):
             lead = k + 1
     if lead:
         shown = ", ".join(texts[:lead])
@@ -690,10 +721,11 @@ def _check_leading(layout: Layout, values: Array) -> None:
 _FACTORS = (9.80665, 980.665, 386.089, 32.174, 9.81, 981.0)
 
 
-def _form(text: str) -> tuple[int, bool]:
-    """The number of decimals of a number and whether it has an exponent."""
+def _form(text: str) -> tuple[tuple[int, bool], int]:
+    """The number of decimals of a number, whether it has an exponent, and its number of significant digits."""
     mantissa, *exponent = re.split(r"[EeDd]", text.rstrip(",;"))
-    return len(mantissa.replace(",", ".").partition(".")[2]), bool(exponent)
+    decimals = mantissa.replace(",", ".").partition(".")[2]
+    return (len(decimals), bool(exponent)), len(re.sub(r"\D", "", mantissa).lstrip("0"))
 
 
 def _table(layout: Layout, columns: list[int], most: int = MAX_SAMPLES) -> list[Array]:
@@ -740,7 +772,8 @@ def _row(layout: Layout, index: int, line: str) -> list[float]:
 def _time_factor(layout: Layout, column: Column) -> float:
     """Seconds in the unit of the column of times, seconds if nothing states one."""
     unit = _stated_unit(layout, column, "s")
-    if unit is None and re.fullmatch(r"[a-z]++[\s_]++[a-z]++\.?", column.name, re.I):  # such as time h
+    tail = re.fullmatch(r"(?:time|t|zeit|temps|tempo|tiempo) (\w+)", _plain(column.name))
+    if unit is None and tail and tail[1] not in ("elapsed", "axis", "stamp", "vector", "relative"):  # such as time h
         raise _no_unit(layout, column, "s")
     return UNITS["s"][unit or "s"]
 

@@ -139,7 +139,7 @@ def _blocks(file: TextFile, lines: Lines) -> Iterator[Channel]:
             values = _numbers(file, k, lines, int(found["count"]), _width(line))
             if not found["kind"].lower().startswith("acc"):
                 continue
-            text = re.search(r"units?(?: of)? *[:=]? *([^()\s,]+)|\bin +([^()\s,]+)", line, re.I)
+            text = re.search(r"units?(?: of)? *[:=]? *([^()\s,]+)|\bin +(?!units)([^()\s,]+)", line, re.I)
             stated = "" if text is None else (text[1] or text[2]).rstrip(".")
             yield Channel(name, values, k, _step(line, reals), units_in(stated), stated)
 
