@@ -17,7 +17,7 @@ from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, as_pulse
 from rocking._excitation.records.floor import PERIODS as MODE_PERIODS
 from rocking._excitation.records.floor import floor_motion
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, offset_doubts
 from rocking.suites.hazard_curve import check_hazard_curve
 
 if TYPE_CHECKING:
@@ -188,6 +188,16 @@ class Site:
                 allowed = f"periods at which all motions together have at most {MOST_SAMPLES} samples"
                 raise InvalidArgumentError("floor_periods", self.floor_periods, allowed)
         return floors
+
+    @property
+    def doubts(self) -> list[str]:
+        """What is in doubt of the records, in words: their remarks, and offsets where they are scaled by their PGA."""
+        pairs = ((given,) if isinstance(given, Record) else given for given in vars(self)["records"])
+        records = [record for pair in pairs for record in pair]
+        found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
+        if self.pga is not None or self.hazard is not None:
+            found += offset_doubts(records)
+        return [*dict.fromkeys(text.replace("; ", ", ") for text in found)]
 
     def _records(self) -> list[Motion]:
         found = []

@@ -12,7 +12,7 @@ from scipy.special import ndtri
 from rocking._base.errors import InvalidArgumentError, float_array, number
 from rocking._base.units import Scalar
 from rocking._dimensional.thresholds import scale_thresholds
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, offset_doubts
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
 from rocking.suites.hazard import annual_rate
@@ -98,7 +98,7 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         Over `record`: `overturning_acceleration` [m/s2] and `overturning_velocity` [m/s] of the scaled records, nan for
         one that does not overturn the rock up to ten times the scale of uplift; `unexceeded_acceleration` and
         `unexceeded_velocity` of the line; and `intercept`, `slope` and `dispersion` [-], a (for PGA in m/s2, PGV/PGA in
-        s), b and s.
+        s), b and s. The attribute `warnings`, where there is one, names records whose offset is part of their PGA.
 
     Raises
     ------
@@ -128,9 +128,10 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         "unexceeded_acceleration": ("m s-2", level, "PGA that overturns with the probability"),
         "unexceeded_velocity": ("m s-1", level * pgv / pga, "PGV that overturns with the probability"),
     }
+    doubts = offset_doubts(motions)
     return xr.Dataset(
         {name: variable("record", values, unit, text) for name, (unit, values, text) in names.items()}
         | {"intercept": ((), intercept), "slope": ((), slope), "dispersion": ((), dispersion)},
         {"record": ("record", [one.name for one in motions])},
-        {"probability": share},
+        {"probability": share} | ({"warnings": "; ".join(doubts)} if doubts else {}),
     )

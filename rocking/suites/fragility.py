@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, offset_doubts
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
@@ -97,7 +97,8 @@ def fragility(
         their intervals, `fit_status` and measures of fit (`rocking.suites.fits`); `fitted` also over intensity.
         `survives_above_first` marks the records that do not reach the limit state at some level above the first at
         which they do, and `records_surviving_above_first` names them. `first_exceedances`, `first_median_intensity`,
-        ... are the curve of first exceedance, for comparison.
+        ... are the curve of first exceedance, for comparison. The attribute `warnings`, where there is one, names
+        records that are scaled although their offset is not small beside their shaking.
 
     Raises
     ------
@@ -119,6 +120,9 @@ def fragility(
     outcomes = suite_outcomes(suite, threads=threads, stop=stop)
     found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence))
     found.attrs |= {"confidence": confidence}
+    doubts = offset_doubts(suite.records) if suite.measure.scales_amplitude else []
+    if doubts:
+        found.attrs["warnings"] = "; ".join(doubts)
     if isinstance(blocks, AbstractBlock):
         found = found.isel(block=0)
     return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found

@@ -15,6 +15,7 @@ from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
+from rocking_api.models.records import BaselineOrder
 from rocking_api.models.responses import BY_SOLVER
 
 MAX_OBJECTS = 2000
@@ -79,6 +80,7 @@ class AssessParams(Params):
     floor_participation: str = Field(
         "1", description="participation factors times mode shapes at the floor [-], one or one for each"
     )
+    baseline_order: BaselineOrder = None
     samples: int = Field(
         0,
         description="variants of each object within its tolerance and 0.05 of the restitution that are tried [-]",
@@ -112,7 +114,9 @@ class AssessParams(Params):
             self.pga,
             self.pgv,
             periods,
-            [] if given is None else [one.motion(k) for k, one in enumerate(given.records, start=1)],
+            []
+            if given is None
+            else [one.motion(k, self.baseline_order) for k, one in enumerate(given.records, start=1)],
             None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
             None if self.shapes is None else split_pulses(self.shapes),
             self.moving_ground,
@@ -156,11 +160,16 @@ class SuiteRecordBody(BaseModel):
     unit: str = Field("m/s2", description="unit of the samples")
     name: str = Field("", description="name for the answer", max_length=40)
 
-    def motion(self, number: int) -> Record | tuple[Record, Record]:
-        """The record, or the pair."""
+    def motion(self, number: int, order: int | None) -> Record | tuple[Record, Record]:
+        """The record, or the pair, without a baseline of a degree."""
         name = self.name or f"record {number}"
-        first = Record(self.acceleration, self.time_step, self.unit, name, vertical=self.vertical)
-        return first if self.second is None else (first, Record(self.second, self.time_step, self.unit, name))
+
+        def record(samples: list[float], vertical: list[float] | None = None) -> Record:
+            found = Record(samples, self.time_step, self.unit, name, vertical=vertical)
+            return found if order is None else found.baseline_corrected(order=order)
+
+        first = record(self.acceleration, self.vertical)
+        return first if self.second is None else (first, record(self.second))
 
 
 class HazardBody(BaseModel):

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from rocking._excitation.records.record import TIME_STEP
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
@@ -26,6 +27,11 @@ class IdentifyParams(Params):
     )
     degrees: bool = Field(
         False, description="the rotations are in degrees, not in radians, where the header of CSV states no unit"
+    )
+    time_step: float | None = Field(
+        None,
+        description="time between the rows where CSV counts them in place of times [s]",
+        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
     )
     confidence: float = Field(
         0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}

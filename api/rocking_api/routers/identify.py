@@ -86,7 +86,7 @@ def _read(
     if isinstance(body, Trace):
         return np.array(body.time), (math.pi / 180.0 if params.degrees else 1.0) * np.array(body.rotation)
     stated = params.degrees if "degrees" in params.model_fields_set else None
-    return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated)
+    return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated, params.time_step)
 
 
 def _identified(
