@@ -28,10 +28,10 @@ from rocking_api.models.pulses import with_samples
 from rocking_api.routers.control_map import MapParams
 from rocking_api.settings import Settings
 
+from rocking._base.column import name_and_unit
 from rocking._base.errors import InvalidArgumentError, positive
 from rocking._cli.fragility import read_suite
 from rocking._dimensional.table import read_table
-from rocking._dimensional.table_reader import _name_and_unit
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.sampled import SampledPulse
 from rocking._numba.cancellation import StopFlag
@@ -244,9 +244,7 @@ READERS = {
     "samples in JSON": Reader(
         partial(body, form="pulse"), ["@", '{"pulse":{"acceleration":[@]}}', '{"pulse":{@}}'], [*PULSE, '"pulse":']
     ),
-    "cell of a header": Reader(
-        _name_and_unit, ["@", "[@", "width [@] x"], TABLE, (250,)
-    ),  # up to 12,000 cells of these
+    "cell of a header": Reader(name_and_unit, ["@", "[@", "width [@] x"], TABLE, (250,)),  # up to 12,000 cells of these
     "blocks in JSON": Reader(partial(body, form="blocks"), ["@", '{"blocks":[@]}'], BODY),
 }
 """Readers of text, by what they read."""

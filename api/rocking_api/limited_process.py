@@ -77,6 +77,10 @@ def print_result(read: Callable[[], dict[str, Any]]) -> None:
         found = read()
     except InvalidArgumentError as error:
         found = {"allowed": error.allowed}
+    except MemoryError:
+        raise
+    except Exception as error:  # noqa: BLE001  (of the reader of a damaged file: no limit was exceeded)
+        found = {"allowed": f"a file without the defect that its reader found ({type(error).__name__})"}
     sys.stdout.write(json.dumps(found))
 
 

@@ -14,7 +14,7 @@ CORNERS = 200
 
 
 def main(path: str, unit: str, step: str) -> None:
-    """Print the planes across the sides of the base of a mesh, its footprint and whether it is closed, or an error."""
+    """Print the planes across the sides of the base of a mesh, its footprint and what was repaired, or an error."""
     from rocking._dimensional.mesh import directions_across, mesh_footprint, mesh_properties  # noqa: PLC0415
 
     def read() -> dict[str, Any]:
@@ -26,7 +26,7 @@ def main(path: str, unit: str, step: str) -> None:
         return {
             "planes": {angle: astuple(properties) for angle, (properties, _) in found.items()},
             "footprint": footprint[:: len(footprint) // CORNERS + 1].tolist(),
-            "closed": all(is_closed for _, is_closed in found.values()),
+            "remarks": next(remarks for _, remarks in found.values()),
         }
 
     print_result(read)

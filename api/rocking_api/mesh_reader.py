@@ -30,13 +30,13 @@ class MeshShape:
         Those across the sides of its base, by angle from the x axis [degrees].
     footprint : list of (float, float)
         Corners of its base from the centre of mass [m].
-    closed : bool
-        Whether the surface encloses a volume without gaps.
+    remarks : list of str
+        What was repaired, each as the end of a sentence about the mesh.
     """
 
     planes: dict[float, Plane]
     footprint: list[tuple[float, float]]
-    closed: bool
+    remarks: list[str]
 
 
 def can_read_meshes() -> bool:
@@ -64,4 +64,4 @@ def read_mesh(raw: bytes, name: str, unit: str, stop: StopFlag) -> MeshShape:
         raise UnsupportedBodyError("mesh", ending, 'dimensions: meshes need pip install "rocking[mesh]" on the service')
     found = result_of("rocking_api.mesh_process", raw, "mesh", name, stop, (unit, str(STEP)))
     planes = {float(angle): Plane.of(PolygonProperties(*values)) for angle, values in found["planes"].items()}
-    return MeshShape(planes, [(x, y) for x, y in found["footprint"]], found["closed"])
+    return MeshShape(planes, [(x, y) for x, y in found["footprint"]], found["remarks"])

@@ -2,29 +2,47 @@
 
 from __future__ import annotations
 
-from rocking._dimensional.table_reader import HEIGHT, NAME, RESTITUTION, WIDTH, Column
+from rocking._base.column import Column
+from rocking._dimensional.table_reader import HEIGHT, NAME, NUMBER, RESTITUTION, WIDTH
 
 INPUTS = (
     NAME,
     WIDTH,
     Column(
-        "depth", "m", "depth of the base", ("d", "tiefe", "profondita", "profondeur", "fondo", "profundidad", "vathos")
+        "depth",
+        "m",
+        "depth of the base",
+        (
+            *("d", "base depth", "depth of base", "depth of the base", "tiefe", "profondita", "profondeur", "p"),
+            *("profundidad", "profundidade", "diepte", "vathos", "\u03b2\u03b1\u03b8\u03bf\u03c2"),
+        ),
+        absent_beside=("diameter",),
     ),
-    Column("diameter", "m", "diameter of a round base", ("dia", "durchmesser", "diametro", "diametre", "diametros")),
+    Column(
+        "diameter",
+        "m",
+        "diameter of a round base",
+        (
+            *("dia", "diam", "base diameter", "diameter base", "diameter of base", "diameter of the base"),
+            *(
+                "durchmesser",
+                "diametro",
+                "diametre",
+                "diametros",
+                "\u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2",
+            ),
+        ),
+        absent_beside=("width",),
+    ),
     HEIGHT,
     Column(
         "mass_height",
         "m",
         "height of the centre of mass above the base; by default half of the height",
         (
-            *(
-                "height of the centre of mass",
-                "centre of mass height",
-                "center of mass height",
-                "cg height",
-                "com height",
-            ),
-            *("schwerpunkthohe", "altezza del baricentro", "hauteur du centre de masse", "altura del centro de masa"),
+            *("height of the centre of mass", "height of the center of mass", "centre of mass height"),
+            *("center of mass height", "cg height", "com height", "schwerpunkthohe", "altezza del baricentro"),
+            *("hauteur du centre de masse", "altura del centro de masa"),
         ),
     ),
     Column(
@@ -34,24 +52,24 @@ INPUTS = (
     Column(
         "mass",
         "kg",
-        "mass; not needed for the outcome",
-        ("weight", "masse", "gewicht", "massa", "peso", "maza", "poids"),
+        "mass, or the weight of it; not needed for the outcome",
+        (
+            *("weight", "masse", "gewicht", "massa", "peso", "maza", "varos", "poids"),
+            *("\u03bc\u03b1\u03b6\u03b1", "\u03b2\u03b1\u03c1\u03bf\u03c2"),
+        ),
+        absent_beside=("height",),
+        assumed="kg",
     ),
     Column(
         "friction",
         "-",
         "coefficient of friction at the base",
         (
-            "friction coefficient",
-            "coefficient of friction",
-            "mu",
-            "reibung",
-            "reibungskoeffizient",
-            "attrito",
-            "frottement",
-            "friccion",
-            "trivi",
+            *("friction coefficient", "coefficient of friction", "mu", "reibung", "reibungskoeffizient"),
+            *("reibungszahl", "haftreibung", "attrito", "coefficiente di attrito", "frottement", "friccion", "trivi"),
+            *("coefficient de frottement", "coeficiente de friccion", "\u03bc", "\u03c4\u03c1\u03b9\u03b2\u03b7"),
         ),
+        highest=10.0,
     ),
     RESTITUTION,
     Column("tolerance", "m", "how far the dimensions are uncertain", ("dimension tolerance", "toleranz", "tolleranza")),
@@ -61,24 +79,41 @@ INPUTS = (
         "",
         "anything else",
         (
-            "note",
-            "remarks",
-            "comment",
-            "comments",
-            "bemerkung",
-            "bemerkungen",
-            "anmerkungen",
-            "osservazioni",
-            "remarques",
-            "notas",
-            "observaciones",
-            "simeioseis",
-            "material",
-            "location",
-            "room",
+            *("note", "remark", "remarks", "comment", "comments", "bemerkung", "bemerkungen", "anmerkungen"),
+            *("osservazioni", "remarques", "notas", "observaciones", "simeioseis", "material", "location", "room"),
         ),
+        joined=True,
     ),
 )
+"""What an object has."""
+
+STAND_INS = (
+    NUMBER,
+    Column(
+        "length",
+        "m",
+        "horizontal length: the depth beside a width, otherwise the width",
+        (
+            *("l", "base length", "length of base", "lange", "laenge", "longueur", "lunghezza", "largo", "longitud"),
+            *("comprimento", "lengte", "mikos", "\u03bc\u03b7\u03ba\u03bf\u03c2"),
+        ),
+        stands_for=("width", "depth"),
+    ),
+    Column(
+        "thickness",
+        "m",
+        "thickness: the depth beside a width",
+        (
+            *("thick", "thk", "t", "dicke", "starke", "staerke", "spessore", "epaisseur", "e", "espesor", "grosor"),
+            *("espessura", "dikte", "pachos", "\u03c0\u03b1\u03c7\u03bf\u03c2"),
+        ),
+        stands_for=("depth",),
+    ),
+)
+"""Other columns of tables, which are read as one of these."""
+
+REQUIRED = (("width", "diameter"), ("height",))
+"""Columns that the header of a table has, one of each group."""
 
 OUTPUTS = (
     Column("object", "", "name of the object"),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import astuple, dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -59,6 +59,8 @@ class Object:
         How far each dimension is uncertain [m], >= 0 and less than half of the smallest.
     pedestal, notes : str
         Repeated in reports.
+    details : mapping of str to str
+        Other texts, such as an inventory number, by their headers in tables that are written.
 
     Raises
     ------
@@ -84,10 +86,14 @@ class Object:
     tolerance: Scalar = 0.0
     pedestal: str = ""
     notes: str = ""
+    details: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
-        if (self.width is None) == (self.diameter is None) or (self.diameter is not None and self.depth is not None):
-            raise InvalidArgumentError("width", self.width, "a width, with or without a depth; or a diameter")
+        if self.width is None and self.diameter is None:
+            raise InvalidArgumentError("width", None, "a width, with or without a depth; or a diameter")
+        for name, other in (("width", self.width), ("depth", self.depth)):
+            if self.diameter is not None and other is not None:
+                raise InvalidArgumentError(name, other, "none beside a diameter; a base is a rectangle or round")
         self._check_texts()
         checked: dict[str, float] = {}
         for name in ("width", "height", "depth", "diameter", "mass_height"):
@@ -111,6 +117,10 @@ class Object:
         for name in ("name", "pedestal", "notes"):
             if not isinstance(getattr(self, name), str):
                 raise InvalidArgumentError(name, getattr(self, name), "a text")
+        details: Any = self.details
+        pairs = details.items() if isinstance(details, Mapping) else [(None, details)]
+        if not all(isinstance(one, str) for pair in pairs for one in pair):
+            raise InvalidArgumentError("details", details, "texts by name")
 
     def _set(self, values: dict[str, float]) -> None:
         for name, value in values.items():
@@ -253,8 +263,16 @@ class Plane:
 
     @classmethod
     def of(cls, found: PolygonProperties) -> Plane:
-        """The plane of a body with these edges and this radius of gyration."""
+        """The plane of a body with these edges and this radius of gyration.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If it is smaller or larger than an object may be.
+        """
         base = found.left + found.right
+        for name, size in (("base", base), ("height", found.top)):
+            number(name, size, *LENGTHS, unit="m")
         inertia = 12.0 * found.gyration**2 / (base**2 + found.top**2)
         return cls(base, 0.5 * (found.left - found.right), found.top, found.height, 1.0, inertia)
 

@@ -48,8 +48,8 @@ class Project:
     command: str
 
 
-def report_html(found: Assessment, project: Project, bad_rows: Sequence[BadRow] = ()) -> str:
-    """The report as text.
+def report_html(found: Assessment, project: Project, bad_rows: Sequence[BadRow] = (), reading: str = "") -> str:
+    """The report as text; `reading` says what the columns of the table of objects were read as.
 
     Raises
     ------
@@ -82,6 +82,7 @@ def report_html(found: Assessment, project: Project, bad_rows: Sequence[BadRow] 
         units={one.name: one.unit for one in OUTPUTS},
         colours=dict(zip(VERDICTS, COLOURS, strict=True)),
         bad_rows=bad_rows,
+        reading=reading,
         versions={"rocking": __version__, "Python": platform.python_version()}
         | {name: metadata.version(name) for name in ("numpy", "numba", "scipy")},
         chart_size=(WIDTH, HEIGHT),

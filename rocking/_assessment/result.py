@@ -64,6 +64,22 @@ class Assessment(EqualByValue):
         columns = [[None if value != value else value for value in column.tolist()] for column in self.columns.values()]
         return [dict(zip(self.columns, row, strict=True)) for row in zip(*columns, strict=True)]
 
+    @property
+    def details(self) -> dict[str, list[str]]:
+        """Other texts of the object of each row, such as an inventory number, by their headers."""
+        labels = dict.fromkeys(label for one in self.objects for label in one.details)
+        taken = {name for one in OUTPUTS for name in (one.name, one.label)}
+        return {
+            f"{label} (given)" if label in taken else label: [one.details.get(label, "") for one in self.objects]
+            for label in labels
+        }
+
+    def with_details(self, columns: Mapping[str, Any]) -> dict[str, Any]:
+        """Columns of the table, the names of the objects first, with the details of the objects behind these."""
+        (name, names), *others = columns.items()
+        details = {label: [*texts, *[""] * (len(names) - len(texts))] for label, texts in self.details.items()}
+        return {name: names} | details | dict(others)
+
     def worst_motion(self, row: int) -> Motion:
         """The motion that overturns a row from the lowest factor on, or under which it rotates most."""
         row = integer("row", row, 0, len(self.objects) - 1)
@@ -128,7 +144,7 @@ class Assessment(EqualByValue):
         """The table as a data frame."""
         import pandas as pd  # noqa: PLC0415  (takes longer to load than the package)
 
-        return pd.DataFrame(dict(self.columns))
+        return pd.DataFrame(self.with_details(self.columns))
 
     def to_xarray(self) -> xr.Dataset:
         """The table as a labelled data set over `row`, with units and meanings."""
@@ -144,12 +160,13 @@ class Assessment(EqualByValue):
     def to_csv(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> str:
         """The table as CSV with units in its header, written to a file if a path is given.
 
-        Rows of the table of objects that were not read follow at the end, with the verdict "not read" and the reason
-        among the warnings. Text that a spreadsheet would take for a formula has a leading apostrophe.
+        The `details` of the objects follow their names. Rows of the table of objects that were not read follow at the
+        end, with the verdict "not read" and the reason among the warnings. Text that a spreadsheet would take for a
+        formula has a leading apostrophe.
         """
         added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
         rows: list[dict[str, Any]] = [*self.rows, *added]
-        text = csv_text({one.label: [row.get(one.name) for row in rows] for one in OUTPUTS})
+        text = csv_text(self.with_details({one.label: [row.get(one.name) for row in rows] for one in OUTPUTS}))
         if path is not None:
             Path(path).write_text(text, encoding="utf-8", newline="")
         return text

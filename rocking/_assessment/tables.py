@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking._assessment.columns import INPUTS
+from rocking._assessment.columns import INPUTS, REQUIRED, STAND_INS
 from rocking._assessment.objects import Object
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import (
@@ -37,32 +38,53 @@ class ObjectTable:
     bad_rows : list of BadRow
         Rows that name no valid object.
     skipped : list of str
-        Headers of columns that are not used.
+        Headers of columns that are not read; their cells are kept in the `details` of the objects.
+    columns : dict of str to str
+        What each other column was read as, by its header; of JSON nothing, whose keys say it.
     """
 
     objects: list[Object]
     bad_rows: list[BadRow] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
+    columns: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def reading(self) -> str:
+        """What each column was read as, and which ones were not, in words."""
+        read = ", ".join(f"{header} as {name}" for header, name in self.columns.items())
+        unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
+        return f"columns read: {read}{unread}" if read else ""
 
     def __repr__(self) -> str:
         """How many objects were read, and what was not."""
-        skipped = f"; columns not used: {', '.join(self.skipped)}" if self.skipped else ""
-        return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{skipped}>"
+        reading = f"; {self.reading}" if self.reading else ""
+        return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{reading}>"
 
 
-def read_objects(source: str | PathLike[str]) -> ObjectTable:
+def read_objects(source: str | PathLike[str], *, columns: Mapping[str, str] | None = None) -> ObjectTable:
     """Read objects from a file: CSV (any ending), JSON (.json), or a sheet (.xlsx, .ods).
+
+    What is not certain is not read. A row is refused, among others, if a number could be either of two ("1,234"), or a
+    length stands in a column that is not read: name what it is, or that it is not used.
+
+    Parameters
+    ----------
+    source : str or path
+        The file; `-` is standard input.
+    columns : mapping of str to str, optional
+        What columns are, by their headers: the name of a quantity such as "depth", with a unit if the header has none,
+        or "unused". Not for JSON.
 
     Raises
     ------
     InvalidArgumentError
-        If the file cannot be read, has no header with a base and a height, or a number is ambiguous.
+        If the file cannot be read, or has no header with a base and a height in units that are understood.
     ImportError
         If the package for sheets is not installed, the extra `sheets`.
     """
     if Path(source).suffix.lower() == ".json":
         return objects_of_text(read_bytes(source, "objects"), json=True)
-    return _objects(read_file(source, SCHEMA))
+    return _objects(read_file(source, replace(SCHEMA, renamed=dict(columns or {}))))
 
 
 def objects_of_text(raw: bytes, *, json: bool, most: int | None = None, stop: StopFlag | None = None) -> ObjectTable:
@@ -103,14 +125,14 @@ def objects_of_csv(text: str, most: int | None = None, stop: StopFlag | None = N
 
 def _objects(table: Table[Object]) -> ObjectTable:
     skipped = [label for label in table.cells if label not in table.columns]
-    return ObjectTable(table.items, table.bad_rows, skipped)
+    return ObjectTable(table.items, table.bad_rows, skipped, table.columns)
 
 
-def _object(row: int, values: dict[str, Any]) -> Object:
-    """The object of a row."""
+def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:
+    """The object of a row, with the cells of the columns that hold no numbers that are read."""
     given = {name: value.strip() if isinstance(value, str) else value for name, value in values.items()}
-    return Object(**{"name": f"row {row}"} | given)
+    return Object(**{"name": f"row {row}"} | given, details=others)
 
 
-SCHEMA = Schema("objects", INPUTS, (("width", "diameter"), ("height",)), _object)
+SCHEMA = Schema("objects", (*INPUTS, *STAND_INS), REQUIRED, _object, every_length=True)
 """A table of objects."""

@@ -46,9 +46,18 @@ UNITS: dict[str, dict[str, float]] = {
     "s": {"s": 1.0, "ms": 0.001, "us": 1e-6, "min": 60.0},
     "rad": {"rad": 1.0, "deg": math.pi / 180.0, "mrad": 0.001},
     "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
-    "-": {"%": 0.01},
+    "-": {"-": 1.0, "%": 0.01},
+    "kg": {
+        "kg": 1.0,
+        "g": 0.001,
+        "t": 1000.0,
+        "lb": 0.45359237,
+        "oz": 0.45359237 / 16.0,
+        "N": 1.0 / STANDARD_GRAVITY,
+        "kN": 1000.0 / STANDARD_GRAVITY,
+    },
 }
-"""Units of each quantity, by its SI unit, with their values in that unit."""
+"""Units of each quantity, by its SI unit, with their values in that unit; a weight is that of a mass under g."""
 
 EXAMPLES = {
     "m": "0.3 m, 30 cm",
@@ -57,10 +66,19 @@ EXAMPLES = {
     "s": "0.5 s, 500 ms",
     "rad": "20 deg, 0.35 rad",
     "rad/s": "2.5 rad/s",
+    "kg": "45 kg, 100 lb",
 }
 """Quantities that an error proposes."""
 
-USUAL = {"m": ("m",), "m/s": ("m/s",), "m/s2": ("m/s2", "g"), "s": ("s",), "rad": ("deg",), "rad/s": ("rad/s",)}
+USUAL = {
+    "m": ("m",),
+    "m/s": ("m/s",),
+    "m/s2": ("m/s2", "g"),
+    "s": ("s",),
+    "rad": ("deg",),
+    "rad/s": ("rad/s",),
+    "kg": ("kg",),
+}
 """The units that an error proposes where there is none."""
 
 MAX_LENGTH = 64
@@ -71,10 +89,10 @@ _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "cm": ("centimetre", "centimetres", "centimeter", "centimeters"),
     "mm": ("millimetre", "millimetres", "millimeter", "millimeters"),
     "km": ("kilometre", "kilometres", "kilometer", "kilometers"),
-    "in": ("inch", "inches"),
-    "ft": ("foot", "feet"),
+    "in": ("in.", "inch", "inches", '"', "''", "\u2033", "\u201d"),
+    "ft": ("ft.", "foot", "feet", "'", "\u2032", "\u2019"),
     "gal": ("gals",),
-    "g": ("gs", "gravity"),
+    "g": ("gs", "gravity"),  # of accelerations
     "mg": ("milli-g", "millig"),
     "%g": ("percentg", "%ofg", "percentofg"),
     "ms": ("millis",),
@@ -82,7 +100,14 @@ _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "min": ("minute", "minutes"),
     "rad": ("radian", "radians"),
     "deg": ("degree", "degrees", "°"),
-    "%": ("percent",),
+    "%": ("percent", "prozent", "pct"),
+    "-": ("1", "\u2013", "dimensionless"),
+    "kg": ("kgs", "kilo", "kilos", "kilogram", "kilograms", "kilogramme", "kilogrammes", "kilogramm"),
+    "t": ("tonne", "tonnes", "tonnen"),
+    "lb": ("lbs", "lb.", "lbs.", "pound", "pounds"),
+    "oz": ("oz.", "ounce", "ounces"),
+    "N": ("newton", "newtons"),
+    "kN": ("kilonewton", "kilonewtons"),
 }
 _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 
@@ -105,7 +130,8 @@ def _plain(text: str) -> str:
     return re.sub(r"sec(?:ond)?s?", "s", plain)
 
 
-_NAMES = {unit: {form: name for name in names for form in _forms(name)} for unit, names in UNITS.items()}
+_NAMES = {unit: {form.lower(): name for name in names for form in _forms(name)} for unit, names in UNITS.items()}
+_NAMES["kg"] |= dict.fromkeys(("gram", "grams", "gramme", "grammes", "gramm"), "g")
 
 
 def unit_name(text: str, unit: str) -> str | None:

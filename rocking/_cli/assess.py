@@ -16,8 +16,8 @@ from rocking._cli.options import BaselineOrder, Component, OutputOptions, Skip, 
 if TYPE_CHECKING:
     from rocking._assessment.report import Project
     from rocking._assessment.result import Assessment
+    from rocking._assessment.tables import ObjectTable
     from rocking._cli.printing import Form
-    from rocking._dimensional.table_reader import BadRow
     from rocking._excitation.records.record import Record
 
 SHOWN = (
@@ -36,6 +36,7 @@ HINTS = {
     "periods": "--period-min",
     "pulse": "--shapes",
     "path": "--mesh",
+    "columns": "--columns",
 }
 """Where a value was given, by the argument that an error names; others have the name of the option."""
 
@@ -46,6 +47,14 @@ Objects = Annotated[
         "height, width or diameter, and optionally depth, mass_height, offset_width, offset_depth, mass, friction, "
         "restitution, tolerance, pedestal, notes.",
         metavar="OBJECTS",
+    ),
+]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--columns",
+        help='What a column of the table is: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
+        metavar="[HEADER=NAME]",
     ),
 ]
 Mesh = Annotated[
@@ -158,6 +167,7 @@ Date = Annotated[
 def assess(
     form: OutputOptions,
     objects: Objects = None,
+    column: Columns = None,
     mesh: Mesh = None,
     mesh_unit: MeshUnit = "m",
     friction: Friction = None,
@@ -226,7 +236,7 @@ def assess(
             plain_numbers("floor_damping", floor_damping),
             plain_numbers("floor_participation", floor_participation),
         )
-        table = ObjectTable([], []) if objects is None else read_objects(objects)
+        table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
         bad = [f"{objects}, {printing.printable(str(one))}" for one in table.bad_rows]
         meshes = [Object.from_mesh(path, unit=mesh_unit, friction=friction) for path in mesh or ()]
         given = [*table.objects, *meshes]
@@ -242,11 +252,23 @@ def assess(
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
-            _write("report", report, _html(found, project, table.bad_rows))
-    _print(found, kind, bad)
+            _write("report", report, _html(found, project, table))
+    _print(found, kind, table, bad)
+    if kind.kind == "table" and table.reading:
+        typer.echo(printing.printable(table.reading))
     if bad:
         typer.echo("\n".join(bad), err=True)
         raise typer.Exit(2)
+
+
+def _columns(given: Sequence[str]) -> dict[str, str]:
+    """What columns of the table are, by their headers."""
+    from rocking._base.errors import InvalidArgumentError
+
+    for one in given:
+        if not one.rpartition("=")[0].strip():
+            raise InvalidArgumentError("columns", one, 'a header and a name, such as "Length (cm)=depth"')
+    return {header.strip(): name.strip() for header, _, name in (one.rpartition("=") for one in given)}
 
 
 def _read(
@@ -274,13 +296,13 @@ def _read(
     return found
 
 
-def _html(found: Assessment, project: Project, bad_rows: Sequence[BadRow]) -> str:
+def _html(found: Assessment, project: Project, table: ObjectTable) -> str:
     """The report."""
     from rocking._assessment.report import report_html
     from rocking._base.errors import InvalidArgumentError
 
     try:
-        return report_html(found, project, bad_rows)
+        return report_html(found, project, table.bad_rows, table.reading)
     except ModuleNotFoundError as error:
         raise InvalidArgumentError(
             "report", error.name, "with the extra `report`: pip install 'rocking[report]'"
@@ -303,7 +325,7 @@ def _write(option: str, path: str, text: str) -> None:
         raise InvalidArgumentError(option, path, f"a file that can be written ({error.strerror})") from None
 
 
-def _print(found: Assessment, form: Form, bad: list[str]) -> None:
+def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) -> None:
     """Print the table, and below it the objects to which each warning applies."""
     from rocking._assessment.columns import OUTPUTS
     from rocking._cli import printing
@@ -312,10 +334,11 @@ def _print(found: Assessment, form: Form, bad: list[str]) -> None:
     columns = {one.name: [row[one.name] for row in rows] for one in OUTPUTS}
     units = {one.name: one.unit for one in OUTPUTS if one.label != one.name}
     if form.kind == "json":
-        printing.print_json(columns | {"motions": found.motions, "bad_rows": bad})
+        about = {"details": found.details, "columns": table.columns, "skipped": table.skipped}
+        printing.print_json(columns | about | {"motions": found.motions, "bad_rows": bad})
         return
     if form.kind == "csv":
-        printing.print_csv(columns, form, units)
+        printing.print_csv(found.with_details(columns), form, units)
         return
     printing.print_table({name: columns[name] for name in SHOWN}, units)
     concerned: dict[str, list[str]] = {}

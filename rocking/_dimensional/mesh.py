@@ -15,6 +15,7 @@ from scipy.spatial import ConvexHull, QhullError
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.units import UNITS
 from rocking._dimensional.mesh_parts import with_few_parts
+from rocking._dimensional.mesh_repair import RepairedMesh, repaired
 from rocking._model.body import PolygonProperties
 
 FOOTPRINT = 1e-3
@@ -28,8 +29,12 @@ round base, are rounded.
 """
 
 
-def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[PolygonProperties, bool]:
-    """Edges, centre of mass and radius of gyration in the plane of a direction, in metres; whether the mesh is closed.
+FAR = 100.0
+"""Distance from the origin over the size of a mesh from which on it is moved there: map coordinates lose digits [-]."""
+
+
+def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[PolygonProperties, list[str]]:
+    """Edges, centre of mass and radius of gyration in the plane of a direction, in metres; what was repaired.
 
     Parameters
     ----------
@@ -43,10 +48,11 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
     Raises
     ------
     InvalidArgumentError
-        If the file cannot be read, encloses no volume, or does not stand.
+        If the file cannot be read, has a defect that cannot be repaired with certainty, encloses no volume, or does not
+        stand.
     """
     factor = UNITS["m"][one_of("unit", unit, UNITS["m"])]
-    mesh, along = _mesh(path), _horizontal(direction)
+    (mesh, remarks), along = _mesh(path), _horizontal(direction)
     across = np.cross([0.0, 0.0, 1.0], along)
     centre = np.asarray(mesh.center_mass)
     heights = np.asarray(mesh.vertices)[:, 2]
@@ -57,6 +63,10 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
         raise InvalidArgumentError("path", str(path), "a body whose centre of mass lies above its footprint")
     # rotation is about the horizontal axis normal to the plane, through the centre of mass
     about = float(across @ np.asarray(mesh.moment_inertia) @ across)
+    if not about > 0.0:
+        raise InvalidArgumentError(
+            "path", str(path), "a mesh that does not cross itself: its moment of inertia is negative"
+        )
     found = PolygonProperties(
         left * factor,
         right * factor,
@@ -64,7 +74,7 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
         math.sqrt(about / float(mesh.mass)) * factor,
         (highest - lowest) * factor,
     )
-    return found, bool(mesh.is_watertight)
+    return found, remarks
 
 
 def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.float64]:
@@ -75,7 +85,7 @@ def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.fl
     float array (points, 2)
         Distances from the centre of mass along the plane, and heights above the lowest point [m].
     """
-    mesh = _mesh(path)
+    mesh, _ = _mesh(path)
     vertices = np.asarray(mesh.vertices)
     heights = vertices[:, 2] - vertices[:, 2].min()
     points = np.stack([(vertices - mesh.center_mass) @ _horizontal(direction), heights], axis=1)
@@ -84,7 +94,7 @@ def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.fl
 
 def mesh_footprint(path: str | Path, unit: str) -> NDArray[np.float64]:
     """Convex outline of the footprint from the centre of mass [m], array (points, 2); arguments and errors as above."""
-    points = _footprint(_mesh(path))
+    points = _footprint(_mesh(path)[0])
     try:
         corners = ConvexHull(points).vertices
     except QhullError:  # fewer than three points, or all on one line
@@ -109,24 +119,32 @@ def _footprint(mesh: trimesh.Trimesh) -> NDArray[np.float64]:
     return np.asarray((vertices - mesh.center_mass)[heights <= limit, :2])
 
 
-def _mesh(path: str | Path) -> trimesh.Trimesh:
+def _mesh(path: str | Path) -> tuple[trimesh.Trimesh, list[str]]:
+    """The mesh of a file, and what of it was repaired."""
     try:
         status = Path(path).stat()
-        mesh = _loaded(Path(path), status.st_mtime_ns, status.st_size)
+        mesh, remarks, defect = _loaded(Path(path), status.st_mtime_ns, status.st_size)
     except Exception as error:  # noqa: BLE001  (each format has its own errors)
         raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
-    if not len(mesh.vertices) or not abs(mesh.volume) > 0.0:
-        raise InvalidArgumentError("path", str(path), "a mesh that encloses a volume")
-    return mesh
+    if defect:
+        raise InvalidArgumentError("path", str(path), f"a mesh that encloses a volume; this one {defect}")
+    return mesh, remarks
 
 
 @lru_cache(maxsize=1)
-def _loaded(path: Path, _changed: int, _size: int) -> trimesh.Trimesh:
+def _loaded(path: Path, _changed: int, _size: int) -> RepairedMesh:
     """The mesh of a file, kept for the other directions: loading it and its inertia take most of the time."""
     # from its bytes: a file that holds all of its mesh is given no way to name others
     kind = path.suffix[1:].lower()
     source = path if kind == "gltf" else io.BytesIO(with_few_parts(path.read_bytes(), kind))
-    return trimesh.load_mesh(source, file_type=kind, process=True, skip_materials=True)
+    mesh = trimesh.load_mesh(source, file_type=kind, process=True, skip_materials=True)
+    if not len(mesh.faces):
+        return RepairedMesh(mesh, [], "has no faces")
+    middle = mesh.bounds.mean(axis=0)
+    if np.abs(middle).max() > FAR * float(mesh.extents.max()):
+        mesh.apply_translation(-middle)
+    with np.errstate(invalid="ignore", divide="ignore"):  # of a mesh without a volume
+        return repaired(mesh)
 
 
 def _horizontal(direction: float) -> NDArray[np.float64]:

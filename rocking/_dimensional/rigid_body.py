@@ -336,22 +336,23 @@ class RigidBody(RespondingBody):
         Raises
         ------
         InvalidArgumentError
-            If the file cannot be read, encloses no volume, or does not stand.
+            If the file cannot be read, has a defect that cannot be repaired with certainty, encloses no volume, or does
+            not stand.
         ImportError
             If trimesh is not installed.
 
         Warns
         -----
         UserWarning
-            If the mesh is not closed: its volume, and with it its centre of mass, is that of the surface as it is.
+            If the mesh was repaired: flat holes filled, normals turned outwards, sheets beside the surface left out.
         """
         from rocking._dimensional.mesh import mesh_properties  # noqa: PLC0415  (trimesh is an extra)
 
         g = positive("gravity", gravity, "m/s2")
         angle = number("direction", direction, -2.0 * math.pi, 2.0 * math.pi, unit="rad")
-        found, closed = mesh_properties(path, angle, unit)
-        if not closed:
-            warnings.warn(f"{Path(path).name} is not closed: its centre of mass is uncertain", UserWarning, 2)
+        found, remarks = mesh_properties(path, angle, unit)
+        for remark in remarks:
+            warnings.warn(f"{Path(path).name} {remark}", UserWarning, 2)
         return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)
 
 

@@ -9,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, finite
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import BlockProblem
 from rocking._dimensional.table_reader import (
     HEIGHT,
     NAME,
+    NUMBER,
     RESTITUTION,
     WIDTH,
-    Column,
     Schema,
     Table,
     read_csv,
@@ -130,7 +131,7 @@ def read_blocks(
 def _schema(pulse: str | AbstractPulse, given: dict[str, float | str]) -> Schema[BlockProblem]:
     """A table of blocks under a pulse; `given` stands for cells that are empty."""
 
-    def block(_: int, values: dict[str, Any]) -> BlockProblem:
+    def block(_: int, values: dict[str, Any], __: dict[str, str]) -> BlockProblem:
         one = given | values
         for name in _NEEDED:
             if name not in one:
@@ -139,7 +140,7 @@ def _schema(pulse: str | AbstractPulse, given: dict[str, float | str]) -> Schema
             Block(one["width"], one["height"]), pulse, one["peak_acceleration"], one["period"], one["restitution"]
         )
 
-    return Schema("blocks", COLUMNS, tuple((name,) for name in _NEEDED if name not in given), block)
+    return Schema("blocks", (*COLUMNS, NUMBER), tuple((name,) for name in _NEEDED if name not in given), block)
 
 
 def _blocks(read: Table[BlockProblem]) -> BlockTable:

@@ -1,16 +1,17 @@
 """Tables as people keep them: CSV with any separator and decimal sign, and sheets as an extra.
 
-Units stand in the header ("width [cm]", "Breite (cm)", "height, m") or in the cells ("40 cm"). A number whose decimal
-sign is not certain, such as "1,234", is not read: the table is refused unless other numbers of it settle the sign.
+Units stand in the header ("width [cm]", "Breite (cm)", "height, m"), in a line of their own above or below it, in a
+column of their own, or in the cells ("40 cm"). What is not certain is not read: a number whose decimal sign other
+numbers of the table do not settle ("1,234") refuses its row, and so does a length in a column that is not read.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import math
 import re
 import sys
-import unicodedata
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -20,8 +21,18 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from rocking._base.column import (
+    Column,
+    decimal_sign,
+    name_and_unit,
+    named,
+    plain_name,
+    read_header,
+    split_number,
+    stated_unit,
+)
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import MAX_LENGTH, UNITS, USUAL, unit_name
+from rocking._base.units import UNITS, unit_name
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag  # numba takes longer to load than a table
@@ -34,7 +45,7 @@ SHEETS = (".xlsx", ".ods")
 """Endings of files that are not text."""
 
 HEADER_ROWS = 12
-"""So many rows at the top are looked through for the header."""
+"""The header is searched in this many rows at the top."""
 
 MAX_CHARACTERS = 20_000_000
 """Longest table that is read."""
@@ -52,50 +63,41 @@ MAX_NAME = 200
 """Longest name of a column with its unit [characters]."""
 
 TOTALS = {
-    *("total", "totals", "sum", "mean", "average", "summe", "gesamt", "mittelwert"),
-    *("totale", "somma", "somme", "suma"),
+    *("total", "totals", "sum", "mean", "average", "summe", "gesamt", "mittelwert", "insgesamt", "gesamtsumme"),
+    *("totale", "somma", "somme", "suma", "count", "subtotal", "media", "moyenne", "promedio"),
 }
 """First cells of rows that are no objects."""
 
-EMPTY = ("", "-", "\u2013", "n/a", "?")
-"""Cells without a value."""
+EMPTY = {
+    *("", "-", "--", "\u2013", "\u2014", "?", "n/a", "na", "n.a.", "#n/a", "none", "null", "nan", "nil"),
+    *("k.a.", "k. a.", "unknown", "unbekannt", "sconosciuto", "inconnu", "desconocido"),
+}
+"""Cells without a value, in small letters."""
 
-_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/]\s*([^\s,/]{1,8})\s*$|\bin\s+([a-zA-Z]{1,8})\s*$")
+UNIT_NAMES = {
+    *("unit", "units", "uom", "unit of measure", "unit of measurement", "measurement unit", "units of measure"),
+    *("einheit", "einheiten", "masseinheit", "unita", "unita di misura", "unite", "unites", "unite de mesure"),
+    *("unidad", "unidades", "unidad de medida", "monada", "\u03bc\u03bf\u03bd\u03b1\u03b4\u03b1"),
+}
+"""Headers of a column with the units of the others."""
+
+SIZE_NAMES = {
+    *("dimension", "dimensions", "size", "sizes", "measurement", "measurements", "measure", "measures", "length"),
+    *("lengths", "dim", "dims", "masse", "abmessung", "abmessungen", "dimensioni", "misure", "mesures", "medidas"),
+    *("dimensiones", "diastaseis", "\u03b4\u03b9\u03b1\u03c3\u03c4\u03b1\u03c3\u03b5\u03b9\u03c2"),
+}
+"""Words for all lengths of a table."""
+
+_WITH_SIZES = {*("all", "in", "of", "the", "overall", "outer", "external", "object", "objects", "alle", "tutte", "le")}
+_LENGTH_WORD = re.compile(
+    r"width|breadth|depth|length|height|thick|diam|radius|girth|circumf|\bside\b|\bbase\b|footprint|dimension|\bsize\b"
+    r"|breit|tief|lange|hoh|hoeh|dick|stark|largh|profond|lungh|altez|spess|largeur|longueur|hauteur|epais|ancho|altura"
+    r"|largo|espes|grosor|fondo|platos|ypsos|vathos|pachos|mikos|^[a-z][12]?$"
+)
+_AMOUNT = re.compile(r"\W*(?:c|ca|circa|approx\w*|about|um|env\w*|max|min)?[\s.:]*\d", re.IGNORECASE)
+_UNUSED = ("unused", "not used")
 MARK = "\ufeff"
 """What some programs put before a text of UTF-8."""
-
-_GAP = r"[\s'\u2019]"
-_NUMBER = re.compile(
-    r"\s*([+-]?[0-9][0-9.,'\u2019 \u00a0\u202f]*|[+-]?[.,][0-9]+)((?:(?<=[0-9.,])e[+-]?[0-9]+)?)\s*(.*?)\s*",
-    re.DOTALL | re.IGNORECASE,
-)
-
-
-@dataclass(frozen=True)
-class Column:
-    """One quantity of a table.
-
-    Attributes
-    ----------
-    name : str
-        In Python and in tables that are written.
-    unit : str
-        SI unit; "-" for a number, "" for text, "bool" for yes or no.
-    meaning : str
-        In one sentence.
-    aliases : tuple of str
-        Other names in the headers of tables, in small letters without accents.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    aliases: tuple[str, ...] = ()
-
-    @property
-    def label(self) -> str:
-        """The name with its unit, in the header of a table."""
-        return self.name if self.unit in ("", "-", "bool") else f"{self.name} [{self.unit}]"
 
 
 NAME = Column(
@@ -103,23 +105,48 @@ NAME = Column(
     "",
     "name of the object",
     (
-        *("object", "item", "title", "id", "inventory number", "inventory no", "inv no", "inv nr", "no", "nr"),
-        *("bezeichnung", "objekt", "inventarnummer", "nome", "oggetto", "inventario", "nom", "objet", "designation"),
-        *("nombre", "objeto", "onoma", "antikeimeno"),
+        *("object", "object name", "title", "item", "bezeichnung", "objekt", "titel", "nome", "oggetto", "titolo"),
+        *("nom", "objet", "designation", "titre", "nombre", "objeto", "titulo", "onoma", "antikeimeno"),
+        *("\u03bf\u03bd\u03bf\u03bc\u03b1", "\u03b1\u03bd\u03c4\u03b9\u03ba\u03b5\u03b9\u03bc\u03b5\u03bd\u03bf"),
     ),
 )
-WIDTH = Column("width", "m", "width of the base", ("w", "breite", "larghezza", "largeur", "ancho", "anchura", "platos"))
+NUMBER = Column(
+    "number",
+    "",
+    "inventory number, the name of an object without another one",
+    (
+        *("inventory number", "inventory no", "inv number", "inv no", "inv nr", "inventarnummer", "inventario"),
+        *("object number", "object id", "accession number", "accession no", "catalogue number", "catalog number"),
+        *("numero di inventario", "numero d inventaire", "numero de inventario", "id", "no", "nr", "#"),
+    ),
+    stands_for=("name",),
+)
+"""Read where a table has no names."""
+WIDTH = Column(
+    "width",
+    "m",
+    "width of the base",
+    (
+        *("w", "b", "breadth", "base width", "width of base", "width of the base", "breite", "larghezza", "largeur"),
+        *("ancho", "anchura", "largura", "breedte", "platos", "\u03c0\u03bb\u03b1\u03c4\u03bf\u03c2"),
+    ),
+    absent_beside=("diameter",),
+)
 HEIGHT = Column(
     "height",
     "m",
     "height of the object",
-    ("h", "hohe", "hoehe", "altezza", "hauteur", "alto", "altura", "ypsos"),
+    (
+        *("h", "overall height", "total height", "hohe", "hoehe", "gesamthohe", "altezza", "hauteur", "alto", "altura"),
+        *("hoogte", "ypsos", "\u03c5\u03c8\u03bf\u03c2"),
+    ),
 )
 RESTITUTION = Column(
     "restitution",
     "-",
     "coefficient of restitution; by default from the angular momentum",
-    ("coefficient of restitution", "eta", "stosszahl", "restituzione", "restitucion"),
+    ("coefficient of restitution", "restitution coefficient", "eta", "stosszahl", "restituzione", "restitucion"),
+    words=("momentum",),
 )
 
 
@@ -162,14 +189,21 @@ class Schema(Generic[Item]):
     required : tuple of tuple of str
         Columns that the header has; one of each group.
     make : callable
-        The item of a row, from its number and the values of the cells that are not empty: texts as they stand, numbers
-        in SI units. It raises `InvalidArgumentError`, with the name of a column.
+        The item of a row, from its number, the values of the cells that are not empty: texts as they stand, numbers in
+        SI units; and the cells of all other columns, texts that are read included, by their headers. It raises
+        `InvalidArgumentError`, with the name of a column.
+    every_length : bool
+        Whether a length in a column that is not read refuses its row.
+    renamed : mapping of str to str
+        Names of columns that replace those of the header, whose units remain.
     """
 
     argument: str
     columns: tuple[Column, ...]
     required: tuple[tuple[str, ...], ...]
-    make: Callable[[int, dict[str, Any]], Item]
+    make: Callable[[int, dict[str, Any], dict[str, str]], Item]
+    every_length: bool = False
+    renamed: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -267,14 +301,16 @@ def rows_of_csv(text: str, schema: Schema[Any], stop: StopFlag | None = None) ->
 def _delimiter(text: str, schema: Schema[Any]) -> str:
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(schema.argument, f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
-    sizes = dict.fromkeys(DELIMITERS, 0)
-    for delimiter in DELIMITERS:
-        with suppress(InvalidArgumentError):
-            sizes[delimiter] = len(_header(_start(text, delimiter, schema), schema).columns)
+    sizes = {one: max(map(_fit, _lines(_start(text, one, schema), schema)), default=(0, 0)) for one in DELIMITERS}
     delimiter = max(DELIMITERS, key=sizes.__getitem__)
-    if not sizes[delimiter]:
-        _header(list(islice(_rows(_open(text), delimiter, schema), HEADER_ROWS)), schema)  # says what is missing
+    if not sizes[delimiter][0]:
+        list(islice(_rows(_open(text), delimiter, schema), HEADER_ROWS))  # says which line is not CSV
     return delimiter
+
+
+def _fit(line: _Line) -> tuple[bool, int]:
+    """Whether a line has all columns that a header needs, and how many that are read."""
+    return line.complete, len(line.columns)
 
 
 def _open(text: str) -> io.StringIO:
@@ -331,12 +367,36 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
     return [list(map(_cell_text, row)) for row in frame.to_numpy().tolist()]
 
 
-def csv_of_sheet(raw: bytes, argument: str) -> str:
-    """The first sheet of a file as text with semicolons, whose numbers `read_csv` takes as they are in the sheet."""
+def csv_of_sheet(raw: bytes, schema: Schema[Any]) -> str:
+    """The first sheet of a file as text with semicolons, which `read_csv` reads as `read_file` does the sheet.
+
+    A number of a cell that `read_csv` could take for another has a zero added. A text that could be either of two
+    numbers has a leading apostrophe unless other texts of the sheet settle its decimal sign.
+    """
+    rows = rows_of_sheet(raw, schema.argument)
+    numeric: list[int] = []
+    last = len(rows)
+    with suppress(InvalidArgumentError):
+        header = _header(rows[: HEADER_ROWS + 1], schema)
+        numeric, last = [place for place, (one, _) in header.columns.items() if one.unit], header.last
+    decimal = _decimal_sign((row[place] for row in rows[last + 1 :] for place in numeric), "")
+
+    def certain(cell: str) -> str:
+        digits, _ = split_number(cell) or ("", "")
+        own = decimal_sign(digits)
+        if not own.startswith("?"):
+            return cell
+        if isinstance(cell, _Exact):
+            return f"{cell}0"
+        if not decimal:
+            return f"'{cell}"
+        changed = f"{digits}0" if own[1] == decimal else digits.replace(own[1], "")
+        return cell.strip().replace(digits, changed, 1)
+
     text = io.StringIO()
-    rows = csv.writer(text, delimiter=";", lineterminator="\n")
-    for row in rows_of_sheet(raw, argument):  # 1.250, with three decimals, could be 1250
-        rows.writerow([f"{cell}0" if isinstance(cell, _Exact) and cell[-4:-3] == "." else cell for cell in row])
+    written = csv.writer(text, delimiter=";", lineterminator="\n")
+    for number, row in enumerate(rows):
+        written.writerow([certain(cell) if number > last and k in numeric else cell for k, cell in enumerate(row)])
     return text.getvalue()
 
 
@@ -350,106 +410,233 @@ def _cell_text(value: object) -> str:
     """A cell of a sheet as text."""
     if value is None or value != value:
         return ""
-    return _Exact(f"{value:.12g}") if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    return _Exact(int(value) if value.is_integer() and abs(value) < 1e15 else f"{value:.15g}")
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A line that may be the header: its cells as they stand and under given names, columns with units, an error."""
+
+    number: int
+    labels: list[str]
+    texts: list[str]
+    columns: dict[int, tuple[Column, str]]
+    grouped: set[int]
+    complete: bool
+    error: InvalidArgumentError | None
 
 
 @dataclass(frozen=True)
 class _Header:
-    """The last line of the header, the texts of its cells, its columns: index to column and unit, "" in the cells."""
+    """What the header says.
+
+    Attributes
+    ----------
+    last : int
+        Its last line.
+    labels : list of str
+        Its cells as they stand, with their number where one is empty or not the first.
+    texts : list of str
+        Its cells, under the names that were given to them.
+    columns : dict of int to (Column, str)
+        Quantities that are read, with their units, "" in the cells.
+    units : dict of int to int
+        Column with the units of a column, by the place of that.
+    lengths : dict of int to bool
+        Columns that are not read and may hold a length; whether it says so by its unit.
+    """
 
     last: int
+    labels: list[str]
     texts: list[str]
     columns: dict[int, tuple[Column, str]]
+    units: dict[int, int]
+    lengths: dict[int, bool]
 
 
-def _plain(text: str) -> str:
-    """A name in small letters, without accents, signs and doubled blanks."""
-    bare = "".join(one for one in unicodedata.normalize("NFKD", text.lower()) if not unicodedata.combining(one))
-    return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff]+", " ", bare.replace("\u00df", "ss")).split())
-
-
-def _name_and_unit(text: str) -> tuple[str, str]:
-    """The parts of a header; "" without a unit."""
-    found = _UNIT.search(text)
-    return (text[: found.start()], next(filter(None, found.groups()), "").strip()) if found else (text, "")
-
-
-def _column(text: str, names: Mapping[str, Column], argument: str) -> tuple[Column, str] | None:
-    """The column that a header names, and its unit."""
-    for name, written in ((text, ""), _name_and_unit(text)):
-        one = names.get(_plain(name))
-        if one is None:
+def _lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[_Line]:
+    """The lines that may be the header, the first ones; where it has two, the lower one is completed by the upper."""
+    known = {plain_name(name): one for one in schema.columns for name in (one.name, *one.aliases)}
+    for number, row in enumerate(rows[:HEADER_ROWS]):
+        if len(row) > MAX_COLUMNS:
             continue
-        known = unit_name(written, one.unit) if written and one.unit in UNITS else None
-        if written and one.unit in UNITS and known is None:
-            raise InvalidArgumentError(f"{argument}, header", text, f"a unit such as {', '.join(UNITS[one.unit])}")
-        return one, known or ("kg" if one.unit == "kg" else "")
-    return None
+        own = [*rows[number - 1], *[""] * len(row)][: len(row)] if number else [""] * len(row)
+        above = zip(_merged(own), own, row, strict=True)
+        pairs = [_joined(*one, known) if max(map(len, one)) <= MAX_NAME else ("", False) for one in above]
+        texts = [_renamed(text, schema.renamed) for text, _ in pairs]
+        found: dict[int, tuple[Column, str]] = {}
+        error = None
+        for place, text in enumerate(texts):
+            try:
+                one = read_header(text, known, schema.argument) if _is_used(text) else None
+            except InvalidArgumentError as wrong:
+                column = named(name_and_unit(text)[0], known)
+                error, one = error or wrong, (column, "") if column else None
+            if one:
+                found[place] = one
+        found = _assigned(found, texts, schema)
+        names = {one.name for one, _ in found.values()}
+        complete = all(any(name in names for name in group) for group in schema.required)
+        labels = _labels([text for text, _ in pairs])
+        yield _Line(number, labels, texts, found, {k for k, (_, group) in enumerate(pairs) if group}, complete, error)
 
 
 def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
-    """The header among the first rows; where it has two lines, the lower one completes the upper one."""
-    known = {_plain(name): one for one in schema.columns for name in (one.name, *one.aliases)}
-    for last, row in enumerate(rows[:HEADER_ROWS]):
-        if len(row) > MAX_COLUMNS:
-            continue
-        above = _merged(rows[last - 1], len(row)) if last else [""] * len(row)
-        texts = [_joined(*pair) if max(map(len, pair)) <= MAX_NAME else "" for pair in zip(above, row, strict=True)]
-        pairs = [(place, _column(text, known, schema.argument)) for place, text in enumerate(texts) if text.strip()]
-        found = {place: one for place, one in pairs if one}
-        names = Counter(one.name for one, _ in found.values())
-        if not all(any(name in names for name in group) for group in schema.required):
-            continue
-        several = [name for name, count in names.items() if count > 1 and name != "name"]
-        if several:
-            raise InvalidArgumentError(
-                f"{schema.argument}, header", "; ".join(texts)[:MAX_NAME], f"one column {several[0]}"
-            )
-        places = [place for place, (one, _) in found.items() if one.name == "name"]
-        for place in places[:-1]:  # such as number and name: the last one counts
-            del found[place]
-        columns, after = _with_units(found, rows, last)
-        return _Header(after, texts, columns)
-    shown = "; ".join(rows[0])[:MAX_NAME] if rows else "nothing"
-    needed = ", ".join(" or ".join(group) for group in schema.required)
-    raise InvalidArgumentError(f"{schema.argument}, header", shown, f"columns {needed}, of at most {MAX_COLUMNS}")
+    """The header among the first rows."""
+    line = next((line for line in _lines(rows, schema) if line.complete), None)
+    if line is None:
+        shown = "; ".join(rows[0])[:MAX_NAME] if rows else "nothing"
+        needed = ", ".join(" or ".join(group) for group in schema.required)
+        raise InvalidArgumentError(f"{schema.argument}, header", shown, f"columns {needed}, of at most {MAX_COLUMNS}")
+    if line.error is not None:
+        raise line.error
+    for name in schema.renamed.keys() - set(map(str.strip, line.labels)):
+        raise InvalidArgumentError("columns", name, f"a column of the table: {'; '.join(line.labels)[:MAX_NAME]}")
+    count = Counter(one.name for one, _ in line.columns.values() if one.unit)
+    for name in (name for name, several in count.items() if several > 1):
+        same = "; ".join(line.texts[place] for place, (one, _) in line.columns.items() if one.name == name)
+        allowed = f'one column {name}; the name of a column that is not read begins with "unused"'
+        raise InvalidArgumentError(f"{schema.argument}, header", same[:MAX_NAME], allowed)
+    columns, lengths, after = _with_units(line, rows, schema)
+    return _Header(after, line.labels, line.texts, columns, _unit_columns(line.texts, columns), lengths)
 
 
-def _joined(upper: str, lower: str) -> str:
-    """The name of a column from two lines: the lower one with the unit of the upper, or the reverse."""
-    _, unit = _name_and_unit(upper)
-    if not lower.strip() or _is_unit(lower):
-        return f"{upper} [{lower.strip('[]() ')}]" if lower.strip() else upper
-    return lower if not unit or _name_and_unit(lower)[1] else f"{lower} [{unit}]"
+def _is_used(text: str) -> bool:
+    return bool(text.strip()) and not plain_name(text).startswith(_UNUSED)
+
+
+def _renamed(text: str, renamed: Mapping[str, str]) -> str:
+    """The text of a header under the name that it was given, with its own unit."""
+    if text.strip() not in renamed:
+        return text
+    name, (_, unit) = renamed[text.strip()], name_and_unit(text)
+    if name in _UNUSED:
+        return f"{name}: {text}"
+    return f"{name} [{unit}]" if unit and not name_and_unit(name)[1] else name
+
+
+def _assigned(
+    found: dict[int, tuple[Column, str]], texts: Sequence[str], schema: Schema[Any]
+) -> dict[int, tuple[Column, str]]:
+    """The columns as what they are read: those that stand for others, and of several with names the best one."""
+    known = {one.name: one for one in schema.columns}
+    for column in schema.columns:
+        places = [place for place, (one, _) in found.items() if one is column]
+        if not column.unit and not column.joined and places:
+            best = min(places, key=lambda place: column.rank(texts[place]))
+            found = {place: pair for place, pair in found.items() if place == best or place not in places}
+            places = [best]
+        if not column.stands_for:
+            continue
+        taken = {one.name for one, _ in found.values()}
+        target = next((name for name in column.stands_for if name not in taken), None)
+        if target is None:
+            found = {place: pair for place, pair in found.items() if place not in places}
+        else:
+            found |= {place: (known[target], found[place][1]) for place in places}
+    return found
+
+
+def _joined(upper: str, own: str, lower: str, known: Mapping[str, Column]) -> tuple[str, bool]:
+    """The name of a column from two lines, and whether it is in a group of lengths.
+
+    Parameters
+    ----------
+    upper, own, lower : str
+        Cell of the upper line, or the one of the group to its left; that cell itself; cell of the lower line.
+    known : mapping
+        Columns by their names.
+    """
+    if not lower.strip():
+        return own, False
+    with suppress(InvalidArgumentError):
+        one = read_header(own, known, "")
+        bare = lower.strip("[]() ")
+        if one and one[0].unit in UNITS and not one[1] and unit_name(bare, one[0].unit):
+            return f"{own} [{bare}]", False
+        unit = _group_unit(upper, known)
+        below = read_header(lower, known, "") if unit else None
+        if below and not below[1] and unit_name(unit, below[0].unit if below[0].unit in UNITS else "m"):
+            return (f"{lower} [{unit}]" if below[0].unit in UNITS else lower), False
+        return lower, below is None and unit_name(unit, "m") is not None
+    return lower, False
+
+
+def _group_unit(text: str, known: Mapping[str, Column]) -> str:
+    """The unit that an upper line states for the columns below: "Dimensions (cm)", "[cm]"; "" for a title."""
+    if _is_unit(text):
+        return text.strip("[]() ")
+    name, unit = name_and_unit(text)
+    words = set(plain_name(name).split())
+    is_group = plain_name(name) in known or (bool(words & SIZE_NAMES) and words <= SIZE_NAMES | _WITH_SIZES)
+    return unit if is_group else ""
 
 
 def _is_unit(text: str) -> bool:
     """Whether a text is a unit of a quantity."""
-    written = text.strip("[]() ")
-    return any(unit_name(written, unit) for unit in UNITS) or written.lower() == "kg"
+    return any(unit_name(text.strip("[]() "), unit) for unit in UNITS)
 
 
-def _merged(row: Sequence[str], size: int) -> list[str]:
+def _merged(row: Sequence[str]) -> list[str]:
     """A line of a header in which merged cells leave empty ones to their right."""
     found: list[str] = []
-    for text in [*row, *[""] * size][:size]:
-        found.append(text.strip() or (found[-1] if found else ""))
+    for text in row:
+        found.append(text.strip() or (found[-1] if found and not _is_unit(found[-1]) else ""))
     return found
 
 
 def _with_units(
-    found: dict[int, tuple[Column, str]], rows: Sequence[Sequence[str]], last: int
-) -> tuple[dict[int, tuple[Column, str]], int]:
-    """The columns with the units of a line of its own below the header, if there is one, and the last line of both."""
-    below = [text.strip() for text in rows[last + 1]] if last + 1 < len(rows) else []
-    units = {place: below[place] for place in found if place < len(below) and below[place] not in ("", "-")}
-    if not units or not all(map(_is_unit, units.values())):
-        return found, last
-    for place, text in units.items():
-        one, _ = found[place]
-        if one.unit in UNITS:
-            found[place] = one, unit_name(text.strip("[]() "), one.unit) or ""
-    return found, last + 1
+    line: _Line, rows: Sequence[Sequence[str]], schema: Schema[Any]
+) -> tuple[dict[int, tuple[Column, str]], dict[int, bool], int]:
+    """The columns with the units of a line of its own below the header, if there is one; lengths that are not read."""
+    columns, last = dict(line.columns), line.number
+    others = [place for place, text in enumerate(line.texts) if place not in columns and _is_used(text)]
+    lengths = {place: True for place in others if stated_unit(line.texts[place], "m")}
+    below = [text.strip("[]() ") for text in rows[last + 1]] if last + 1 < len(rows) else []
+    units = {
+        place: below[place]
+        for place, (one, _) in columns.items()
+        if one.unit in UNITS and place < len(below) and below[place] not in ("", "-")
+    }
+    known = {place: unit_name(text, columns[place][0].unit) for place, text in units.items()}
+    if all(map(_is_unit, units.values())) and any(text != "1" for text in units.values()):
+        last += 1
+        for place, unit in known.items():
+            one, stated = columns[place]
+            if not unit or stated not in ("", unit):
+                allowed = f"a unit of {one.name}, the one of its header"
+                raise InvalidArgumentError(
+                    f"{schema.argument}, header", f"{line.texts[place]}; {units[place]}", allowed
+                )
+            columns[place] = one, unit
+        lengths |= {place: True for place in others if place < len(below) and unit_name(below[place], "m")}
+    measured = [place for place, (one, _) in columns.items() if one.unit == "m"]
+    nameless = {k for k, text in enumerate(line.texts) if not text.strip() and min(measured) < k < max(measured)}
+    weak = {place for place in others if _LENGTH_WORD.search(plain_name(name_and_unit(line.texts[place])[0]))}
+    return columns, dict.fromkeys(sorted(weak | nameless | (line.grouped & set(others))), False) | lengths, last
+
+
+def _unit_columns(texts: Sequence[str], columns: Mapping[int, tuple[Column, str]]) -> dict[int, int]:
+    """The place of the column that has the units of each column of numbers, where there is one."""
+    found: dict[int, int] = {}
+    plain = {place: plain_name(text) for place, text in enumerate(texts) if place not in columns}
+    bare = [place for place, text in plain.items() if text in UNIT_NAMES]
+    numeric = [place for place, (one, _) in columns.items() if one.unit in UNITS]
+    for place, text in plain.items():
+        of = re.sub(r"\b(?:units?|einheit|unita|unite|unidad)\b(?: of| de| di)?", "", text).strip()
+        if place in bare or of == text:
+            continue
+        named = [k for k in numeric if plain_name(columns[k][0].name) == of or plain_name(texts[k]) == of]
+        if of in SIZE_NAMES:
+            named = [k for k in numeric if columns[k][0].unit == "m"]
+        found |= dict.fromkeys(named, place)
+    start = -1
+    for place in bare:  # of several, each states those of the columns between it and the one before
+        found |= {k: place for k in numeric if k not in found and (len(bare) == 1 or start < k < place)}
+        start = place
+    return found
 
 
 def read_rows(
@@ -457,8 +644,8 @@ def read_rows(
 ) -> Table[Item]:
     """A table from its cells, its header among the first rows; the errors of `read_file`.
 
-    `usual` is the decimal sign where no number settles it; "": the table is refused. Beyond `most` rows, without those
-    that are empty or totals, it is refused by `TooManyRowsError`.
+    `usual` is the decimal sign where no number settles it; "": rows with a number that needs it are not read. Beyond
+    `most` rows, without those that are empty or totals, the table is refused by `TooManyRowsError`.
     """
     rest = iter(rows)
     top = list(islice(rest, HEADER_ROWS + 1))  # with a line of units
@@ -473,38 +660,49 @@ def read_rows(
             allowed = f"at most {EMPTY_ROWS} rows that are empty or totals"
             raise TooManyRowsError(schema.argument, f"{number} rows", allowed)
     numeric = [place for place, (one, _) in header.columns.items() if one.unit]
-    measured = [place for place in numeric if header.columns[place][0].unit not in ("-", "kg")]
-    decimal = _decimal_sign(
-        (row[place] for _, row in body for place in numeric if place < len(row) and not isinstance(row[place], _Exact)),
-        schema.argument,
-        usual,
-    )
-    items, kept, errors = [], [], []
+    decimal = _decimal_sign((row[place] for _, row in body for place in numeric if place < len(row)), usual)
+    labels = header.labels
+    used = {place for place, (one, _) in header.columns.items() if one.unit or one.name == "name"}
+    used |= set(header.units.values())
+    items: list[Item] = []
+    kept: list[Sequence[str]] = []
+    errors: list[tuple[int, InvalidArgumentError]] = []
+    sums: Counter[str] = Counter()
     for number, row in body:
         try:
-            if any(cell.strip() for cell in row[len(header.texts) :]):
-                raise InvalidArgumentError("row", f"{len(row)} cells", f"{len(header.texts)}, as in the header")
-            if not any(place < len(row) and row[place].strip() for place in measured):
-                raise InvalidArgumentError("row", "no dimension", "one or more in each row")
-            items.append(schema.make(number, _values(row, header, decimal)))
+            values = _values(row, header, decimal, schema)
+            if _is_sum(values, sums, len(kept)) and any(one.name == "name" for one, _ in header.columns.values()):
+                raise InvalidArgumentError("row", "the sums of the rows above", "objects")
+            others = {
+                label: cell
+                for place, (label, text, cell) in enumerate(zip(labels, header.texts, row, strict=False))
+                if place not in used and (text.strip() or cell.strip())
+            }
+            items.append(schema.make(number, values, others))
             kept.append(row)
+            sums.update({name: value for name, value in values.items() if isinstance(value, float)})
         except InvalidArgumentError as error:
             errors.append((number, _of_cell(error, row, header)))
     size = len(header.texts)
     padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
-    first: dict[str, int] = {}
-    labels = [
-        text if text.strip() and first.setdefault(text, place) == place else f"{text}#{place + 1}"
-        for place, text in enumerate(header.texts)
-    ]
-    cells = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
-    cells = {label: column for label, column in cells.items() if not label.startswith("#") or any(column)}
+    columns = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
+    columns = {label: column for label, column in columns.items() if not label.startswith("#") or any(column)}
     read = {labels[place]: one.name for place, (one, _) in header.columns.items()}
+    read |= {labels[place]: "units" for place in header.units.values()}
     units = {
         one.name: unit or next((written for row in padded if (written := _written_unit(row[place], one))), "")
         for place, (one, unit) in header.columns.items()
     }
-    return Table(items, cells, read, units, errors)
+    return Table(items, columns, read, units, errors)
+
+
+def _labels(texts: Sequence[str]) -> list[str]:
+    """The texts of a header, with its number where one is empty or not the first."""
+    first: dict[str, int] = {}
+    return [
+        text if text.strip() and first.setdefault(text, place) == place else f"{text}#{place + 1}"
+        for place, text in enumerate(texts)
+    ]
 
 
 def _is_item(row: Sequence[str]) -> bool:
@@ -515,95 +713,103 @@ def _is_item(row: Sequence[str]) -> bool:
     )
 
 
+def _is_sum(values: Mapping[str, Any], sums: Mapping[str, float], count: int) -> bool:
+    """Whether a row without a name, or with one such as "Total (12 objects)", has the sums of those above."""
+    words = str(values.get("name", "")).lower().split()
+    numbers = {name: value for name, value in values.items() if isinstance(value, float)}
+    if count < 2 or (words and words[0].strip(":(") not in TOTALS):
+        return False
+    return bool(numbers) and all(math.isclose(one, sums[name]) for name, one in numbers.items())
+
+
 def _written_unit(cell: str, one: Column) -> str:
     """The unit in a cell, "" for none."""
-    found = _NUMBER.fullmatch(cell) if len(cell) <= MAX_LENGTH and one.unit in UNITS else None
-    return (unit_name(found[3], one.unit) or "") if found else ""
+    found = split_number(cell) if one.unit in UNITS else None
+    return (unit_name(found[1], one.unit) or "") if found else ""
 
 
-def _values(row: Sequence[str], header: _Header, decimal: str) -> dict[str, Any]:
+def _values(row: Sequence[str], header: _Header, decimal: str, schema: Schema[Any]) -> dict[str, Any]:
     """The values of a row by the name of their columns."""
-    cells = [(one, unit, row[place]) for place, (one, unit) in header.columns.items() if place < len(row)]
-    return {one.name: _value(one, text, unit, decimal) for one, unit, text in cells if text.strip() not in EMPTY}
+    if any(cell.strip() for cell in row[len(header.texts) :]):
+        raise InvalidArgumentError("row", f"{len(row)} cells", f"{len(header.texts)}, as in the header")
+    if schema.every_length:
+        _check_lengths(row, header)
+    values: dict[str, Any] = {}
+    for place, (one, unit) in header.columns.items():
+        cell = row[place] if place < len(row) else ""
+        if (cell.strip().lower() in EMPTY) if one.unit else not any(map(str.isalnum, cell)):
+            continue
+        stated = _row_unit(row, header, place) if one.unit in UNITS and not _written_unit(cell, one) else unit
+        value = one.value(cell, stated, "." if isinstance(cell, _Exact) else decimal)
+        values[one.name] = f"{values[one.name]}; {value}" if one.name in values else value
+    for one, _ in header.columns.values():
+        if values.get(one.name) == 0.0 and any(values.get(other) for other in one.absent_beside):
+            del values[one.name]
+    if not any(one.unit not in ("", "-", "kg") and one.name in values for one, _ in header.columns.values()):
+        raise InvalidArgumentError("row", "no dimension", "one or more in each row")
+    return values
 
 
-def _of_cell(error: InvalidArgumentError, row: Sequence[str], header: _Header) -> InvalidArgumentError:
-    """The error with the text of the cell in place of its value in SI units."""
-    for place, (one, _) in header.columns.items():
-        if one.name == error.parameter and place < len(row) and row[place].strip() not in EMPTY:
-            return InvalidArgumentError(one.name, row[place].strip(), error.allowed)
-    return error
-
-
-def _value(one: Column, cell: str, unit: str, decimal: str) -> Any:
-    """The value of a cell in the unit of its column, in SI units."""
-    if one.unit == "":
-        return cell
-    text, decimal = cell.strip(), "." if isinstance(cell, _Exact) else decimal
-    if one.name == "restitution" and text.lower() == "momentum":
-        return "momentum"
-    found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
-    if not found:
-        raise InvalidArgumentError(one.name, text[:MAX_LENGTH], "a number, with its unit or with one in the header")
-    written = found[1].strip()
-    if re.search(_GAP, written) and not re.fullmatch(rf"[+-]?\d{{1,3}}(?:{_GAP}\d{{3}})+(?:[.,]\d*)?", written):
-        raise InvalidArgumentError(one.name, text, "one number, with blanks between thousands only")
-    digits = re.sub(_GAP, "", written)
-    thousands = "." if decimal == "," else ","
-    if not re.fullmatch(rf"[+-]?(\d*|\d{{1,3}}(?:{re.escape(thousands)}\d{{3}})+)(?:{re.escape(decimal)}\d*)?", digits):
-        raise InvalidArgumentError(one.name, text, f"a number with the decimal sign {decimal!r} of the table")
-    value = float(digits.replace(thousands, "").replace(decimal, ".") + found[2])
-    if one.unit not in UNITS:  # kg
-        factor = {"": 1.0, "kg": 1.0, "t": 1000.0, "g": 0.001}.get(found[3].lower())
-        if factor is None:
-            raise InvalidArgumentError(one.name, text, "a mass in kg, g or t")
-        return value * factor
-    name = unit_name(found[3], one.unit) if found[3] else unit
-    if found[3] and name is None:
-        raise InvalidArgumentError(one.name, text, f"a unit such as {', '.join(UNITS[one.unit])}")
-    if not name and one.unit != "-":
-        usual = USUAL[one.unit][-1]
+def _row_unit(row: Sequence[str], header: _Header, place: int) -> str:
+    """The unit of a cell that states none: of its header, or of the column with the units."""
+    one, unit = header.columns[place]
+    where = header.units.get(place)
+    stated = row[where].strip() if where is not None and where < len(row) else ""
+    if stated.lower() in EMPTY:
+        return unit
+    found = unit_name(stated, one.unit)
+    quantities = {header.columns[k][0].unit for k, of in header.units.items() if of == where}
+    if not found and not any(unit_name(stated, other) for other in quantities):
         raise InvalidArgumentError(
-            one.name, text, f"a unit: write {one.name} [{usual}] in the header, or {text} {usual} in the cell"
+            one.name, f"{row[place].strip()} {stated}", f"a unit such as {', '.join(UNITS[one.unit])}"
         )
-    return value * (UNITS[one.unit][name] if name else 1.0)
+    if found and unit and found != unit:
+        raise InvalidArgumentError(one.name, f"{row[place].strip()} {stated}", f"the unit of its header, {unit}")
+    return found or unit
 
 
-def _decimal_sign(cells: Iterable[str], argument: str, usual: str) -> str:
-    """The decimal sign of a table.
+def _check_lengths(row: Sequence[str], header: _Header) -> None:
+    """Refuse a row with a length in a column that is not read.
 
     Raises
     ------
     InvalidArgumentError
-        If its numbers use both signs, or have one sign that may separate thousands and no other number settles it.
+        Of that column.
     """
-    signs: dict[str, str] = {}
-    for cell in cells:
-        found = _NUMBER.fullmatch(cell) if len(cell) <= MAX_LENGTH else None
-        digits = re.sub(_GAP, "", found[1]) if found else ""
-        used = [sign for sign in digits if sign in ".,"]
-        if not used:
+    for place, text in enumerate(header.texts[: len(row)]):
+        cell = row[place].strip()
+        if place in header.columns or place in header.units.values() or cell.lower() in EMPTY:
             continue
-        last = used[-1]
-        if len(set(used)) == 2:
-            signs[last] = cell
-        elif len(used) > 1:
-            if re.fullmatch(r"[+-]?\d{1,3}(?:[.,]\d{3})+", digits):
-                signs["," if last == "." else "."] = cell
-        elif (
-            last != usual
-            and len(digits.rsplit(last, 1)[1]) == 3
-            and re.fullmatch(r"[+-]?[1-9]\d{0,2}", digits.rsplit(last, 1)[0])
-        ):
-            signs.setdefault("?" + last, cell)
-        else:
-            signs[last] = cell
-    certain = {sign: cell for sign, cell in signs.items() if sign in ".,"}
-    if len(certain) == 2:
-        raise InvalidArgumentError(argument, list(certain.values()), "one decimal sign in the whole table")
-    unsettled = [cell for sign, cell in signs.items() if sign.startswith("?")]
-    if unsettled and not certain:
-        raise InvalidArgumentError(
-            argument, unsettled[0], "a number whose decimal sign is certain, such as 1.2340 or 1234"
-        )
-    return next(iter(certain), ".")
+        if text.strip() and not _is_used(text):
+            continue
+        number = split_number(cell)
+        is_length = bool(number and unit_name(number[1], "m"))  # in its cell
+        if place in header.lengths:
+            is_length |= bool(_AMOUNT.match(cell) if header.lengths[place] else number and not number[1])
+        if is_length and not (number and not number[0].strip("+-0.,")):
+            allowed = 'a column named "width", "depth", "diameter" or "height", or whose name begins with "unused"'
+            raise InvalidArgumentError(header.labels[place].strip(), cell, allowed)
+
+
+def _of_cell(error: InvalidArgumentError, row: Sequence[str], header: _Header) -> InvalidArgumentError:
+    """The error with the text of the cell in place of its value in SI units, and the header where it is another."""
+    for place, (one, _) in header.columns.items():
+        if one.name == error.parameter and place < len(row) and row[place].strip().lower() not in EMPTY:
+            text = header.labels[place].strip()
+            of = "" if plain_name(name_and_unit(text)[0]) == plain_name(one.name) else f" (column {text!r})"
+            return InvalidArgumentError(one.name, row[place].strip(), error.allowed + of)
+    return error
+
+
+def _decimal_sign(cells: Iterable[str], usual: str) -> str:
+    """The decimal sign that the numbers of a table settle; "" if none or both do.
+
+    A single `usual` sign counts as one, as where commas separate the columns. Numbers of a sheet say nothing of texts.
+    """
+    signs: set[str] = set()
+    for cell in cells:
+        found = None if isinstance(cell, _Exact) else split_number(cell)
+        own = decimal_sign(found[0]) if found else ""
+        if own and (not own.startswith("?") or own[1] == usual):
+            signs.add(own[-1])
+    return signs.pop() if len(signs) == 1 else ""

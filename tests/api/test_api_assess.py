@@ -106,8 +106,11 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert [row["verdict"] for row in rows] == [row["verdict"] for row in answer["rows"]] + ["not read"]
     assert float(rows[0]["factor"]) == answer["rows"][0]["factor"]
     assert rows[-1]["object"] == "row 3"
+    assert "colour" in rows[0]  # kept, although it is not read
+    assert [row.pop("colour") for row in rows] == [*answer["details"]["colour"], ""]
     accepted = client.post(URL, json=ROWS, headers={"accept": "text/csv"})
-    assert accepted.text.splitlines() == response.text.splitlines()[:-1]
+    assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]
+    assert {"name", "width", "height"} <= {*answer["columns"].values()}
 
 
 def test_names_that_a_spreadsheet_would_evaluate_are_text(client):

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 import re
 import struct
 import subprocess
@@ -148,6 +149,21 @@ def test_an_open_mesh_is_doubted(client, slab):
     gap = slab.copy()
     gap.update_faces(np.arange(len(gap.faces)) > 0)
     assert "The mesh is not closed" in posted(client, gap.export(file_type="stl"), "gap.stl", unit="mm").text
+
+
+def test_the_defect_of_a_mesh_is_named(client):
+    ball = trimesh.creation.icosphere(3, 500.0)
+    rough = np.flatnonzero(ball.triangles_center[:, 0] + 500.0 * np.sin(0.01 * ball.triangles_center[:, 2]) > -200.0)
+    ball.update_faces(rough)
+    problem = assert_problem(posted(client, ball.export(file_type="stl"), "rock.stl", unit="mm"), 422, "mesh")
+    assert "open edges around" in problem["allowed"]
+    assert "MiB" not in problem["detail"]
+
+
+def test_a_defect_that_a_reader_does_not_know_is_no_limit(monkeypatch, capsys):
+    monkeypatch.setattr(limited_process, "_limit", lambda: None)
+    limited_process.print_result(lambda: {"never": math.sqrt(-1.0)})
+    assert "ValueError" in json.loads(capsys.readouterr().out)["allowed"]
 
 
 def glb(tree, binary=b""):

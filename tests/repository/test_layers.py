@@ -27,6 +27,7 @@ LAYERS = (
     ("rocking/_solver", "rocking/paper"),
     ("rocking/_model", "rocking/_excitation"),
     ("rocking/_numba",),
+    ("rocking/_base/column",),
     ("rocking/_base/errors", "rocking/_base/equality"),
     ("rocking/_base/units",),
     ("rocking/_base/constants", "rocking/_base/parameter", "rocking/_base/version", "rocking/_base/source_tree"),

@@ -8,8 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
+from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, plain_numbers
-from rocking._dimensional.table_reader import Column
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
@@ -224,6 +224,10 @@ class AssessResponse(Answer):
     motions: list[str] = Field(description="motions of the site; from both sides each")
     highest_factor: float = Field(description="highest factor on the motions that was searched [-]")
     bad_rows: list[UnreadRow] = Field(description="rows that were not read; the others are assessed")
-    skipped: list[str] = Field(description="columns of the table that are not used")
+    details: dict[str, list[str]] = Field(
+        {}, description="other texts of the object of each row, by their headers in the table"
+    )
+    columns: dict[str, str] = Field(description="what columns of the table were read as, by their headers")
+    skipped: list[str] = Field(description="columns of the table that were not read; `details` has their cells")
     source: str = BY_SOLVER
     metadata_url: str = METADATA_URL_FIELD

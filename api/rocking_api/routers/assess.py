@@ -101,9 +101,11 @@ def _assess(
                 "query": params,
                 "warnings": [f"rows that were not read: {unread}, see `bad_rows`"] if unread else [],
                 "rows": found.rows,
+                "details": found.details,
                 "motions": found.motions,
                 "highest_factor": found.highest_factor,
                 "bad_rows": [vars(one) for one in table.bad_rows],
+                "columns": table.columns,
                 "skipped": table.skipped,
             }
         ),

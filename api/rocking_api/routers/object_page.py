@@ -100,7 +100,7 @@ async def post_mesh(request: Request, service: ServiceDep, file: str = "") -> Re
     site, restitution = site_of(given), _restitution(given)
     mesh = await service.run_parser(lambda stop: read_mesh(raw, file, given["unit"], stop), request, in_process=True)
     found = await _assessed(mesh.planes, restitution, site, request, service)
-    notes = [] if mesh.closed else ["The mesh is not closed: its centre of mass is uncertain."]
+    notes = [f"The mesh {remark}." for remark in mesh.remarks]
     return page_of(given | {"name": file}, found=found, footprint=np.array(mesh.footprint), notes=notes)
 
 

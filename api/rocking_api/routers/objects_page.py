@@ -83,7 +83,7 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
         words += ["--floor", ",".join(f"{one}s" for one in periods)]
         words += ["--floor-participation", ",".join(map(str, participation))]
     project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(words))
-    text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows), request)
+    text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
 
