@@ -53,11 +53,8 @@ MAX_CHARACTERS = 20_000_000
 MAX_COLUMNS = 1000
 """Most columns of a table."""
 
-EMPTY_ROWS = 20_000
-"""Most rows of a table that are empty, or totals, where its rows are limited: more than of any table of a person."""
-
-SHEET_COLUMNS, SHEET_CELLS = 16_384, 1_000_000
-"""Most columns and cells of a sheet, up to its last ones that are not empty: one cell far out makes all of them."""
+EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
+"""Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
 
 MAX_NAME = 200
 """Longest name of a column with its unit [characters]."""
@@ -279,10 +276,7 @@ def text_of(raw: bytes) -> str:
 
 
 def read_csv(text: str, schema: Schema[Item], most: int | None = None, stop: StopFlag | None = None) -> Table[Item]:
-    """A table from text with separated columns; the errors of `read_file`, a line that is not CSV, those of `most`.
-
-    `stop` cancels the work, also where `most` bounds it: rows that are empty or totals do not count.
-    """
+    """A table from text; errors of `read_file`, of a line that is not CSV, of `most`. `stop` cancels the work."""
     delimiter = _delimiter(text, schema)
     # where commas separate the columns, a single point is the decimal sign
     usual = "." if delimiter == "," else ""
@@ -356,11 +350,9 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
                 allowed = f"at most {SHEET_COLUMNS} columns and {SHEET_CELLS} cells"
                 raise InvalidArgumentError(argument, f"a sheet of {rows} rows and {columns} columns", allowed)
             frame = pd.read_excel(file, header=None, dtype=object)
-    except InvalidArgumentError:
-        raise
     except ImportError as error:
         raise ImportError("sheets need the extra `sheets`: pip install 'rocking[sheets]'", name=error.name) from None
-    except MemoryError:
+    except (InvalidArgumentError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  (the reader of sheets has its own errors)
         raise InvalidArgumentError(argument, str(error), "a sheet of a spreadsheet, .xlsx or .ods") from None

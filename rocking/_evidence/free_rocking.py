@@ -43,6 +43,12 @@ Array = NDArray[np.float64]
 MAX_ROTATION = 0.8
 """Largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees."""
 
+DURATION = 1e-3, 1e5
+"""Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
+
+SHORTEST_STEP = 1e-7
+"""Shortest step between samples [s]."""
+
 MIN_IMPACTS = 3
 """Fewest impacts from which eta, alpha and p are told apart [-]."""
 
@@ -161,6 +167,10 @@ def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, A
         raise InvalidArgumentError("rotation", theta.shape, f"as many samples as of time, {t.shape}, at least 15")
     if not np.all(np.diff(t) > 0.0):
         raise InvalidArgumentError("time", f"a step of {np.diff(t).min():g} s", "ascending times")
+    shortest, duration = float(np.diff(t).min()), float(t[-1] - t[0])
+    if not (shortest >= SHORTEST_STEP and DURATION[0] <= duration <= DURATION[1]):
+        allowed = f"a trace of {DURATION[0]:g} to {DURATION[1]:g} s in steps of {SHORTEST_STEP:g} s or more"
+        raise InvalidArgumentError("time", f"{duration:g} s, the shortest step {shortest:g} s", allowed)
     if np.abs(theta).max() > MAX_ROTATION:
         raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
     return t, theta, integer("edges", edges, 1, 2)

@@ -24,7 +24,10 @@ ALPHA_DEG = parameters.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
-_FAIL_FAST = Field(fail_fast=True)  # one error for an array, not one for each entry
+MAX_NUMBERS = 1_000_000
+"""Most numbers of a list in JSON [-]; the points of a batch have a limit of their own, see `Settings`."""
+
+_FAIL_FAST = Field(fail_fast=True, max_length=MAX_NUMBERS)  # one error for an array, not one for each entry
 
 _KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
 """Names that need no look at the registered pulses."""

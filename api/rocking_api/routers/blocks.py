@@ -23,6 +23,7 @@ from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_resp
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.blocks import (
+    MAX_BLOCKS,
     BlockParams,
     BlockResponse,
     BlockRow,
@@ -41,9 +42,6 @@ from rocking_api.models.responses import PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
-
-MAX_BLOCKS = 10_000
-"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
 
 MAX_BODY = 4 * 1024 * 1024
 """Largest body with blocks [bytes]."""
