@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -95,9 +96,9 @@ class Site:
         The suite; its records count as independent and equally likely, with their vertical components. Two horizontal
         components of one station are assessed at angles every 15 degrees from the first towards the second one and
         count as one record, which overturns an object if it does so at an angle. The PGA of a pair is the larger one.
-    hazard : xarray.DataArray or (array_like, array_like)
-        Peak ground accelerations [m/s2], ascending, and annual rates of exceedance [1/year]; with records. As of
-        `rocking.suites.read_hazard`.
+    hazard : path, xarray.DataArray or (array_like, array_like)
+        Peak ground accelerations [m/s2], ascending, and annual rates of exceedance [1/year]; with records. A file, or a
+        result, of `rocking.suites.read_hazard`.
     shapes : sequence of str or AbstractPulse, optional
         Pulse shapes; by default all pulses by name that leave the ground at rest.
     moving_ground : bool
@@ -116,7 +117,7 @@ class Site:
     pgv: Scalar | None = None
     periods: tuple[Scalar, Scalar] | None = None
     records: Record | Sequence[Record | tuple[Record, Record]] = ()
-    hazard: xr.DataArray | tuple[ArrayLike, ArrayLike] | None = None
+    hazard: str | PathLike[str] | xr.DataArray | tuple[ArrayLike, ArrayLike] | None = None
     shapes: Sequence[str | AbstractPulse] | None = None
     moving_ground: bool = False
     floor_periods: Values | None = None
@@ -150,7 +151,9 @@ class Site:
         if self.hazard is not None:
             if not self.records:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
-            object.__setattr__(self, "hazard", check_hazard_curve(_hazard_pair(self.hazard)))
+            from rocking.suites.hazard_files import hazard_arrays  # noqa: PLC0415  (xarray takes longer to load)
+
+            object.__setattr__(self, "hazard", check_hazard_curve(hazard_arrays(self.hazard, "pga")))
         if self.periods is not None:
             given_periods: Any = self.periods
             ends = in_range("periods", given_periods, *LENGTH, unit="s")
@@ -235,17 +238,6 @@ class Site:
         found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
         scale = motion.peak_acceleration / ground.peak_acceleration
         return replace(motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0)
-
-
-def _hazard_pair(given: Any) -> tuple[ArrayLike, ArrayLike]:
-    """Intensities and rates of a hazard curve of PGA."""
-    if isinstance(given, Sequence) and len(given) == 2:
-        return given[0], given[1]
-    if getattr(given, "dims", None) != ("intensity",):
-        raise InvalidArgumentError("hazard", given, "intensities and annual rates")
-    if given.attrs.get("measure", "pga") != "pga":
-        raise InvalidArgumentError("hazard", given.attrs["measure"], "a hazard curve of pga")
-    return given["intensity"].values, given.values
 
 
 def _checked_pair(given: Any) -> Record | tuple[Record, Record]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -56,10 +56,14 @@ def identify(
     if form.kind == "csv":
         printing.print_csv(columns, form)
         return
-    about = {"impacts": found.sizes["impact"], "noise": found["noise"].item(), "offset": found["offset"].item()}
+    about: dict[str, Any] = {"impacts": found.sizes["impact"]}
+    about |= {name: found[name].item() for name in ("noise", "offset", "drift", "drift_lower", "drift_upper")}
+    about["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
     if form.kind == "json":
         printing.print_json({**columns, **about})
         return
+    for text in about.pop("warnings"):
+        typer.echo(f"warning: {text}")
     printing.print_table(columns)
     printing.print_text(about, form)
 

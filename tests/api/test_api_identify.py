@@ -36,6 +36,8 @@ def test_the_block_is_that_of_a_direct_call(client, trace):
     for name in EDGE_COLUMNS:
         assert answer[name] == expected[name].values.tolist()
     assert answer["restitution"] == pytest.approx([ETA], abs=0.01)
+    assert answer["drift"] == expected["drift"].item()
+    assert answer["warnings"] == []
     assert answer["impact_time"] == expected["impact_time"].values.tolist()
     assert answer["rotation"] == trace["rotation"]
     nan = np.isnan(expected["fitted"].values)

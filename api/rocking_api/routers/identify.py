@@ -17,7 +17,14 @@ from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES, IdentifyParams, IdentifyResponse, Trace
+from rocking_api.models.identify import (
+    EDGE_COLUMNS,
+    MAX_SAMPLES,
+    TRACE_NUMBERS,
+    IdentifyParams,
+    IdentifyResponse,
+    Trace,
+)
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -106,7 +113,6 @@ def _identified(
         return csv_response(edges, "identified")
     columns: dict[str, Any] = {name: found[name].values.tolist() for name in ("time", "rotation", "impact_time")}
     columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
-    noise, offset = found["noise"].item(), found["offset"].item()
-    return json_response(
-        IdentifyResponse.model_construct(query=params, noise=noise, offset=offset, **edges, **columns), request
-    )
+    columns |= {name: found[name].item() for name in TRACE_NUMBERS}
+    columns["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
+    return json_response(IdentifyResponse.model_construct(query=params, **edges, **columns), request)
