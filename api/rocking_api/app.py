@@ -76,7 +76,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         responses=RESPONSES,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request
     )
-    cubes = CubeCollection(settings.results, settings.cache)
+    cubes = CubeCollection(settings.results)
     service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
     # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream", "application/zip")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -25,10 +24,6 @@ def _origins(given: Any) -> Any:
         raise ValueError('a JSON list of origins, such as ["https://example.org"]') from None
 
 
-def _user_cache() -> Path:
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "rocking" / "tables"
-
-
 class Settings(BaseSettings):
     """Settings of one service; `cors_origins` is empty by default."""
 
@@ -39,9 +34,6 @@ class Settings(BaseSettings):
     )
     guide: Annotated[Path, BeforeValidator(_nonempty)] = Field(
         default=Path("build/docs"), description="folder of the guide, which `make docs` fills"
-    )
-    cache: Annotated[Path, BeforeValidator(_nonempty)] = Field(
-        default_factory=_user_cache, description="folder of the tables of data sets, which workers share"
     )
     max_points: int = Field(default=1_000_000, ge=1, description="largest number of points of a batch")
     max_body_bytes: int = Field(default=64 * 1024 * 1024, ge=1, description="largest body of a request")

@@ -1,7 +1,8 @@
 """Check the error bounds of interpolated responses: `python -m benchmarks.accuracy.lookup` after `make reproduce`.
 
 Random points over the whole range of the cubes of a pulse are evaluated by interpolation and by the solver. Reported
-are the share that the cubes answer, wrong outcomes, errors above the bound of the response, and the time per point.
+are the share that the cubes answer and of these that with a number of impacts, wrong outcomes and numbers, errors above
+the bound of the response, and the time per point.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ def random_points(cube: Cube, count: int, between: tuple[bool, bool], random: np
     """Return random points, uniform in 1/a, log omega, eta and alpha, or at stored values of the latter two."""
     first = cube.slice_at(0)
     assert first is not None
-    low, high = np.log(first.frequency_ratio[[0, -1]])
-    levels = (cube.restitutions, first.alpha)
+    low, high = np.log(first.axes["frequency_ratio"][[0, -1]])
+    levels = (cube.restitutions, first.axes["alpha"])
     eta, alpha = (
         random.uniform(values[0], values[-1], count) if free else random.choice(values, count)
         for values, free in zip(levels, between, strict=True)
     )
-    slenderness = random.uniform(first.slenderness[0], first.slenderness[-1], count)
+    slenderness = random.uniform(first.axes["slenderness"][0], first.axes["slenderness"][-1], count)
     return Points(slenderness, np.exp(random.uniform(low, high, count)), eta, alpha)
 
 
@@ -55,6 +56,8 @@ def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[st
     return {
         "answered": float(known.sum()),
         "wrong_outcomes": float((found.outcome != exact.outcome).sum()),
+        "counted": float((found.impacts >= 0).sum()),
+        "wrong_impacts": float(((found.impacts >= 0) & (found.impacts != exact.impacts)).sum()),
         "wrong_exceeded_alpha": float((found.exceeded_alpha != exact.exceeded_alpha).sum()),
         "bounds_broken": float((error > found.error_bound[surviving]).sum()),
         "largest_share_of_bound": float((error / found.error_bound[surviving]).max(initial=0.0)),
@@ -77,6 +80,7 @@ def measure(folder: Path, count: int, tolerance: float, seed: int) -> dict[str, 
         record[kind] = total | {
             "points": total_points,
             "share": total["answered"] / total_points,
+            "share_with_impacts": total["counted"] / max(total["answered"], 1.0),
             "largest_share_of_bound": max(part["largest_share_of_bound"] for part in parts),
             "microseconds": 1e6 * total["seconds"] / total_points,
         }
@@ -93,8 +97,8 @@ def main() -> None:
     options = parser.parse_args()
     record: dict[str, Any] = {}
     print(
-        f"{'':53}{'share':>8}{'outc.':>7}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
-        "   errors in outcome, exceeded_alpha and bounds; largest share of a bound"
+        f"{'':53}{'share':>8}{'counted':>9}{'outc.':>7}{'impacts':>9}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
+        "   errors in outcome, impacts, exceeded_alpha and bounds; largest share of a bound"
     )
     for folder in sorted(path for path in options.spectra.iterdir() if path.is_dir()):
         for tolerance in (1e-4, 1e-6):
@@ -102,7 +106,8 @@ def main() -> None:
             record.setdefault(folder.name, {})[str(tolerance)] = found
             for kind, row in found.items():
                 print(
-                    f"{folder.name:25}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}{row['wrong_outcomes']:7.0f}"
+                    f"{folder.name:25}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}"
+                    f"{row['share_with_impacts']:9.4f}{row['wrong_outcomes']:7.0f}{row['wrong_impacts']:9.0f}"
                     f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
                     f"{row['microseconds']:7.2f}",
                     flush=True,

@@ -98,12 +98,12 @@ def _memory(process: int) -> dict[str, float]:
 
 
 @contextmanager
-def service(results: Path, workers: int, cache: Path) -> Iterator[Service]:
+def service(results: Path, workers: int) -> Iterator[Service]:
     """A service on a free port, once its workers respond."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
         command = [sys.executable, "-m", "rocking._cli", "serve", "--port", "0", "--results", str(results)]
-        environment = os.environ | {"ROCKING_CACHE": str(cache), "ROCKING_MAX_SECONDS": "600"}
+        environment = os.environ | {"ROCKING_MAX_SECONDS": "600"}
         with (
             log.open("wb") as output,
             subprocess.Popen(
@@ -257,14 +257,10 @@ def main(arguments: list[str] | None = None) -> None:
     record["memory"] = {}
     for workers in (1, asked.workers):
         progress(f"memory of {workers}")
-        with tempfile.TemporaryDirectory() as cache, service(asked.results, workers, Path(cache)) as one:
+        with service(asked.results, workers) as one:
             record["memory"][workers] = memory_with_all_cubes(one, asked.pulse, restitutions)
-            record["tables_MB"] = sum(path.stat().st_size for path in Path(cache).rglob("*.npy")) / 1e6
     with ExitStack() as stack:
-        cache = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        services = {
-            workers: stack.enter_context(service(asked.results, workers, cache)) for workers in (1, asked.workers)
-        }
+        services = {workers: stack.enter_context(service(asked.results, workers)) for workers in (1, asked.workers)}
         loads: dict[tuple[int, int], list[dict[str, float]]] = {}
         batches: dict[int, list[float]] = {}
         for number in range(asked.rounds):
@@ -339,7 +335,6 @@ def table(record: dict[str, Any]) -> str:
         f"at most {memory['largest_private_MB']:.0f} MB private in one process"
         for workers, memory in record["memory"].items()
     ]
-    lines.append(f"tables of {record['cubes']} cubes {record['tables_MB']:.0f} MB")
     lines += [
         f"worker killed, {row['connections']} connections: {sum(row['failed'].values())} of {row['requests']} requests "
         f"failed {row['failed']}, the longest took {row['longest_s']:.3f} s, "

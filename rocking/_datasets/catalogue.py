@@ -9,6 +9,7 @@ import stat
 import threading
 import time
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -19,7 +20,6 @@ import xarray as xr
 from rocking._base.errors import DatasetError
 from rocking._datasets.checksum import sha256_of
 from rocking._datasets.cube import decode_dataset
-from rocking._datasets.shared_cache import KnownVersion, SharedCache
 
 CLOCK_TICK = 20_000_000
 """Changes of a file within this time may have the same time stamp [ns]: file system clocks advance by 1 to 10 ms."""
@@ -180,7 +180,11 @@ class VersionCache(Generic[K, V]):
     def current(self, key: K) -> V | None:
         """The value of a key if the file at its path has not changed since; None otherwise."""
         entry = self._entries.get(key)
-        return entry[2] if entry is not None and entry[1] == version_of(entry[0]) else None
+        if entry is None or entry[1] != version_of(entry[0]):
+            return None
+        with suppress(KeyError):  # another thread may have removed it
+            self._entries[key] = self._entries.pop(key)  # used last
+        return entry[2]
 
     def store(self, key: K, path: Path, version: FileVersion, value: V) -> V:
         """Keep a value that was computed from this version of a file; returns it."""
@@ -188,8 +192,8 @@ class VersionCache(Generic[K, V]):
         return value
 
     def items(self) -> list[tuple[K, V]]:
-        """All keys and values, in the order in which the keys were first stored."""
-        return [(key, entry[2]) for key, entry in self._entries.items()]
+        """All keys and values; those that were stored or used last are at the end."""
+        return [(key, entry[2]) for key, entry in list(self._entries.items())]
 
     def forget(self, key: K) -> None:
         """Keep the value of a key no longer."""
@@ -211,13 +215,10 @@ class Catalogue:
     ----------
     results : path
         Folder that the workflow fills; it need not exist yet.
-    cache : SharedCache, optional
-        Keeps digests for other processes.
     """
 
-    def __init__(self, results: Path | str, cache: SharedCache | None = None) -> None:
+    def __init__(self, results: Path | str) -> None:
         self.results = Path(results)
-        self._cache = cache
         self.lock = threading.RLock()
         """To be held while a file is read: the netCDF library is not thread-safe."""
         self._products = VersionCache[str, DatasetFile]()
@@ -281,13 +282,8 @@ class Catalogue:
             return self._products.value(file.name, file, self._dataset_file)
 
     def _dataset_file(self, file: DataFile) -> DatasetFile:
-        known = None if self._cache is None else self._cache.known(file.name, file.version)
-        if known is not None:
-            return DatasetFile(file.name, file.version.size, known.sha256)
-        digest = sha256_of(file.content())
-        if self._cache is not None:
-            self._cache.store(file.name, file.version, KnownVersion(digest))
-        return DatasetFile(file.name, file.version.size, digest)
+        content = file.content()
+        return DatasetFile(file.name, len(content), sha256_of(content))
 
     def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
         """A data set, read into memory and checked, and its version.

@@ -14,10 +14,10 @@ restitution_error     f4   largest error halfway to the next restitution, measur
 alpha_error           f4   largest error halfway to the next angle, measured in the same cells
 ====================  ===  =====================================================================================
 
-with scalar coordinates `pulse` and `restitution`, and derived fields of the nodes where they were asked for
-(`OPTIONAL_VARIABLES`); alpha = 0 stands for the slender limit. A file of a pulse given by samples holds these,
-`pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of creation, so equal content
-gives equal bytes, and a digest of their values.
+with scalar coordinates `pulse` and `restitution`, the attribute `IMPACTS_BEFORE_REST`, and derived fields of the nodes
+where they were asked for (`OPTIONAL_VARIABLES`); alpha = 0 stands for the slender limit. A file of a pulse given by
+samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of
+creation, so equal content gives equal bytes, and a digest of their values.
 """
 
 from __future__ import annotations
@@ -105,6 +105,9 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
 
 OPTIONAL_VARIABLES = {field.name: (field.file_dtype, field.attributes) for field in DERIVED_FIELDS}
 """Variables that a spectrum cube has if they were asked for, at its nodes; they are not interpolated."""
+
+IMPACTS_BEFORE_REST = "impacts_before_rest"
+"""Attribute of a spectrum cube: the fewest impacts of a node whose impacts accumulate to rest while the pulse acts."""
 
 VARIABLES["peak_rotation"][1]["ancillary_variables"] = "outcome peak_mode stencil interpolation_error"
 

@@ -18,7 +18,9 @@ def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDAr
     """Index of the slice at or below each value, -1 outside of the slices; and whether the value is on that slice."""
     value = np.asarray(value, dtype=np.float64)
     below = np.searchsorted(slices, value, side="right") - 1
-    on_slice = np.append(slices, np.nan)[below] == value  # -1 selects nan, which equals nothing
+    if not slices.size:
+        return below, below >= 0
+    on_slice = slices[below] == value  # -1 selects the last slice, which is above such a value
     return np.where((below < slices.size - 1) | on_slice, below, -1), on_slice
 
 

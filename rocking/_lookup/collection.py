@@ -14,19 +14,16 @@ from numpy.typing import ArrayLike
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
-from rocking._datasets.checksum import sha256_of
 from rocking._datasets.cube import decode_dataset
-from rocking._datasets.shared_cache import KnownVersion, SharedCache
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._lookup.cube import Cube
 from rocking._lookup.cube_slice import CubeSlice, check_slice, decode_slice
-from rocking._lookup.packed_tables import PackedTables
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 
-MAX_PRIVATE_BYTES = 500_000_000
-"""Tables in private memory that a collection with a cache keeps, where the cache cannot be written [bytes]."""
-
+MAX_BYTES = 230_000_000
+"""Memory of the cubes that a collection keeps [bytes]: all of one pulse of `paper.yaml`. Those that were not used for
+longest are read again when needed."""
 
 NO_CUBES = "no spectrum cubes; `make reproduce` builds them"
 """What `CubeCollection.problems` reports where nothing is damaged, but there are no cubes."""
@@ -39,8 +36,6 @@ class CubeCollection:
     ----------
     results : path
         Folder that the workflow fills; it need not exist yet.
-    cache : path, optional
-        Folder in which processes share tables of the cubes and results of checks; by default nothing is shared.
 
     Attributes
     ----------
@@ -48,10 +43,8 @@ class CubeCollection:
         All files of the folder.
     """
 
-    def __init__(self, results: Path | str, cache: Path | None = None) -> None:
-        self._cache = None if cache is None else SharedCache(cache, Path(results))
-        self.catalogue = Catalogue(results, self._cache)
-        self._tables = None if self._cache is None else PackedTables(self._cache, self.catalogue)
+    def __init__(self, results: Path | str) -> None:
+        self.catalogue = Catalogue(results)
         self._slices = VersionCache[tuple[str, float], CubeSlice | DatasetError]()
         self._restitutions = VersionCache[str, list[float]]()
         self._problems = VersionCache[str, str | None]()
@@ -88,7 +81,7 @@ class CubeCollection:
                 # under the lock: another thread may read the same file, which is then read once
                 with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
                     known = self._slices.value(key, file, lambda file: self._open(file, *key))
-                    self._limit_private_memory(key)
+                    self._limit_memory(key)
             except UnknownDatasetError:
                 return None
         if isinstance(known, DatasetError):
@@ -130,8 +123,6 @@ class CubeCollection:
         names, found = self.catalogue.scan()
         if not any(name.startswith("spectra/") for name in names):
             found.setdefault("spectra", NO_CUBES)
-        elif self._cache is not None:
-            self._cache.keep_only(names)
         for name in names:
             try:
                 problem = self.problem(name)
@@ -194,14 +185,12 @@ class CubeCollection:
     def problem_of(self, file: DataFile) -> str | None:
         """The same for an open data set, which is read and checked once per version of its file."""
         with self.catalogue.lock:
-            return self._problems.value(file.name, file, self._check)
+            return self._problems.value(file.name, file, lambda file: _problem_of(file.name, file.content()))
 
-    def _limit_private_memory(self, newest: tuple[str, float]) -> None:
-        """Forget the oldest tables in private memory, which are read again when needed; tables in files need none."""
-        if self._cache is None:
-            return
-        sizes = {key: 0 if isinstance(one, DatasetError) else one.private_bytes for key, one in self._slices.items()}
-        excess = sum(sizes.values()) - MAX_PRIVATE_BYTES
+    def _limit_memory(self, newest: tuple[str, float]) -> None:
+        """Forget the cubes that were not used for longest."""
+        sizes = {key: 0 if isinstance(one, DatasetError) else one.nodes.nbytes for key, one in self._slices.items()}
+        excess = sum(sizes.values()) - MAX_BYTES
         for key, size in sizes.items():
             if excess > 0 and size and key != newest:
                 self._slices.forget(key)
@@ -209,7 +198,7 @@ class CubeCollection:
 
     def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
         try:
-            cube = decode_slice(file.content(), file.name) if self._tables is None else self._tables.slice_of(file)
+            cube = decode_slice(file.content(), file.name)
             sampled = None if isinstance(cube.pulse, str) else cube.pulse
             found = str(cube.pulse) if sampled is None else sampled.name
             _check_content(file.name, (found, cube.restitution), (pulse, restitution))
@@ -218,18 +207,6 @@ class CubeCollection:
         except DatasetError as error:
             return error
         return cube
-
-    def _check(self, file: DataFile) -> str | None:
-        """Read a data set, unless another process has; description of its problem, None if it is intact."""
-        if self._cache is None:
-            return _problem_of(file.name, file.content())
-        with self._cache.alone(file.name):
-            known = self._cache.known(file.name, file.version)
-            if known is None or not known.checked:
-                content = file.content()
-                known = KnownVersion(sha256_of(content), checked=True, problem=_problem_of(file.name, content))
-                self._cache.store(file.name, file.version, known)
-        return known.problem
 
 
 def _cube_name(pulse: str, restitution: float) -> str:

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,22 +27,11 @@ from rocking._base.errors import (
     one_of,
 )
 from rocking._excitation.pulses import AbstractPulse
-from rocking._interpolation.kernel import (
-    BLOCK,
-    INTERPOLATED,
-    NO_UPLIFT,
-    POINT,
-    UNKNOWN,
-    WORK,
-    Found,
-    interpolate_many,
-)
-from rocking._interpolation.slices import slice_index, slice_window
-from rocking._interpolation.windows import SLICE_WINDOW, group_points
+from rocking._interpolation.kernel import Found, interpolate_many, prepare
+from rocking._interpolation.slices import STENCIL_SIZE, slice_index, slice_window
 from rocking._lookup.cube_slice import CubeSlice, fetch_slice, open_slice
 from rocking._model.checks import check_groups
 from rocking._model.fields import DERIVED_FIELDS
-from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
 from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
@@ -70,7 +59,10 @@ class Points:
             If a value is out of range, or the shapes do not broadcast.
         """
         given = dict(zip(cls.__dataclass_fields__, groups, strict=True))
-        full = broadcast(given, [*check_groups(**given).values()])
+        s, w, eta, alpha = check_groups(**given).values()
+        if not (s.ndim or w.ndim or eta.ndim or alpha.ndim):  # one block, in a fraction of the time
+            return cls(s.reshape(1), w.reshape(1), eta.reshape(1), alpha.reshape(1)), ()
+        full = broadcast(given, [s, w, eta, alpha])
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
     def __getitem__(self, index: Any) -> Points:
@@ -86,9 +78,30 @@ SAFETY = 6.0
 MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
 """Fewest and most points that a thread interpolates at a time."""
 
-_OUTCOME_WITHOUT_UPLIFT = int(Outcome.NO_UPLIFT)
-
 Flags = NDArray[np.bool_]
+
+
+class Window(NamedTuple):
+    """The slices from which points are interpolated.
+
+    Attributes
+    ----------
+    slices : list of CubeSlice
+        The one at or below the points first, then the others.
+    arguments : tuple
+        What the kernel needs of them.
+    """
+
+    slices: list[CubeSlice]
+    arguments: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, slices: list[CubeSlice], lower: int) -> Window:
+        """The window of ascending slices, of which the one with the index `lower` is at or below the points."""
+        own, nodes = slices[lower], [one.nodes for one in slices]
+        padded = *nodes, *[own.nodes] * (STENCIL_SIZE - len(nodes))
+        levels = np.array([one.restitution for one in slices])
+        return cls([own, *slices], (own.mesh, own.angles, padded, levels, lower))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +121,7 @@ class Cube:
     pulse: str | AbstractPulse
     restitutions: Array
     slice_at: Callable[[int], CubeSlice | None]
+    _windows: dict[int, Window | None] = field(default_factory=dict, init=False, repr=False)
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
@@ -189,20 +203,18 @@ class Cube:
                 raise InvalidArgumentError("restitution", None, "a number: there are several cubes")
             restitution = self.restitutions[0]
         points, shape = Points.of(slenderness, frequency_ratio, restitution, alpha)
-        used: list[CubeSlice] = []
-        if method == "solver":
-            found = _empty(points)
-        else:
-            found, used = self._interpolated(points, limit, threads, stop)
-        result = _response(found)
-        left = np.flatnonzero(found.state == UNKNOWN)
-        if left.size and method == "cube":
-            self._refuse(points[left[:1]], limit)
+        source = self if method != "solver" else Cube(self.pulse, np.empty(0), self.slice_at)
+        found, used, unknown = source._interpolated(points, limit, threads, stop)
+        result = _response(found, shape)
+        if unknown:
+            left = np.flatnonzero(~found.known)
+            if method == "cube":
+                self._refuse(points[left[:1]], limit)
+            solved = solve_with_bound(self.pulse, **vars(points[left]), threads=threads, stop=stop)
+            result.reshape((-1,)).put(left, solved)  # a view
         if method == "cube":
             result.from_cube[...] = True
-        if left.size:
-            result.put(left, _solve(self.pulse, points[left], threads, stop))
-        return result.reshape(shape), used
+        return result, used
 
     def used(self, restitution: Array) -> list[int]:
         """Indices of the cubes needed for some restitutions: first those at or below one of them, then the others."""
@@ -219,59 +231,65 @@ class Cube:
 
         Responses elsewhere are undefined. `threads` as in `response`.
         """
-        found, _ = self._interpolated(points, limit, threads, None)
-        return found.state == INTERPOLATED, _response(found)
+        found = self._interpolated(points, limit, threads, None)[0]
+        return found.from_cube, _response(found, found.known.shape)
 
     def _interpolated(
         self, points: Points, limit: float, threads: int | None, stop: StopFlag | None
-    ) -> tuple[Found, list[CubeSlice]]:
-        """Responses of the points, and the slices used."""
-        found = _empty(points)
-        groups, present = np.empty(found.state.size, np.int32), np.zeros(2 * self.restitutions.size + 1, np.bool_)
-        group_points(points.restitution, self.restitutions, groups, present, np.empty(BLOCK))
-        wanted = {
-            k: slices
-            for k, some in enumerate(present[:-1].tolist())
-            if some and (slices := self._slices(*divmod(k, 2)))
-        }
-        counts = np.zeros(present.size, np.int64)
-        left = wanted
-        while left:
-            own = next(iter(left.values()))[0]
-            alike = {k: slices for k, slices in left.items() if slices[0] is own or slices[0].fits(own)}
-            left = {k: slices for k, slices in left.items() if k not in alike}
-            windows = np.zeros(present.size, SLICE_WINDOW)
-            for k, slices in alike.items():
-                windows[k] = slices[0].window(*slices[1:])
-            for given in _interpolate(points, groups, own, windows, limit, found, threads, stop):
-                counts += given
-        used = [slices for k, slices in wanted.items() if counts[k]]
-        lower, others = [one for one, *_ in used], [one for _, *rest in used for one in rest]
-        # the slices are compared by identity
-        return found, list(dict.fromkeys([*lower, *others]))
+    ) -> tuple[Found, list[CubeSlice], int]:
+        """Responses of the points, the slices used, and the number of points that are not known."""
+        size, cores = points.slenderness.size, threads or AVAILABLE_CORES
+        groups, present = np.empty(size, np.int64), np.zeros(2 * self.restitutions.size + 1, np.bool_)
+        arrays = points.slenderness, points.frequency_ratio, points.restitution, points.alpha, groups
+        found = Found.zeros(size)
+        no_uplift = prepare(points.slenderness, points.restitution, self.restitutions, groups, present, found)
+        windows = [(group, self._window(group)) for group in np.flatnonzero(present[:-1]).tolist()]
+        given: list[tuple[int, int]] = []
 
-    def _slices(self, k: int, between: int) -> list[CubeSlice]:
-        """Slice k, and for points between it and the next one the others of their window; empty if one is missing.
+        def fill(part: slice, _: NDArray[np.uint8]) -> None:
+            here: list[Any] = list(arrays)
+            into: list[Any] = list(found)
+            if size > MIN_CHUNK:
+                here, into = [one[part] for one in arrays], [field[part] for field in found]
+            for group, window in windows:
+                if window is not None:
+                    count = interpolate_many(*here, group, *window.arguments, limit, SAFETY, SOLVER_ERROR, Found(*into))
+                    given.append((group, count))
+
+        fill_chunks(fill, size, min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
+        met = {group for group, count in given if count}
+        used = [window.slices for group, window in windows if window is not None and group in met]
+        # the slices are compared by identity
+        slices = dict.fromkeys([one for one, *_ in used] + [one for window in used for one in window])
+        return found, [*slices], size - no_uplift - sum(count for _, count in given)
+
+    def _window(self, group: int) -> Window | None:
+        """The window of a group of points (`rocking._interpolation.kernel.prepare`), kept for the next ones."""
+        if group not in self._windows:
+            self._windows[group] = self._make_window(*divmod(group, 2))
+        return self._windows[group]
+
+    def _make_window(self, k: int, between: int) -> Window | None:
+        """Slice k, or for points between it and the next one the slices of their window; None if one is missing.
 
         Between slices these are the slices with which the errors were measured, whatever other files there are.
         """
         own = self.slice_at(k)
         if own is None or not between:
-            return [] if own is None else [own]
-        lower = int(np.searchsorted(own.restitutions, own.restitution))
-        if lower + 1 >= own.restitutions.size:
-            return []
-        first, count = slice_window(own.restitutions.size, lower)
-        slices = [own]
-        for restitution in own.restitutions[first : first + count]:
-            if restitution == own.restitution:
-                continue
-            index = np.flatnonzero(self.restitutions == restitution)
-            one = self.slice_at(int(index[0])) if index.size else None
+            return None if own is None else Window.of([own], 0)
+        etas = own.restitutions.tolist()
+        if own.restitution not in etas[:-1]:
+            return None
+        lower = etas.index(own.restitution)
+        first, count = slice_window(len(etas), lower)
+        places = {eta: place for place, eta in enumerate(self.restitutions.tolist())}
+        slices = []
+        for eta in etas[first : first + count]:
+            one = self.slice_at(places[eta]) if eta in places else None
             if one is None or not one.fits(own):
-                return []
+                return None
             slices.append(one)
-        return slices
+        return Window.of(slices, lower - first)
 
     def _refuse(self, point: Points, limit: float) -> None:
         """Raise `OutsideCubeError` with the reason why the cubes do not give the response at a point."""
@@ -285,7 +303,7 @@ class Cube:
             raise OutsideCubeError("restitution", eta, "one with a cube that can be read, or method auto")
         axes = (("slenderness", s, "-"), ("frequency_ratio", w, "-"), ("alpha", alpha, "rad"))
         for name, value, unit in axes:
-            axis = getattr(nearest, name)
+            axis = nearest.axes[name]
             if not axis[0] <= value <= axis[-1]:
                 allowed = f"[{axis[0]:g}, {axis[-1]:g}] [{unit}]" if axis.size > 1 else f"{axis[0]:g} [{unit}]"
                 raise OutsideCubeError(name, value, f"{allowed} in this cube, or method auto")
@@ -300,84 +318,17 @@ class Cube:
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 
 
-def _interpolate(
-    points: Points,
-    groups: NDArray[np.int32],
-    own: CubeSlice,
-    windows: NDArray[np.void],
-    limit: float,
-    found: Found,
-    threads: int | None,
-    stop: StopFlag | None,
-) -> list[NDArray[np.int64]]:
-    """Fill `found` from the slices of the windows, with the axes of `own`; numbers of points given, of each group."""
-    size, cores = groups.size, threads or AVAILABLE_CORES
-    counts: list[NDArray[np.int64]] = []
-
-    def fill(part: slice, _: NDArray[np.uint8]) -> None:
-        given = np.zeros(windows.size, np.int64)
-        interpolate_many(
-            points.slenderness[part],
-            points.frequency_ratio[part],
-            points.restitution[part],
-            points.alpha[part],
-            own.mesh,
-            own.angles,
-            groups[part],
-            windows,
-            limit,
-            SAFETY,
-            SOLVER_ERROR,
-            np.empty(WORK, POINT),
-            np.empty((2, BLOCK), np.int64),
-            np.empty(BLOCK),
-            np.empty(BLOCK),
-            given,
-            Found(*[field[part] for field in found]),  # type: ignore[arg-type]  # in order
-        )
-        counts.append(given)
-
-    fill_chunks(fill, size, min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
-    return counts
-
-
-def _empty(points: Points) -> Found:
-    """Responses of points that are not interpolated: those without uplift are final."""
-    size = points.slenderness.size
-    state = np.zeros(size, np.int8)  # UNKNOWN
-    state[points.slenderness >= 1.0] = NO_UPLIFT
-    return Found(
-        state,
-        np.zeros(size),
-        np.full(size, _OUTCOME_WITHOUT_UPLIFT, np.int8),
-        np.zeros(size, np.int32),
-        np.zeros(size, np.bool_),
-        np.zeros(size),
-    )
-
-
-def _response(found: Found) -> BoundedResponse:
-    """The responses as their users see them."""
+def _response(found: Found, shape: tuple[int, ...]) -> BoundedResponse:
+    """The responses in the shape of the arguments, over the same memory."""
+    from_cube = found.from_cube.reshape(shape)
     return BoundedResponse(
-        peak_rotation=found.peak_rotation,
-        outcome=found.outcome,
-        impacts=found.impacts,
-        exceeded_alpha=found.exceeded_alpha,
-        error_bound=found.error_bound,
-        from_cube=found.state == INTERPOLATED,
-        derived={field.name: np.where(found.state == INTERPOLATED, np.nan, field.at_rest) for field in DERIVED_FIELDS},
-    )
-
-
-def _solve(pulse: str | AbstractPulse, points: Points, threads: int | None, stop: StopFlag | None) -> BoundedResponse:
-    return solve_with_bound(
-        pulse,
-        slenderness=points.slenderness,
-        frequency_ratio=points.frequency_ratio,
-        restitution=points.restitution,
-        alpha=points.alpha,
-        threads=threads,
-        stop=stop,
+        peak_rotation=found.peak_rotation.reshape(shape),
+        outcome=found.outcome.reshape(shape),
+        impacts=found.impacts.reshape(shape),
+        exceeded_alpha=found.exceeded_alpha.reshape(shape),
+        error_bound=found.error_bound.reshape(shape),
+        from_cube=from_cube,
+        derived={field.name: np.where(from_cube, np.nan, field.at_rest) for field in DERIVED_FIELDS},
     )
 
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import tempfile
 import urllib.request
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
-from weakref import ref
 
 import numpy as np
 import xarray as xr
@@ -16,18 +15,12 @@ from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError, InvalidArgumentError
 from rocking._datasets.checksum import sha256_of
-from rocking._datasets.cube import AXES, decode_spectrum, read_content, stored_pulse
+from rocking._datasets.cube import AXES, IMPACTS_BEFORE_REST, decode_spectrum, read_content, stored_pulse
 from rocking._excitation.sampled import SampledPulse
-from rocking._interpolation.cells import pack_cells
-from rocking._interpolation.slices import STENCIL_SIZE
-from rocking._interpolation.stencils import Mesh, slice_products
-from rocking._interpolation.strips import strips_of
-from rocking._interpolation.windows import SLICE_WINDOW, AngleAxis
+from rocking._interpolation.kernel import NODE, Nodes
+from rocking._interpolation.stencils import AngleAxis, Mesh
 
 Array = NDArray[np.float64]
-
-CELL_VARIABLES = ("stencil", "outcome", "impacts", "interpolation_error", "restitution_error", "alpha_error")
-"""Variables of a cube from which `pack_cells` makes its records, in order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,77 +35,33 @@ class CubeSlice:
         eta of this cube [-].
     restitutions : float array
         eta of the cubes from which the interval above this one is interpolated [-], ascending.
-    alpha, slenderness, frequency_ratio : float arrays
-        The axes [rad], [-], [-].
-    mesh : Mesh
-        The mesh of slenderness and frequency_ratio.
-    angles : AngleAxis
-        The angles.
+    axes : mapping of str to float array
+        alpha [rad], slenderness [-] and frequency_ratio [-].
+    mesh, angles : Mesh, AngleAxis
+        The same for the kernel.
+    nodes : array (angles, n, m) of `NODE`
+        The variables.
     sha256 : str
         Digest of the file, the version of the data.
-    peaks : float array (angles, strips, n, STRIP_SIZE)
-        The variable `peak_rotation` in strips of columns (`rocking._interpolation.strips`); may be read-only.
-    cells : array (n - 1, m - 1, angles) of `CELL_RECORD`
-        What is known of each cell; contiguous, may be read-only.
     """
 
     pulse: str | SampledPulse
     restitution: float
     restitutions: Array
-    alpha: Array
-    slenderness: Array
-    frequency_ratio: Array
+    axes: Mapping[str, Array]
     mesh: Mesh
     angles: AngleAxis
+    nodes: Nodes
     sha256: str
-    peaks: Array
-    cells: NDArray[np.void]
-    _windows: dict[tuple[ref[CubeSlice], ...], np.void] = field(default_factory=dict, init=False, repr=False)
-
-    @classmethod
-    def of(cls, axes: Mapping[str, Any], **fields: Any) -> CubeSlice:
-        """A slice from its axes by name and the other fields.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If an axis has fewer than four nodes.
-        """
-        mesh = Mesh.of(axes["slenderness"], axes["frequency_ratio"])
-        return cls(**axes, **fields, mesh=mesh, angles=AngleAxis.of(axes["alpha"]))
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Without the windows, which hold addresses of this process."""
-        return vars(self) | {"_windows": {}}
-
-    @property
-    def private_bytes(self) -> int:
-        """Memory of the tables that this process does not share with others [bytes]."""
-        return sum(array.nbytes for array in (self.peaks, self.cells) if array.flags.writeable)
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
-        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in AXES)
+        return self._axes_bytes == other._axes_bytes
 
-    def window(self, *others: CubeSlice) -> np.void:
-        """The window of points on this slice, or between it and the next one of up to three others.
-
-        It holds addresses in the slices, which the caller keeps while it uses the window.
-        """
-        key = tuple(map(ref, others))  # a slice does not keep the others, which files may have replaced
-        found = self._windows.get(key)
-        if found is None:
-            slices = sorted([self, *others], key=lambda one: one.restitution)
-            padded = slices + [self] * (STENCIL_SIZE - len(slices))
-            restitutions = np.array([one.restitution for one in padded])
-            products = slice_products(restitutions[: len(slices)])[0]
-            cells, peaks = ([getattr(one, name).ctypes.data for one in padded] for name in ("cells", "peaks"))
-            fields = restitutions, products, slices.index(self), len(slices), cells, peaks
-            window: np.void = np.array([fields], SLICE_WINDOW)[0]
-            for old in [old for old in self._windows if any(one() is None for one in old)]:
-                self._windows.pop(old, None)
-            found = self._windows[key] = window
-        return found
+    @cached_property
+    def _axes_bytes(self) -> tuple[bytes, ...]:
+        """The axes as they are compared in a microsecond."""
+        return tuple(axis.tobytes() for axis in self.axes.values())
 
 
 def open_slice(path: Path | str) -> CubeSlice:
@@ -166,25 +115,51 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
     InvalidArgumentError
         If an axis has fewer than four nodes, or the samples of the pulse are none.
     """
-    return CubeSlice.of(
-        {name: cube[name].values for name in AXES},
+    restitution = restitution_of(cube)
+    axes = {name: cube[name].values for name in AXES}
+    nodes = np.empty(cube["peak_rotation"].shape, NODE)
+    for name in [name for name in NODE.names or () if name in cube]:
+        nodes[name] = cube[name].values
+    nodes["counted"] = counted_cells(cube)
+    return CubeSlice(
         pulse=stored_pulse(cube),
-        restitution=restitution_of(cube),
-        restitutions=restitutions_of(cube),
+        restitution=restitution,
+        restitutions=np.atleast_1d(cube.attrs.get("restitution_slices", restitution)),
+        axes=axes,
+        mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
+        angles=AngleAxis.of(axes["alpha"]),
+        nodes=nodes,
         sha256=sha256,
-        peaks=strips_of(cube["peak_rotation"].values),
-        cells=pack_cells(*(cube[name].values for name in CELL_VARIABLES)),
     )
+
+
+def counted_cells(cube: xr.Dataset) -> NDArray[np.bool_]:
+    """Cells, by their lower nodes, in which the number of impacts is certain to be that of the node.
+
+    All 4 x 8 nodes around the cell have this number: four are not enough, as bands of another number, which lie along
+    the columns, may end in the cell. And it is certain that the impacts of none of them accumulate to rest while the
+    pulse acts. Where they do, the number of those before depends on details, and changes from one block to the next and
+    back in bands that are narrower than a cell. They do not
+
+    - without an impact;
+    - if the peak is reached on the last arc, as its mode says: each impact is before it, and none follows a rest;
+    - after at most half as many as nodes of the cube have before they come to rest.
+    """
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d  # noqa: PLC0415  (not needed to import the package)
+
+    impacts, mode = cube["impacts"].values, cube["peak_mode"].values
+    most = int(cube.attrs.get(IMPACTS_BEFORE_REST, 0)) // 2
+    numbers = np.where((impacts <= most) | (mode >> 1 == impacts), impacts, -1)
+    least = largest = numbers
+    for axis, size in ((1, 4), (2, 8)):  # one node more above than below
+        least = minimum_filter1d(least, size, axis, mode="nearest", origin=-1)
+        largest = maximum_filter1d(largest, size, axis, mode="nearest", origin=-1)
+    return np.asarray((least == largest) & (least >= 0))
 
 
 def restitution_of(cube: xr.Dataset) -> float:
     """eta of a spectrum cube [-]."""
     return float(cube["restitution"])
-
-
-def restitutions_of(cube: xr.Dataset) -> Array:
-    """eta of the cubes from which the interval above a spectrum cube is interpolated, its own among them [-]."""
-    return np.atleast_1d(cube.attrs.get("restitution_slices", restitution_of(cube)))
 
 
 def fetch_slice(address: str) -> CubeSlice:

@@ -89,7 +89,8 @@ def check_alpha(alpha: ArrayLike | Quantity | None) -> Array:
     if alpha is None:
         return np.zeros(())
     angles = check(ALPHA, alpha)
-    in_range(ALPHA.name, np.where(angles > 0.0, angles, ALPHA.upper), SMALLEST_ALPHA, ALPHA.upper, unit=ALPHA.unit)
+    if angles.ndim or 0.0 < angles < SMALLEST_ALPHA:
+        in_range(ALPHA.name, np.where(angles > 0.0, angles, ALPHA.upper), SMALLEST_ALPHA, ALPHA.upper, unit=ALPHA.unit)
     return angles
 
 

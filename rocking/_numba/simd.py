@@ -21,16 +21,16 @@ latencies of two units of eight overlap, which saves a tenth to a fifth of the t
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
+_LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _LLVM_BITS = ir.VectorType(ir.IntType(64), LANES)
 _LLVM_MASK = ir.VectorType(ir.IntType(1), LANES)
 
 
-class VectorType(types.Type):
-    """The numba type of a vector of `lanes` doubles."""
+class _VectorType(types.Type):
+    """The numba type of a vector of doubles."""
 
-    def __init__(self, lanes: int) -> None:
-        super().__init__(f"Lanes{lanes}")
-        self.llvm = ir.VectorType(ir.DoubleType(), lanes)
+    def __init__(self) -> None:
+        super().__init__("Lanes")
 
 
 class _MaskType(types.Type):
@@ -40,14 +40,13 @@ class _MaskType(types.Type):
         super().__init__("LanesMask")
 
 
-_VECTOR_TYPE, _MASK_TYPE = VectorType(LANES), _MaskType()
-_LLVM_VECTOR = _VECTOR_TYPE.llvm
+_VECTOR_TYPE, _MASK_TYPE = _VectorType(), _MaskType()
 
 
-@register_model(VectorType)
+@register_model(_VectorType)
 class _VectorModel(models.PrimitiveModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
-        super().__init__(manager, fe_type, fe_type.llvm)
+        super().__init__(manager, fe_type, _LLVM_VECTOR)
 
 
 @register_model(_MaskType)
@@ -60,11 +59,10 @@ def _constant(value: float) -> Any:
     return ir.Constant(_LLVM_VECTOR, [value] * LANES)
 
 
-def _splat(builder: Any, value: Any, kind: VectorType = _VECTOR_TYPE) -> Any:
-    undefined, number = ir.Constant(kind.llvm, ir.Undefined), ir.IntType(32)
+def _splat(builder: Any, value: Any) -> Any:
+    undefined, number = ir.Constant(_LLVM_VECTOR, ir.Undefined), ir.IntType(32)
     single = builder.insert_element(undefined, value, ir.Constant(number, 0))
-    lanes = kind.llvm.count
-    return builder.shuffle_vector(single, undefined, ir.Constant(ir.VectorType(number, lanes), [0] * lanes))
+    return builder.shuffle_vector(single, undefined, ir.Constant(ir.VectorType(number, LANES), [0] * LANES))
 
 
 def _row_address(builder: Any, array: Any, row: Any) -> Any:
@@ -192,7 +190,6 @@ def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> 
         1: lambda _, x: typed(x),
         2: lambda _, x, y: typed(x, y),
         3: lambda _, x, y, z: typed(x, y, z),
-        4: lambda _, a, b, c, d: typed(a, b, c, d),
     }
     return intrinsic(forms[len(parameters)])
 
@@ -289,8 +286,9 @@ scatter_rows = instruction(_scatter_rows, types.void, None, None, None)
 """scatter_rows(source, places, target): the inverse, column i of `source` becomes row `places[i]` of `target`."""
 
 
-def _operation(operation: Any, generate: Callable[..., Any], vector: VectorType, result: Any) -> None:
+def _operation(operation: Any, generate: Callable[..., Any], result: Any) -> None:
     """Define `operation` for two vectors, or a vector and a number."""
+    vector = _VECTOR_TYPE
 
     @type_callable(operation)
     def typing(_: Any) -> Any:
@@ -302,25 +300,11 @@ def _operation(operation: Any, generate: Callable[..., Any], vector: VectorType,
         return typed
 
     def lower(_: Any, builder: Any, sig: Any, args: Any) -> Any:
-        operands = [x if kind == vector else _splat(builder, x, vector) for kind, x in zip(sig.args, args, strict=True)]
+        operands = [x if kind == vector else _splat(builder, x) for kind, x in zip(sig.args, args, strict=True)]
         return generate(builder, *operands)
 
     for left, right in ((vector, vector), (vector, types.float64), (types.float64, vector)):
         lower_builtin(operation, left, right)(lower)
-
-
-def define_arithmetic(vector: VectorType) -> None:
-    """Define +, -, * and / for two vectors of a type, or a vector and a number."""
-    for operation, name in (
-        (operator.add, "fadd"),
-        (operator.iadd, "fadd"),
-        (operator.sub, "fsub"),
-        (operator.isub, "fsub"),
-        (operator.mul, "fmul"),
-        (operator.imul, "fmul"),
-        (operator.truediv, "fdiv"),
-    ):
-        _operation(operation, lambda builder, x, y, name=name: getattr(builder, name)(x, y), vector, vector)
 
 
 def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
@@ -333,7 +317,17 @@ def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
     lower_builtin(operation, _MASK_TYPE, _MASK_TYPE)(lambda _, builder, __, masks: generate(builder, *masks))
 
 
-define_arithmetic(_VECTOR_TYPE)
+for _operator, _name in (
+    (operator.add, "fadd"),
+    (operator.iadd, "fadd"),
+    (operator.sub, "fsub"),
+    (operator.isub, "fsub"),
+    (operator.mul, "fmul"),
+    (operator.imul, "fmul"),
+    (operator.truediv, "fdiv"),
+):
+    _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
+
 for _operator, _name in (
     (operator.lt, "<"),
     (operator.le, "<="),
@@ -341,7 +335,7 @@ for _operator, _name in (
     (operator.ge, ">="),
     (operator.eq, "=="),
 ):
-    _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _VECTOR_TYPE, _MASK_TYPE)
+    _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
 
 for _operator, _name in (
     (operator.and_, "and_"),

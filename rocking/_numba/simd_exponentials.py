@@ -1,4 +1,4 @@
-"""Exponential and hyperbolic functions, the logarithm and the arc cosine of a SIMD vector.
+"""Exponential and hyperbolic functions and the arc cosine of a SIMD vector.
 
 The functions of the C library take one number. All relative errors are below 6e-16.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
-from rocking._numba.simd import approx_log2, maximum, minimum, power_of_two, select, splat, square_root
+from rocking._numba.simd import maximum, minimum, power_of_two, select, splat, square_root
 from rocking._numba.simd_sines import HALF_PI, round_to_nearest
 
 MAX_EXPONENT = 350.0
@@ -53,28 +53,6 @@ def cosh_minus_one_and_sinh(h: SimdVector) -> Any:
     grown = power * grown + (power - 1.0)
     decayed = grown / (1.0 + grown)
     return 0.5 * grown * decayed, 0.5 * (grown + decayed)
-
-
-@kernel
-def logarithm(x: SimdVector) -> Any:
-    """Natural logarithm of x from 1e-300 to 1e300, by the polynomial of fdlibm (Sun Microsystems 1993).
-
-    x = 2^k (1 + f) with 1 + f from 1/sqrt(2) to sqrt(2); with s = f/(2 + f) log(1 + f) is f - f^2/2 + s (f^2/2 + R(s)).
-    """
-    whole = round_to_nearest(approx_log2(x) + 0.086)  # up from 2^e sqrt(2) on, where the approximation is e + 0.414
-    f = x * power_of_two(whole * -1.0) - 1.0
-    s = f / (2.0 + f)
-    square, half = s * s, 0.5 * f * f
-    rest = square * (
-        6.666666666666735130e-01
-        + square * (3.999999999940941908e-01
-        + square * (2.857142874366239149e-01
-        + square * (2.222219843214978396e-01
-        + square * (1.818357216161805012e-01
-        + square * (1.531383769920937332e-01
-        + square * 1.479819860510658591e-01)))))
-    )  # fmt: skip
-    return whole * LOG_2 - ((half - (s * (half + rest) + whole * LOG_2_LOW)) - f)
 
 
 @kernel

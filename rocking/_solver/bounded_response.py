@@ -34,8 +34,8 @@ Flags = NDArray[np.bool_]
 class BoundedResponse(ResponseFields, EqualByValue, declared=BOUNDED_FIELDS):
     """Responses with an error bound and a source. Every field is an array of the broadcast shape of the arguments.
 
-    `outcome` holds codes of `rocking.Outcome`; `impacts` is -1 where a cube was interpolated whose nodes around the
-    point differ in them.
+    `outcome` holds codes of `rocking.Outcome`; `impacts` is -1 where a cube was interpolated that leaves the number
+    open; the other fields are certain, the peak within its bound.
 
     Attributes
     ----------

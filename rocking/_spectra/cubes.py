@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import one_of
-from rocking._datasets.cube import DIMENSIONS, OPTIONAL_VARIABLES, build_spectrum_dataset
+from rocking._datasets.cube import DIMENSIONS, IMPACTS_BEFORE_REST, OPTIONAL_VARIABLES, build_spectrum_dataset
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.slices import windows_of
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
@@ -25,6 +25,7 @@ from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
+from rocking._solver.rules import IMPACT_LIMIT
 from rocking._spectra.layer import (
     CELL_CENTRE,
     DIRECT,
@@ -146,11 +147,11 @@ def solve_cubes(
     axes = {"alpha": angles, "slenderness": rows, "frequency_ratio": columns}
     for first in range(0, etas.size, BATCH_SIZE):
         batch = slice(first, first + BATCH_SIZE)
-        layers, errors = _layers(grid, etas[batch], angles, None if barred is None else barred[batch], derived)
+        layers, errors, fewest = _layers(grid, etas[batch], angles, None if barred is None else barred[batch], derived)
         for k, eta in enumerate(etas[batch]):
             cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
             layers[k].clear()  # the caller may keep the cube
-            yield cube
+            yield cube.assign({IMPACTS_BEFORE_REST: fewest[k]})
 
 
 def with_restitution_errors(
@@ -195,18 +196,27 @@ def with_restitution_errors(
         axes = {name: cube[name].values for name in DIMENSIONS}
         whole = build_spectrum_dataset(variables, pulse=pulse, restitution=float(etas[k]), axes=axes)
         window = slice(*windows_of(etas.size, k, k + 1))
-        yield whole.assign_attrs(restitution_slices=etas[window])
+        yield whole.assign_attrs(
+            {"restitution_slices": etas[window], IMPACTS_BEFORE_REST: cube[IMPACTS_BEFORE_REST].item()}
+        )
 
 
 def _layers(
     grid: _Grid, etas: Array, angles: Array, barred: NDArray[np.bool_] | None, derived: Sequence[str]
-) -> tuple[list[list[GridLayer]], dict[str, Array]]:
-    """The layers by restitution and angle, and the errors (l, k, n - 1, m - 1) of interpolation in their cells."""
+) -> tuple[list[list[GridLayer]], dict[str, Array], NDArray[np.int32]]:
+    """The layers by restitution and angle, the errors (l, k, n - 1, m - 1) of interpolation in their cells.
+
+    And of each restitution the fewest impacts of a node before impacts accumulate to rest while the pulse acts;
+    `IMPACT_LIMIT` if they do so nowhere.
+    """
     layers: list[list[GridLayer]] = [[] for _ in etas]
+    fewest = np.full(etas.size, IMPACT_LIMIT, np.int32)
     inside, by_angle, by_eta = (grid.no_errors(etas, angles) for _ in range(3))
     for a, angle in enumerate(angles):
         nodes = grid.nodes(etas, angle)
         further = {name: getattr(nodes, name) for name in derived}
+        before_rest = np.where(nodes.chatter, nodes.impacts, IMPACT_LIMIT)
+        fewest = np.minimum(fewest, before_rest.min(axis=(0, 1)))
         for k, row in enumerate(layers):
             row.append(GridLayer.of(grid.mesh, nodes, k, None if barred is None else barred[k, a], further))
         inside[:, a] = grid.errors_in_cells([row[a] for row in layers], etas, angle)
@@ -215,7 +225,7 @@ def _layers(
         # the equation of motion depends on alpha through its square only
         intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
         by_angle[:, a] = grid.errors_between_angles(intervals, etas)
-    return layers, {"interpolation_error": inside, "restitution_error": by_eta, "alpha_error": by_angle}
+    return layers, {"interpolation_error": inside, "restitution_error": by_eta, "alpha_error": by_angle}, fewest
 
 
 def _interval_starts(slices: Array, spacing: float) -> list[int]:
@@ -235,11 +245,11 @@ class _Grid:
 
     def no_errors(self, etas: Array, angles: Array) -> Array:
         """An array (etas, angles, n - 1, m - 1) of nan, for errors of the cells."""
-        return np.full((etas.size, angles.size, self.mesh.rows.values.size - 1, self.columns.size - 1), np.nan)
+        return np.full((etas.size, angles.size, self.mesh.rows.size - 1, self.columns.size - 1), np.nan)
 
     def nodes(self, etas: Array, angle: float) -> Response:
         """All nodes, for each restitution: shape (n, m, restitutions)."""
-        return self._solve(self.mesh.rows.values[:, None], self.columns, etas, angle)
+        return self._solve(self.mesh.rows[:, None], self.columns, etas, angle)
 
     def errors_in_cells(self, layers: Sequence[GridLayer], etas: Array, angle: float) -> Array:
         """Largest error [-] at the probes of each cell: shape (restitutions, n - 1, m - 1).

@@ -1,6 +1,5 @@
 """A small results folder, and the service over it."""
 
-import os
 import shutil
 
 import numpy as np
@@ -26,14 +25,6 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
     *(f"suites/demonstration/{name}" for name in ("fragility", "outcomes", "sensitivity")),
 }  # fmt: skip
 """Names of the data sets in the results."""
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _cache(tmp_path_factory):
-    """A cache folder for the services of the tests, not that of the user."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(os.environ, "ROCKING_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 @pytest.fixture(scope="session")

@@ -48,11 +48,11 @@ class Server:
 
 @contextmanager
 def serving(results, log, command=(sys.executable, "-m", "rocking._cli"), cwd=ROOT, workers=1, **environment):
-    """`rocking serve` in a separate process on a free port, with a cache folder beside its log."""
+    """`rocking serve` in a separate process on a free port."""
     arguments = [*command, "serve", "--port", "0", "--results", str(results)]
     if workers > 1:
         arguments += ["--workers", str(workers)]
-    environment = os.environ | {"ROCKING_CACHE": str(log.with_name("cache"))} | environment
+    environment = os.environ | environment
     with (
         log.open("w") as output,
         subprocess.Popen(arguments, cwd=cwd, stdout=output, stderr=output, env=environment) as process,

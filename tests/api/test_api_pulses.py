@@ -53,7 +53,7 @@ def test_a_registered_pulse_is_listed_and_solved(tmp_path, monkeypatch):
     pulses.register(CHIRP)
     precompile.main()  # the service refuses requests while it compiles
     groups = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
-    with client_of(tmp_path, cache=tmp_path / "cache") as client:
+    with client_of(tmp_path) as client:
         listed = {pulse["name"]: pulse for pulse in client.get("/v1/pulses").json()["pulses"]}
         assert listed["chirp"]["duration"] == pytest.approx(4.0)
         response = client.get("/v1/response", params=groups | {"pulse": "chirp", "method": "solver"})

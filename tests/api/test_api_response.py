@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import rocking
 from rocking._datasets.cube import write_dataset
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
@@ -343,3 +344,23 @@ def test_a_json_batch_may_repeat_its_parameters_in_the_url(client):
     assert named.json() == plain.json() | {"url": "POST /v1/response?pulse=sine"}
     assert_problem(client.post("/v1/response?pulse=cosine", json=body), 422, "pulse")
     assert_problem(client.post("/v1/response?restitution=0.9", json=body), 422, "restitution")
+
+
+def test_a_number_of_impacts_that_a_cube_leaves_open_is_null(results, client):
+    """Beside nodes with another number; the solver counts."""
+    point = {"absolute_tolerance": 1e-2}
+    random = np.random.default_rng(1)
+    points = {"slenderness": random.uniform(0.5, 0.94, 3000), "frequency_ratio": random.uniform(1.0, 11.0, 3000)}
+    cube = rocking.open_cube(results / "spectra" / "sine" / "eta-0.85.nc")
+    found = cube.response(**points, absolute_tolerance=1e-2)
+    open_ones = np.flatnonzero(found.from_cube & (found.impacts < 0))
+    assert open_ones.size
+    k = int(open_ones[0])
+    point |= {name: float(values[k]) for name, values in points.items()}
+    answer = get_response(client, **point).json()
+    assert answer["source"] == "cube"
+    assert answer["impacts"] is None
+    assert "method=solver" in answer["note"]
+    counted = get_response(client, **point, method="solver").json()
+    assert counted["impacts"] == peak_response("sine", restitution=0.85, **{n: point[n] for n in points}).impacts
+    assert counted["note"] is None

@@ -16,7 +16,6 @@ from typer.testing import CliRunner
 
 import workflow.run
 from rocking._cli.app import app
-from rocking._datasets import shared_cache
 from rocking._solver import chunks
 from tests.api.servers import ROOT, serving
 
@@ -73,16 +72,6 @@ def test_cores_are_those_of_the_machine_where_a_process_has_none_of_its_own(monk
     assert runpy.run_path(chunks.__file__)["AVAILABLE_CORES"] == 7
     monkeypatch.setattr(os, "cpu_count", lambda: None)
     assert runpy.run_path(chunks.__file__)["AVAILABLE_CORES"] == 1
-
-
-def test_a_cache_without_locks_is_used_without_them(monkeypatch, tmp_path):
-    def refuse(*_):
-        raise PermissionError  # a folder cannot be opened on Windows
-
-    cache = shared_cache.SharedCache(tmp_path / "cache", tmp_path)
-    monkeypatch.setattr(os, "open", refuse)
-    with cache.alone("one"), cache.alone("one"):  # with locks the second one would wait for ever
-        assert cache.folder_of("one").is_dir()
 
 
 def test_the_memory_of_a_run_is_limited_where_the_system_tells_it(monkeypatch):

@@ -24,7 +24,6 @@ from rocking._excitation.sinusoids import MAX_SINUSOIDS
 from rocking._history import sampling
 from rocking._interpolation import kernel as lookup_kernel
 from rocking._interpolation import stencils as interpolation
-from rocking._interpolation import windows
 from rocking._lookup.cube import open_cube
 from rocking._numba import kernel_cache
 from rocking._numba.compilation import contiguous_array, entry, kernel, specialised_kernel
@@ -43,8 +42,8 @@ ENTRIES = (
         sampling.sample_flights,
         sampling.sample_free_rocking,
     ),
-    *(interpolation.lagrange_weight, interpolation.interpolate_cells),
-    *(windows.group_points, lookup_kernel.interpolate_many),
+    *(interpolation.interpolate_cells,),
+    *(lookup_kernel.prepare, lookup_kernel.interpolate_many),
     *(matching.match_trends, matching.learn_trends, matching.follow_trends),
 )
 

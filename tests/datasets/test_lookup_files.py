@@ -225,3 +225,15 @@ def test_reading_a_cube_opens_its_file_once(path, monkeypatch):
     monkeypatch.setattr(type(path), "read_bytes", lambda self: opened.append(self) or read(self))
     assert read_spectrum(path).attrs["version"] == 1
     assert opened == [path]
+
+
+def test_memory_is_limited_to_the_cubes_that_were_used_last(cubes, path, monkeypatch):
+    for eta in (0.86, 0.87):
+        other = spectrum("sine", restitution=eta, slenderness=np.linspace(0.6, 0.8, 5), frequency_ratio=[6, 7, 8, 9])
+        write_dataset(other, path.with_name(f"eta-{eta:.2f}.nc"))
+    sizes = {eta: cubes.slice_at("sine", eta).nodes.nbytes for eta in (0.86, 0.85, 0.86)}
+    monkeypatch.setattr(rocking._lookup.collection, "MAX_BYTES", sum(sizes.values()))
+    kept = cubes.slice_at("sine", 0.86)  # used after that of 0.85
+    cubes.slice_at("sine", 0.87)
+    assert not cubes.is_open("sine", 0.85)
+    assert cubes.slice_at("sine", 0.86) is kept

@@ -6,27 +6,19 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._interpolation.cells import pack_cells
+from rocking._interpolation.kernel import Found, prepare
 from rocking._interpolation.slices import STENCIL_SIZE, slice_index, slice_window
 from rocking._interpolation.stencils import (
-    NO_STENCIL,
-    OVERTURNS,
     PEAK,
     SQUARED,
+    AngleAxis,
     Mesh,
     cell_of,
     interpolate_cells,
     interpolated_cells,
     lagrange_weight,
     lagrange_weights,
-    padded_weights,
-    slice_products,
 )
-from rocking._interpolation.strips import STRIP_SIZE, STRIP_STEP, strips_of
-from rocking._interpolation.windows import AngleAxis, group_points
-from rocking._model.outcome import Outcome
-from rocking._model.outcome_code import overturning_code
-from rocking._numba.simd import LANES
 
 UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0.1])
 
@@ -54,7 +46,7 @@ def cubic(x, y):
 
 def test_cubics_are_interpolated_exactly():
     mesh = Mesh.of(UNEVEN, np.exp(UNEVEN[:9]))
-    values = cubic(mesh.rows.coordinates[:, None], mesh.columns.coordinates)
+    values = cubic(mesh.rows[:, None], mesh.logs)
     valid = np.random.default_rng(1).random(values.shape) < 0.97
     values[~valid] = np.nan
     cells = np.nonzero(interpolated_cells(valid))
@@ -67,7 +59,7 @@ def test_cubics_are_interpolated_exactly():
 
 def test_squared_cells_interpolate_the_square_of_one_minus_the_value():
     mesh = Mesh.of(UNEVEN, np.exp(UNEVEN))
-    root = np.sqrt(0.1 + 0.2 * mesh.rows.coordinates[:, None] * mesh.columns.coordinates)
+    root = np.sqrt(0.1 + 0.2 * mesh.rows[:, None] * mesh.logs)
     cells = np.nonzero(interpolated_cells(np.ones(root.shape, dtype=bool)))
     found = interpolate(1.0 - root, mesh, cells, np.full(cells[0].size, SQUARED), (0.3, 0.6))
     x, y = mesh.within(cells, (0.3, 0.6))
@@ -89,11 +81,7 @@ def test_error_decreases_with_the_fourth_power_of_the_step_on_uneven_axes():
 
 
 def cells_of(axis, values):
-    mesh = Mesh.of(axis, axis)
-    rows = [cell_of(mesh.rows, x, x) for x in values]
-    columns = [cell_of(mesh.columns, x, np.log(x)) for x in values]
-    assert rows == columns
-    return rows
+    return [cell_of(axis, x) for x in values]
 
 
 def test_cells_inside_and_outside_of_the_axis():
@@ -147,25 +135,15 @@ def test_slices_are_interpolated_exactly_up_to_their_degree(count):
         assert found == pytest.approx(x ** (count - 1), rel=1e-12)
 
 
-@pytest.mark.parametrize("count", [2, 3, 4, 7])
-def test_weights_of_a_window_are_lagrange_weights_and_zero_above_it(count):
-    slices = np.sort(np.random.default_rng(4).uniform(0.5, 1.0, count))
-    products = slice_products(slices)
-    for lower in range(count - 1):
-        first, size = slice_window(count, lower)
-        x = 0.3 * slices[lower] + 0.7 * slices[lower + 1]
-        found = padded_weights(slices, products[first], first, size, x)
-        expected = [lagrange_weight(slices, first, size, k, x) if k < size else 0.0 for k in range(4)]
-        np.testing.assert_allclose(found, expected, rtol=1e-13)
-
-
 @pytest.mark.parametrize("count", [1, 15, 16, 17, 601])
 def test_points_are_grouped_by_the_slices_that_they_need(count):
     rng = np.random.default_rng(6)
     slices = np.array([0.80, 0.85, 0.90, 0.94])
     eta = rng.permutation(np.concatenate([rng.uniform(0.75, 1.0, 500), rng.choice(slices, 100), [np.nan]]))[:count]
-    groups, present = np.full(eta.size, -7, dtype=np.int32), np.zeros(9, dtype=bool)
-    group_points(eta, slices, groups, present, np.ones(LANES))
+    slenderness, found = rng.uniform(0.5, 1.5, count), Found.zeros(count)
+    groups, present = np.full(eta.size, -7), np.zeros(9, dtype=bool)
+    assert prepare(slenderness, eta, slices, groups, present, found) == (slenderness >= 1.0).sum()
+    np.testing.assert_array_equal(found.known, slenderness >= 1.0)
     below, on_slice = slice_index(slices, eta)
     np.testing.assert_array_equal(groups, np.where(below < 0, -1, 2 * below + ~on_slice))
     np.testing.assert_array_equal(np.flatnonzero(present[:-1]), np.unique(groups[groups >= 0]))
@@ -173,8 +151,8 @@ def test_points_are_grouped_by_the_slices_that_they_need(count):
 
 
 def test_without_slices_all_points_are_outside():
-    groups, present = np.zeros(20, dtype=np.int32), np.zeros(1, dtype=bool)
-    group_points(np.linspace(0.0, 1.0, 20), np.empty(0), groups, present, np.ones(LANES))
+    groups, present = np.zeros(20, dtype=np.int64), np.zeros(1, dtype=bool)
+    prepare(np.full(20, 0.5), np.linspace(0.0, 1.0, 20), np.empty(0), groups, present, Found.zeros(20))
     assert present.all()
     assert (groups == -1).all()
 
@@ -184,33 +162,6 @@ def test_angles_of_each_group(count):
     axis = AngleAxis.of(np.linspace(0.0, 0.5, count))
     assert axis.windows[::2].tolist() == [[k, 1] for k in range(count)]
     assert axis.windows[1::2].tolist() == [[*slice_window(count, k)] for k in range(count - 1)]
-
-
-@pytest.mark.parametrize("columns", range(4, 23))
-def test_each_stencil_lies_in_four_cache_lines_of_one_strip(columns):
-    values = np.random.default_rng(columns).random((2, 5, columns))
-    strips = strips_of(values)
-    assert strips.ctypes.data % 64 == 0
-    assert strips.flags.c_contiguous
-    for first in range(columns - 3):
-        strip, start = divmod(first, STRIP_STEP)
-        assert start + 4 <= STRIP_SIZE
-        np.testing.assert_array_equal(strips[:, strip, :, start : start + 4], values[:, :, first : first + 4])
-    assert strips[:, -1, :, columns - STRIP_STEP * (strips.shape[1] - 1) :].sum() == 0.0
-
-
-def test_record_of_a_cell_holds_its_stencil_outcome_impacts_and_errors():
-    impacts = np.array([[[1, 1, 2], [1, 1, 3], [5, 5, 5]]], dtype=np.int32)
-    outcome = np.full((1, 3, 3), int(Outcome.SAFE), dtype=np.int8)
-    outcome[0, 1, 1:] = int(Outcome.OVERTURNED_AFTER_IMPACT)
-    stencil = np.array([[[PEAK, SQUARED, -1], [NO_STENCIL, OVERTURNS, -1], [-1, -1, -1]]], dtype=np.int8)
-    errors = [np.arange(9, dtype=np.float32).reshape(1, 3, 3) + shift for shift in (0.0, 0.5, 0.25)]
-    cells = pack_cells(stencil, outcome, impacts, *errors)
-    assert cells.dtype.itemsize == 16
-    value = overturning_code(int(Outcome.OVERTURNED_AFTER_IMPACT), 1)
-    assert cells["code"].tolist() == [[[4 * (1 + 1) + PEAK], [SQUARED]], [[-1], [4 * value + OVERTURNS]]]
-    for name, error in zip(("interpolation_error", "restitution_error", "alpha_error"), errors, strict=True):
-        np.testing.assert_array_equal(cells[name][:, :, 0], error[0, :-1, :-1])
 
 
 def test_value_on_a_slice():

@@ -1,5 +1,6 @@
 """Responses from one cube: correct outcomes, error bounds that hold, and the solver where no bound is known."""
 
+import math
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from threading import Thread
@@ -11,7 +12,8 @@ import rocking._lookup.cube
 from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_spectrum, write_dataset
-from rocking._lookup.cube import SAFETY, Cube, open_cube
+from rocking._lookup.cube import SAFETY, Cube, Points, open_cube
+from rocking._lookup.cube_slice import slice_of
 from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 from rocking._model.response import Outcome
 from rocking._solver.bounded_response import SOLVER_ERROR, solve_with_bound
@@ -70,9 +72,9 @@ def test_outcome_is_correct_and_the_bound_holds(cube, tolerance):
     found = cube.response(**points, absolute_tolerance=tolerance)
     expected = peak_response("sine", **points, restitution=ETA)
     np.testing.assert_array_equal(found.outcome, expected.outcome)
-    counted = (found.impacts >= 0) & ~expected.chatter
+    counted = found.impacts >= 0
     np.testing.assert_array_equal(found.impacts[counted], expected.impacts[counted])
-    assert counted.mean() > 0.9
+    assert counted.mean() > 0.8
     np.testing.assert_array_equal(found.exceeded_alpha, expected.exceeded_alpha)
     np.testing.assert_array_equal(found.overturned, expected.overturned)
     survives = ~expected.overturned
@@ -83,6 +85,35 @@ def test_outcome_is_correct_and_the_bound_holds(cube, tolerance):
     assert np.isnan(found.error_bound[~survives]).all()
     assert from_cube[~survives].mean() > 0.8  # where all corners overturn in the same way there is no error
     assert from_cube.mean() > (0.5 if tolerance > 1e-5 else 0.2)  # a coarse cube is sufficient for most points
+
+
+COUNTED = {
+    "many small impacts": ("sine", 0.86, 0.0, np.arange(0.85, 0.9755, 0.001), (0.88, 1.10)),
+    "overturning after them": ("c2", 0.86, math.radians(10.0), np.arange(0.92, 0.9405, 0.001), (0.50, 0.64)),
+    "low restitution": ("sine", 0.50, 0.0, np.arange(0.85, 0.9755, 0.001), (0.5, 0.6)),
+}
+"""Pulse, restitution, angle [rad], rows and window of columns where nodes agree on the number of impacts and the truth
+between them does not."""
+
+
+@pytest.mark.parametrize("case", COUNTED)
+def test_a_number_of_impacts_is_certain_or_absent(case):
+    pulse, eta, alpha, rows, window = COUNTED[case]
+    columns = np.geomspace(0.2, 15.0, 241)  # those of the small atlas
+    columns = columns[(columns > window[0]) & (columns < window[1])]
+    made = slice_of(spectrum(pulse, restitution=eta, alpha=[alpha], slenderness=rows, frequency_ratio=columns))
+    rng, n = np.random.default_rng(3), 100_000
+    points = {"slenderness": rng.uniform(rows[0], rows[-1], n), "frequency_ratio": rng.uniform(*window, n)}
+    points["slenderness"][0], points["frequency_ratio"][0] = 0.9604342476543689, 0.9827455534145197  # 33, not 34
+    points |= {"restitution": eta, "alpha": alpha}
+    known, found = Cube(pulse, np.array([eta]), [made].__getitem__).interpolate(Points.of(*points.values())[0], 1e-4)
+    expected = peak_response(pulse, **points)
+    counted = known & (found.impacts >= 0)
+    np.testing.assert_array_equal(found.impacts[counted], expected.impacts[counted])
+    for name in ("outcome", "exceeded_alpha"):
+        np.testing.assert_array_equal(getattr(found, name)[known], getattr(expected, name)[known])
+    assert 0.05 * n < known.sum()
+    assert counted.sum() < known.sum()
 
 
 def test_no_uplift_is_known_with_every_method(cube):

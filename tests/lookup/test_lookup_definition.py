@@ -38,7 +38,8 @@ def make_variables(rng):
         "peak_rotation": 0.5 + 0.6 * rng.random(shape),
         "stencil": stencil,
         "outcome": np.where(overturns, int(Outcome.OVERTURNED_AFTER_IMPACT), int(Outcome.SAFE)),
-        "impacts": np.broadcast_to(1 + columns // 6, shape) + (rng.random(shape) < 0.01),
+        "impacts": np.broadcast_to(1 + 4 * (columns // 12), shape) + (rng.random(shape) < 0.001),
+        "peak_mode": np.broadcast_to(np.where(columns < 18, 0, 11), shape),
     }
 
 
@@ -51,7 +52,7 @@ def cubes():
         made = make_variables(rng)
         variables = {name: made.get(name, np.zeros_like(made["outcome"])) for name in VARIABLES}
         cube = build_spectrum_dataset(variables, pulse="sine", restitution=eta, axes=axes)
-        found.append(cube.assign_attrs(restitution_slices=ETAS))
+        found.append(cube.assign_attrs(restitution_slices=ETAS, impacts_before_rest=11))
     return found
 
 
@@ -69,13 +70,20 @@ def weights_of(nodes, x):
     return [np.prod([(x - m) / (node - m) for m in nodes if m != node]) for node in nodes]
 
 
+def impacts_of(cells):
+    """The number that all 4 x 8 nodes of all cells have, if it is at most 5 or the peak is on the last arc; else -1."""
+    numbers = {int(one) for cell in cells for one in cell.impacts.flat}
+    certain = all((mode // 2 == min(numbers)) or min(numbers) <= 5 for cell in cells for mode in cell.modes.flat)
+    return min(numbers) if len(numbers) == 1 and certain else -1
+
+
 def overturning(cells):
     """What is known where one cell at least overturns."""
-    kinds = {(int(cell.outcome), int(cell.impacts[0, 0]), cell.stencil) for cell in cells}
+    kinds = {(int(cell.outcome), int(cell.corner), cell.stencil) for cell in cells}
     if len(kinds) > 1:
         return None
-    outcome, impacts, _ = kinds.pop()
-    return outcome, impacts, True, np.nan, np.nan
+    outcome, _, _ = kinds.pop()
+    return outcome, impacts_of(cells), True, np.nan, np.nan
 
 
 def peak_from(values, cells, weights):
@@ -111,8 +119,10 @@ def expected(cubes, point, tolerance):
     def cell_at(e, a):
         part = {name: cubes[e][name].values[a] for name in VARIABLES}
         values = {name: part[name][i, j] for name in VARIABLES if name != "impacts"}
-        stencil = part["peak_rotation"][i - 1 : i + 3, j - 1 : j + 3]
-        return SimpleNamespace(**values, impacts=part["impacts"][i : i + 2, j : j + 2], nodes=stencil)
+        around = np.s_[max(i - 1, 0) : i + 3, max(j - 1, 0) : j + 3]
+        wide = np.s_[max(i - 1, 0) : i + 3, max(j - 3, 0) : j + 5]
+        known = {"corner": part["impacts"][i, j], "impacts": part["impacts"][wide], "modes": part["peak_mode"][wide]}
+        return SimpleNamespace(**values, **known, nodes=part["peak_rotation"][around])
 
     cells = [[cell_at(e, a) for e in range(e0, e0 + size)] for a in range(a0, a0 + count)]
     flat = [cell for row in cells for cell in row]
@@ -140,8 +150,7 @@ def expected(cubes, point, tolerance):
     peak = peak_from(np.array(values), cells, (by_angle, by_slice))
     if bound > tolerance or abs(peak - 1.0) <= bound:
         return None
-    numbers = {int(one) if (cell.impacts == one).all() else -1 for cell in flat for one in cell.impacts[:1, 0]}
-    return int(Outcome.SAFE), numbers.pop() if len(numbers) == 1 else -1, peak > 1.0, max(peak, 0.0), bound
+    return int(Outcome.SAFE), impacts_of(flat), peak > 1.0, max(peak, 0.0), bound
 
 
 def random_points(between, count):

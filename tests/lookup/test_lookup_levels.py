@@ -44,12 +44,12 @@ def test_bounds_hold_between_restitutions_and_angles(folder, between_etas, betwe
         error = np.abs(found.peak_rotation - expected.peak_rotation)[survives]
         assert (error <= found.error_bound[survives]).all()
         assert (found.error_bound[survives] <= tolerance).all()
-        counted = from_cube & (found.impacts >= 0) & ~expected.chatter
+        counted = from_cube & (found.impacts >= 0)
         assert counted.sum() > 0.5 * from_cube.sum()
         np.testing.assert_array_equal(found.impacts[counted], expected.impacts[counted])
 
 
-def test_impacts_are_known_where_all_corners_have_the_same_number(folder):
+def test_impacts_are_known_only_where_all_corners_have_the_same_number(folder):
     """In the middle between two restitutions and two angles: four corners of a cell in each of 4 x 4 slices."""
     cubes = [read_spectrum(folder / f"eta-{eta:.2f}.nc") for eta in ETAS]
     rows, columns = (0.5 * (axis[1:] + axis[:-1]) for axis in GRID.values())
@@ -69,8 +69,8 @@ def test_impacts_are_known_where_all_corners_have_the_same_number(folder):
     from_cube = found.source == "cube"
     every = all_agree(range(4), range(4))
     known = found.impacts >= 0
-    np.testing.assert_array_equal(known[from_cube], every[from_cube])
-    assert (from_cube & every).sum() > 1000
+    assert not (known & ~every)[from_cube].any()
+    assert (from_cube & known).sum() > 1000
     assert (from_cube & ~every).sum() > 20
 
 

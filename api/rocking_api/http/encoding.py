@@ -19,7 +19,8 @@ from pydantic_core import to_json
 
 from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking._datasets.cube import MODEL_RESULT, VARIABLES
-from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND
+from rocking._interpolation.kernel import UNKNOWN_IMPACTS
+from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND, IMPACTS
 from rocking_api.execution.evaluation import FIELDS, BatchResult
 from rocking_api.models.answer import Answer, url_of
 
@@ -168,6 +169,7 @@ def dataset_of(
         if name in VARIABLES:
             dtype, about = VARIABLES[name]
             kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
+            kept |= {"_FillValue": np.int32(UNKNOWN_IMPACTS)} if name == IMPACTS.name else {}
             variables[name] = ("point", result.fields[name].astype(dtype, copy=False), MODEL_RESULT | kept)
     for field in DERIVED_FIELDS:
         variables[field.name] = ("point", result.fields[field.name], MODEL_RESULT | field.attributes)

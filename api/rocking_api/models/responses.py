@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from rocking._base.errors import finite
+from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model.fields import (
     COLUMN_FIELDS,
     DERIVED_FIELDS,
@@ -36,7 +37,10 @@ OUTCOMES = [outcome.name for outcome in Outcome]
 _PEAK = Field(description=PEAK_ROTATION.description())
 _OVERTURNED = Field(description=OVERTURNED.description())
 _OUTCOME = Field(description=f"{OUTCOME.description()}, one of {', '.join(OUTCOMES)}")
-_IMPACTS = Field(description=f"{IMPACTS.description()}; -1 if nodes of a data set differ there")
+_IMPACTS = Field(description=IMPACTS.description())
+_CERTAIN_IMPACTS = Field(
+    description=f"{IMPACTS.description()}; null where a data set leaves it open: method=solver counts"
+)
 _EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
 _BOUND = Field(description=ERROR_BOUND.description())
 _SOURCE = Field(description=SOURCE.description())
@@ -64,10 +68,10 @@ class PointResponse(Answer):
     overturned: bool = _OVERTURNED
     outcome: str = _OUTCOME
     meaning: str = Field(description="the outcome in words")
-    impacts: int = _IMPACTS
+    impacts: int | None = _CERTAIN_IMPACTS
     exceeded_alpha: bool = _EXCEEDED
     error_bound: float | None = _BOUND
-    note: str | None = Field(None, description="why peak_rotation or error_bound is null")
+    note: str | None = Field(None, description="why peak_rotation, error_bound or impacts is null")
     source: str = _SOURCE
     data_version: str | None = _DATA
     metadata_url: str = METADATA_URL_FIELD
@@ -80,7 +84,7 @@ class Columns(Answer):
     peak_rotation: list[float | None] = _PEAK
     overturned: list[bool] = _OVERTURNED
     outcome: list[str] = _OUTCOME
-    impacts: list[int] = _IMPACTS
+    impacts: list[int | None] = _CERTAIN_IMPACTS
     exceeded_alpha: list[bool] = _EXCEEDED
     error_bound: list[float | None] = _BOUND
     source: list[str] = _SOURCE
@@ -259,12 +263,28 @@ class Names:
         return np.asarray(self._names[self._codes[points].astype(np.intp)])
 
 
+class Counts:
+    """A column of numbers of impacts, None where `UNKNOWN_IMPACTS` stands."""
+
+    def __init__(self, counts: NDArray[np.int32]) -> None:
+        self._counts = counts
+
+    def __len__(self) -> int:
+        return len(self._counts)
+
+    def __getitem__(self, points: slice) -> NDArray[Any]:
+        counts = self._counts[points]
+        unknown = counts == UNKNOWN_IMPACTS
+        return np.where(unknown, np.array(None), counts.astype(np.object_)) if unknown.any() else counts
+
+
 def columns_of(result: BatchResult) -> dict[str, Column]:
     """The fields of `Columns` with one value for each point."""
     columns: dict[str, Column] = {
         **result.fields,
         OVERTURNED.name: result.fields[OUTCOME.name] >= Outcome.OVERTURNED_DIRECTLY,
         OUTCOME.name: Names(result.fields[OUTCOME.name], OUTCOMES),
+        IMPACTS.name: Counts(result.fields[IMPACTS.name]),
         SOURCE.name: Names(result.from_cube, ["solver", "cube"]),
     }
     return {field.name: columns[field.name] for field in COLUMN_FIELDS}
@@ -280,6 +300,8 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
     elif math.isinf(point.error_bound):
         note = "the outcome changes within the rounding of the question: there is no bound"
         warnings = [note]
+    elif point.impacts == UNKNOWN_IMPACTS:
+        note = "the data set does not determine the number of impacts: method=solver counts them"
     derived: dict[str, Any] = {name: finite(value) for name, value in point.derived.items()}
     return PointResponse(
         query=params,
@@ -288,7 +310,7 @@ def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
         overturned=overturned,
         outcome=outcome.name,
         meaning=outcome.sentence,
-        impacts=point.impacts,
+        impacts=None if point.impacts == UNKNOWN_IMPACTS else point.impacts,
         exceeded_alpha=point.exceeded_alpha,
         error_bound=finite(point.error_bound),
         note=note,

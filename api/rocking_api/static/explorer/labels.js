@@ -92,8 +92,9 @@ export function sentence(words) {
   return `${words[0].toUpperCase()}${words.slice(1)}.`;
 }
 
-/** "1 impact", "3 impacts". */
+/** "1 impact", "3 impacts"; null where a data set does not determine the number. */
 export function impacts(count) {
+  if (count === null) return "impacts not counted";
   return count === 1 ? "1 impact" : `${count} impacts`;
 }
 
@@ -104,5 +105,5 @@ export function responseLabel(found) {
   if (found.outcome === "NO_UPLIFT") return outcome;
   const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
   const beyond = found.exceeded_alpha ? "; it exceeds α" : "";
-  return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)} during the pulse${beyond}`;
+  return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${found.impacts === null ? "" : " during the pulse"}${beyond}`;
 }
