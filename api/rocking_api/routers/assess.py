@@ -91,7 +91,7 @@ def check_table(table: ObjectTable, name: str) -> None:
 def _assess(
     params: AssessParams, request: Request, site: Site, table: ObjectTable, form: Form, stop: StopFlag
 ) -> Response:
-    kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed")}
+    kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed", "resolution")}
     found = assess(table.objects, site, **kept, stop=stop)
     if form == "csv":
         return text_response(found.to_csv(bad_rows=table.bad_rows), "assessment")
@@ -104,6 +104,7 @@ def _assess(
                 "rows": found.rows,
                 "motions": found.motions,
                 "highest_factor": found.highest_factor,
+                "resolution": found.resolution,
                 "bad_rows": [vars(one) for one in table.bad_rows],
                 "skipped": table.skipped,
             }
