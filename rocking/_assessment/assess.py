@@ -100,7 +100,7 @@ def assess(
     One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
     to 1. `factor` is the lowest that was found up to `HIGHEST_FACTOR`; a range narrower than the distance of the
     factors tried can be missed. Under pulses they are 0.05 to 0.23 % apart. Under records, which pulses on a floor are
-    as well, they are at most `resolution` apart, a 128th of it where the object may overturn
+    as well, they are at most `resolution` apart, a 64th of it where the object may overturn
     (`rocking._boundary.scan.lowest_overturning`). Changed objects and samples are searched at four times that. Sizes
     are 6.7 % apart, 0.8 % where the factor is close to 1, and the smallest width and the largest height good to 0.1 %.
     """

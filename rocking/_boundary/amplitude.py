@@ -18,7 +18,11 @@ from rocking._boundary.scan import Index, checked_resolution, outcome_changes
 from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
-from rocking._excitation.records.vertical import check_one_vertical_scale, highest_vertical_scale
+from rocking._excitation.records.vertical import (
+    HIGHEST_VERTICAL_SCALE,
+    check_one_vertical_scale,
+    highest_vertical_scale,
+)
 from rocking._model.checks import check_number, check_one_alpha, known_restitution
 from rocking._model.fields import IMPACTS, OUTCOME
 from rocking._model.labelled import variable
@@ -156,7 +160,7 @@ def _record_changes(
     factor = check_one_vertical_scale(record, vertical_scale) if vertical_scale is not None else 1.0
     lowest, limit = 1.0, math.inf
     if record.vertical is not None and factor > 0.0:
-        limit = highest_vertical_scale(record) / factor
+        limit = min(highest_vertical_scale(record), HIGHEST_VERTICAL_SCALE) / factor
         # uplift is where a abs(f) reaches 1 + a w: at a sample, since both are linear between samples
         upwards = factor * record.vertical / STANDARD_GRAVITY
         excess = np.abs(record.acceleration) / record.peak_acceleration - upwards

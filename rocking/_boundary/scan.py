@@ -35,7 +35,7 @@ RESOLUTION = 0.005
 RESOLUTIONS = 1e-4, 0.1
 """Finest and coarsest that can be asked for [-]."""
 
-PARTS = 128
+PARTS = 64
 """Parts of the resolution, a power of two, into which it is divided where the body may overturn."""
 
 CLOSE_PARTS = 32
@@ -160,7 +160,7 @@ def lowest_overturning(
 
     Strengths are tried from the weakest on, `resolution` apart. Where the peak rotation, or its variation from one
     strength to the next, comes near to overturning, and just below the first strength that overturns, intervals are
-    halved to 1/128 of it at the narrowest. The change of outcome below the first that overturns is bisected.
+    halved to 1/64 of it at the narrowest. The change of outcome below the first that overturns is bisected.
 
     Parameters
     ----------

@@ -174,7 +174,7 @@ def record_range(problem: BodyProblem) -> tuple[Array, Array]:
             ]
         )
         limit = np.array([highest_vertical_scale(record, g) for g in gravity.tolist()])
-    return 1.0 / np.maximum(excess, 1.0 / HIGHEST_SCALE), limit
+    return 1.0 / np.maximum(excess, 1.0 / HIGHEST_SCALE), np.minimum(limit, HIGHEST_SCALE)
 
 
 def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: Array, stop: StopFlag | None) -> Array:

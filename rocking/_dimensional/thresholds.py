@@ -129,7 +129,7 @@ class BodyThresholds(EqualByValue):
         top = threshold_text(float(self.searched[1]))
         end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
         if self.resolution:
-            end += f"; factors at most {100.0 * self.resolution:g} % apart were tried"
+            end = f", of factors at most {100.0 * self.resolution:g} % apart{end}"
         if not self.changes:
             return f"no {name} up to {top}{unit} was found to overturn it{end}"
         first, *others = self.changes
@@ -293,7 +293,7 @@ def scale_thresholds(
     uplift, top, flies = search_range(record, block, given)
     solve = block_lines(record, block, restitution_of(block, restitution), stop=stop)
     none = np.empty(0), np.empty(0, np.bool_)
-    limit = highest_vertical_scale(record, block.gravity)
+    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
     found = outcome_changes(solve, uplift, top, limit, resolution=share, stop=stop) if top > uplift else none
     searched = np.array([uplift, max(uplift, top)])
     return BodyThresholds(found[0], found[1], searched, "scale", flies, resolution=share)
@@ -315,7 +315,7 @@ def overturning_scale(
     share, given = checked_resolution(resolution), _checked_highest(highest)
     uplift, top, _ = search_range(record, block, given)
     solve = block_lines(record, block, restitution_of(block, restitution), stop=stop)
-    limit = highest_vertical_scale(record, block.gravity)
+    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
     return float(lowest_overturning(solve, np.array([uplift]), top, limit, resolution=share, stop=stop)[0])
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._boundary.scan import RESOLUTION, Index, lowest_overturning
-from rocking._dimensional.problem import uplift_scale
+from rocking._dimensional.problem import HIGHEST_SCALE, uplift_scale
 from rocking._dimensional.thresholds import block_lines
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
@@ -71,7 +71,7 @@ def _mildest(
     in_order = overturned if scales else overturned[::-1]
     last = float(severities[in_order.argmax() if in_order.any() else -1])
     lowest = uplift_scale(record, block) if scales else float(severities[0])
-    limit = highest_vertical_scale(record, block.gravity) if scales else last
+    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE) if scales else last
     found = float(lowest_overturning(solve, np.array([lowest]), last, limit, stop=stop)[0])
     if in_order.any() and np.isnan(found):  # the level lies within a rounding of a change of outcome
         found = last

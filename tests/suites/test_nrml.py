@@ -109,3 +109,11 @@ def test_fragility_of_arrays_of_bodies_is_written_by_body():
     for file, found in zip(files, (array, listed), strict=True):
         write_nrml(found, file)
     assert files[0].getvalue() == files[1].getvalue()
+
+
+def test_a_fitted_curve_that_is_not_small_at_its_lowest_level_warns(tmp_path):
+    found = rocking.fragility(
+        [noise(k) for k in range(8)], rocking.Block(0.25, 1.0), intensity=np.geomspace(4.0, 12.0, 6)
+    )
+    with pytest.warns(UserWarning, match="block-1 overturns: at noDamageLimit"):
+        write_nrml(found, tmp_path / "fit.xml", format="lognormal")
