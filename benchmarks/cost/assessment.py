@@ -2,27 +2,36 @@
 
 The lowest factors of made-up objects in two directions, under seven pulse shapes at 0.3 g and 0.3 m/s and under a suite
 of made-up records at 0.3 g; both use all cores. Kernels are compiled before.
+
+With `--scan 2000` it compares the lowest factors under three suites with scans of so many factors from uplift up to
+them, in equal ratios, and prints in how many pairs of an object and a record the body overturns at a lower one.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
+from scipy.signal import butter, sosfiltfilt
 
 import rocking
 from benchmarks.cost.made_up_records import made_up_record
 from rocking._assessment.objects import Bodies
-from rocking._assessment.search import factors_of
+from rocking._assessment.search import factors_of, overturned_by
+from rocking._boundary.scan import RESOLUTION
 
 SAMPLES, STEP = 3_000, 0.01
 """Of each record [-, s]."""
 
+MOTIONS = Path(__file__).parents[2] / "workflow/motions"
 
-def made_up_objects(count: int) -> list[rocking.Object]:
+
+def made_up_objects(count: int, seed: int = 17) -> list[rocking.Object]:
     """Return objects of 0.3 to 2.5 m whose bases are 0.12 to 0.5 times as wide and as deep."""
-    random = np.random.default_rng(17)
+    random = np.random.default_rng(seed)
     heights, shares = np.exp(random.uniform(np.log(0.3), np.log(2.5), count)), random.uniform(0.12, 0.5, (count, 2))
     return [
         rocking.Object(f"object {k}", width=h * w, depth=h * d, height=h)
@@ -30,12 +39,58 @@ def made_up_objects(count: int) -> list[rocking.Object]:
     ]
 
 
+def noise_record(seed: int, samples: int = 2000) -> rocking.Record:
+    """Return band-passed noise of 20 s that rises in 1 to 3 s, stays for 3 to 9 s and decays."""
+    random = np.random.default_rng(seed)
+    band = [random.uniform(0.1, 0.5), random.uniform(3.0, 12.0)]
+    noise = sosfiltfilt(butter(2, band, "bandpass", fs=1.0 / STEP, output="sos"), random.standard_normal(samples))
+    time_ = np.arange(samples) * STEP
+    rise, hold = random.uniform(1.0, 3.0), random.uniform(3.0, 9.0)
+    decay = np.exp(-np.maximum(time_ - rise - hold, 0.0) / random.uniform(1.0, 4.0))
+    return rocking.Record(np.minimum(time_ / rise, 1.0) ** 2 * decay * noise, STEP, "m/s2", f"noise {seed}")
+
+
+def compare(name: str, suite: Sequence[rocking.Record], objects: int, count: int, resolution: float, seed: int) -> None:
+    """Print in how many pairs a scan of `count` factors finds a lower one, and how much lower at most."""
+    site = rocking.Site(pga="0.3 g", records=suite)
+    body = Bodies.of(made_up_objects(objects, seed)).scaled()
+    processor = time.process_time()
+    found = factors_of(body, site.motions, resolution=resolution)
+    processor = time.process_time() - processor
+    uplift = np.asarray(body.uplift_acceleration)[:, None]
+    lower = []
+    for motion, factor in zip(site.motions, np.nan_to_num(found.T, nan=10.0), strict=True):
+        start = np.minimum(uplift[:, 0] / motion.peak_acceleration, factor)[:, None]
+        tried = start * (factor[:, None] / start) ** ((np.arange(count) + 0.5) / count)
+        hits = overturned_by(body.column, motion, None, tried * motion.peak_acceleration)
+        first = np.where(hits.any(axis=1), tried[np.arange(factor.size), hits.argmax(axis=1)], factor)
+        lower.append(1.0 - first / factor)
+    share = np.array(lower).ravel()
+    print(
+        f"{name}: {share.size} pairs, lower in {np.sum(share > 2e-6)}, by more than 1 % in {np.sum(share > 0.01)}, "
+        f"at most {100 * share.max():.2g} %; {1e3 * processor / share.size:.1f} ms of processor time a pair",
+        flush=True,
+    )
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--objects", type=int, default=2000)
     parser.add_argument("--records", type=int, default=40)
+    parser.add_argument("--scan", type=int, metavar="FACTORS")
+    parser.add_argument("--resolution", type=float, default=RESOLUTION)
+    parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(arguments)
+    if options.scan:
+        suites = {
+            "made-up records": [made_up_record(options.seed + k, SAMPLES, STEP) for k in range(8)],
+            "noise": [noise_record(1000 + options.seed + k) for k in range(8)],
+            "records of the workflow": [rocking.read_record(path) for path in sorted(MOTIONS.glob("*.csv"))],
+        }
+        for name, suite in suites.items():
+            compare(name, suite, round(48 / len(suite)), options.scan, options.resolution, options.seed + 17)
+        return
     suite = [made_up_record(seed, SAMPLES, STEP) for seed in range(options.records)]
     body = Bodies.of(made_up_objects(options.objects)).scaled()
     for site in (rocking.Site(pga="0.3 g", pgv="0.3 m/s"), rocking.Site(pga="0.3 g", records=suite)):

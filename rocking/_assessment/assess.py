@@ -28,16 +28,20 @@ from rocking._assessment.sliding import sliding_displacement
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._base.units import Scalar
+from rocking._boundary.scan import RESOLUTION, checked_resolution
+from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag, check_stop
-from rocking.suites.curve import curve_probability
-from rocking.suites.fits import binomial_interval, fit_curve
-from rocking.suites.hazard import hazard_quadrature
+from rocking.suites.fits import FitStatus, binomial_interval, fit_curve
+from rocking.suites.hazard import curve_rates, outcome_rates
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 CLOSE = 0.2
 """Margin below which a warning is given [-]: a ground motion is not known better."""
+
+WIDE = 0.1
+"""Relative distance of the bounds of an annual rate above which a warning is given [-]."""
 
 CONFIDENCE = 0.95
 
@@ -52,6 +56,7 @@ def assess(
     sensitivity: bool = True,
     samples: Scalar = 0,
     seed: Scalar = 0,
+    resolution: Scalar = RESOLUTION,
     stop: StopFlag | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
@@ -71,6 +76,8 @@ def assess(
         `sampled_share` is the share that overturns, 0 to 100,000; 0: none.
     seed : int
         Of these variants, 0 to 2^53.
+    resolution : float
+        Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1].
     stop : StopFlag, optional
         Cancels the work.
     progress : callable, optional
@@ -90,16 +97,20 @@ def assess(
 
     Notes
     -----
-    Under pulses `factor` is that of `lowest_thresholds`, up to `HIGHEST_FACTOR`: a range of strengths narrower than its
-    nodes, 0.05 to 0.23 %, in which an object overturns can be missed. Under records, which pulses on a floor are as
-    well, the factors `LEVELS` are tried.
+    One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
+    to 1. `factor` is the lowest that was found up to `HIGHEST_FACTOR`; a range narrower than the distance of the
+    factors tried can be missed. Under pulses they are 0.05 to 0.23 % apart. Under records, which pulses on a floor are
+    as well, they are at most `resolution` apart, a 64th of it where the object may overturn
+    (`rocking._boundary.scan.lowest_overturning`). Changed objects and samples are searched at four times that. Sizes
+    are 6.7 % apart, 0.8 % where the factor is close to 1, and the smallest width and the largest height good to 0.1 %.
     """
     given = (objects,) if isinstance(objects, Object) else tuple(objects)
     if not given or not all(isinstance(one, Object) for one in given):
         raise InvalidArgumentError("objects", objects, "one or more objects of rocking.Object")
     variants = integer("samples", samples, 0, MAX_SAMPLES)
     chosen_seed = integer("seed", seed, 0, 2**53)
-    parts = 1 + (4 if sensitivity else 0)
+    share_apart = checked_resolution(resolution)
+    parts = 1 + (5 if sensitivity else 0)
 
     def advance(share: float) -> None:
         if progress is not None:
@@ -107,7 +118,7 @@ def assess(
 
     motions, bodies = site.find_motions(stop), Bodies.of(given)
     body = bodies.scaled()
-    factors = factors_of(body, motions, stop, advance)
+    factors = factors_of(body, motions, stop, advance, resolution=share_apart)
     overturned, rotation, displacement = responses_of(body, motions, stop)
     factors = np.fmin(factors, np.where(overturned, 1.0, np.nan))  # of an object beyond the range of the search
     overturned |= factors <= 1.0
@@ -137,21 +148,28 @@ def assess(
         "share_upper": high,
         "rotation": -least(-rotation),
         "displacement": -least(-displacement),
-        "annual_rate": _annual_rate(body, site, stop),
+        **_annual_rate(body, site, stop),
         "friction_needed": uplift / STANDARD_GRAVITY,
     }
     columns |= _sliding(given, body, motions, sensitivity, stop)
     columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
-        columns |= changed_objects(given, bodies, motions, stop, lambda share: advance(1.0 + share))
+        columns |= changed_objects(
+            given, bodies, factors, motions, share_apart, stop, lambda share: advance(1.0 + share)
+        )
     if variants:
-        columns["sampled_share"] = sampled_share(given, bodies, motions, variants, chosen_seed, stop)
+        columns["sampled_share"] = sampled_share(
+            given, bodies, factors, motions, variants, chosen_seed, share_apart, stop
+        )
     columns["warnings"] = _warnings(given, columns, site.doubts)
     order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]
     ordered = tuple(each[k] for k in order)
-    return Assessment(kept, tuple(names.tolist()), HIGHEST_FACTOR, ordered, factors[order], rotation[order], site)
+    apart = share_apart if any(isinstance(motion.motion, Record) for motion in motions) else 0.0
+    return Assessment(
+        kept, tuple(names.tolist()), HIGHEST_FACTOR, ordered, factors[order], rotation[order], site, apart
+    )
 
 
 def _by_event(overturned: Bools, motions: Sequence[Motion]) -> Bools:
@@ -160,27 +178,30 @@ def _by_event(overturned: Bools, motions: Sequence[Motion]) -> Bools:
     return np.stack([overturned[..., groups == group].any(axis=-1) for group in range(groups.max() + 1)], axis=-1)
 
 
-def _annual_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> Array:
-    """Annual rate of overturning from outcomes at levels of the hazard curve, by a lognormal fragility curve."""
-    rate = np.full(body.shape, np.nan)
+def _annual_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> dict[str, Array]:
+    """Annual rate of overturning and its bounds, from outcomes at levels of the hazard curve, by a lognormal curve."""
+    rate, lower, upper = (np.full(body.shape, np.nan) for _ in range(3))
     hazard: Any = site.hazard  # checked arrays, see `Site`
-    if hazard is None:
-        return rate
-    intensity, rates = hazard
-    levels = np.geomspace(intensity[0], intensity[-1], RATE_LEVELS)
-    weights, nodes = hazard_quadrature(intensity, rates)
-    reached = [
-        overturned_by(body.column, one, stop, levels * (one.peak_acceleration / one.ground)) for one in site.motions
-    ]
-    for k, own in enumerate(_by_event(np.stack(reached, axis=2), site.motions)):
-        fit = fit_curve(own, levels)
-        if math.isfinite(fit.median):
-            at_end = float(curve_probability("lognormal", levels[-1], fit.median, fit.dispersion))
-            rate[k] = curve_probability("lognormal", nodes, fit.median, fit.dispersion) @ weights
-            rate[k] += at_end * rates[-1]
-        elif not own.any():
-            rate[k] = 0.0
-    return rate
+    if hazard is not None:
+        intensity, rates = hazard
+        levels = np.geomspace(intensity[0], intensity[-1], RATE_LEVELS)
+        reached = [
+            overturned_by(body.column, one, stop, levels * (one.peak_acceleration / one.ground)) for one in site.motions
+        ]
+        none, every = outcome_rates(intensity, rates, levels)
+        for k, own in enumerate(_by_event(np.stack(reached, axis=2), site.motions)):
+            fit = fit_curve(own, levels)
+            if math.isfinite(fit.median):
+                ends = curve_rates("lognormal", intensity, rates, np.array(fit.median), np.array(fit.dispersion))
+                lower[k], upper[k] = ends
+                rate[k] = lower[k]
+            elif fit.status in (FitStatus.NONE_REACHES, FitStatus.ALL_REACH):
+                lower[k], upper[k] = every if fit.status == FitStatus.ALL_REACH else none
+    return {
+        "annual_rate": rate,
+        "annual_rate_lower": lower,
+        "annual_rate_upper": np.where(np.isinf(upper), np.nan, upper),
+    }
 
 
 def _sliding(
@@ -229,6 +250,11 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
             texts.append("round base: planar model, which leaves out wobbling and rolling")
         if (columns["factor_slenderer"][k] <= 1.0) != (columns["factor_stockier"][k] <= 1.0):
             texts.append("the answer changes within the tolerance of the dimensions")
+        least_rate, most = columns["annual_rate_lower"][k], columns["annual_rate_upper"][k]
+        if not math.isnan(least_rate) and not most <= least_rate * (1.0 + WIDE):
+            bound = "with no bound above" if math.isnan(most) else f"at most {most:.3g}"
+            text = "the hazard curve does not reach far enough: the annual rate of overturning is at least"
+            texts.append(f"{text} {least_rate:.3g}, {bound}")
         less, more = columns["factor_less_restitution"][k], columns["factor_more_restitution"][k]
         if (less <= 1.0) != (more <= 1.0):
             texts.append(f"the answer changes within {ETA_CHANGE:g} of the coefficient of restitution")

@@ -126,15 +126,23 @@ OUTPUTS = (
     Column("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
     Column("uplifts", "bool", "whether a motion of the site makes it uplift"),
     Column("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
-    Column("factor", "-", "lowest factor on the motions of the site at which one of them overturns it"),
+    Column("factor", "-", "lowest factor tried on the motions of the site at which one of them overturns it"),
     Column("governing", "", "that motion"),
     Column("overturned_by", "", "motions that overturn it at the strength of the site or below"),
-    Column("share", "-", "share of the motions of the site, a pair of components being one, that overturn it"),
+    Column(
+        "share",
+        "-",
+        "share of the motions of the site, a pair of components being one, that overturn it at a factor up to 1",
+    ),
     Column("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
     Column("share_upper", "-", "upper end of it"),
     Column("rotation", "rad", "largest rotation under the motions that do not overturn it"),
     Column("displacement", "m", "largest movement of its top under them"),
-    Column("annual_rate", "1/year", "annual rate of overturning, where a hazard curve is given"),
+    Column(
+        "annual_rate", "1/year", "annual rate of overturning, where a hazard curve is given that reaches far enough"
+    ),
+    Column("annual_rate_lower", "1/year", "that rate at least"),
+    Column("annual_rate_upper", "1/year", "that rate at most; not known where the hazard curve begins too high"),
     Column("friction_needed", "-", "coefficient of friction that uplift needs"),
     Column("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
     Column(
@@ -151,14 +159,18 @@ OUTPUTS = (
     Column(
         "smallest_width",
         "m",
-        "smallest base at this height from which on the motions of the site overturn no base that was tried",
+        "smallest base at this height from which on no base that was tried is overturned at a factor up to 1",
     ),
-    Column("largest_height", "m", "largest height on this base up to which they overturn no height that was tried"),
+    Column("largest_height", "m", "largest height on this base up to which no height that was tried is overturned so"),
     Column("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
     Column("factor_more_restitution", "-", "the factor with one higher by 0.05"),
     Column("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
     Column("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
-    Column("sampled_share", "-", "share of its variants within tolerance and restitution that a motion overturns"),
+    Column(
+        "sampled_share",
+        "-",
+        "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1",
+    ),
     Column("warnings", "", "what is in doubt"),
 )
 

@@ -13,6 +13,7 @@ from rocking._assessment.objects import STEP, Bodies, Plane
 from rocking._assessment.search import HIGHEST_FACTOR, factor_from_one_side, problem_of
 from rocking._assessment.site import Motion
 from rocking._base.units import Scalar
+from rocking._boundary.scan import RESOLUTION
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 
@@ -26,7 +27,11 @@ LEAST_COMPONENT = 1e-9
 
 
 def factors_by_direction(
-    planes: Mapping[float, Plane], restitution: Scalar, motions: Sequence[Motion], stop: StopFlag | None = None
+    planes: Mapping[float, Plane],
+    restitution: Scalar,
+    motions: Sequence[Motion],
+    stop: StopFlag | None = None,
+    resolution: float = RESOLUTION,
 ) -> xr.Dataset:
     """Lowest factors on motions that overturn an object, over the direction of the ground motion.
 
@@ -46,6 +51,8 @@ def factors_by_direction(
         Of the site.
     stop : StopFlag, optional
         Cancels the work.
+    resolution : float
+        Largest relative distance of the factors on records that are tried [-].
 
     Returns
     -------
@@ -62,7 +69,7 @@ def factors_by_direction(
     columns = []
     for motion in motions:
         problem = problem_of(body, motion)
-        factor = factor_from_one_side(problem, motion, stop)
+        factor = factor_from_one_side(problem, motion, stop, resolution)
         overturned = problem.solve(stop=stop)[0]["outcome"].ravel() >= Outcome.OVERTURNED_DIRECTLY
         # an object beyond the range of the search has no factor, and may overturn
         columns.append(np.fmin(factor, np.where(overturned, 1.0, np.nan)))
@@ -74,7 +81,11 @@ def factors_by_direction(
     known = factor <= HIGHEST_FACTOR
     names = np.array([motion.name for motion in motions])
     variables = {
-        "factor": (np.where(known, factor, np.nan), "1", "lowest factor on the motions that overturns the object"),
+        "factor": (
+            np.where(known, factor, np.nan),
+            "1",
+            "lowest factor tried on the motions that overturns the object",
+        ),
         "along": (np.where(known, across[side], np.nan), "degrees", "direction along which their component does so"),
         "governing": (np.where(known, names[own[side].argmin(axis=1)], ""), "", "the motion that does so"),
     }

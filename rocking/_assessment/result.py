@@ -19,6 +19,7 @@ from rocking._assessment.objects import Object
 from rocking._assessment.site import Motion, Site
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
+from rocking._boundary.scan import RESOLUTION
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.table_reader import BadRow
 from rocking._numba.cancellation import StopFlag
@@ -48,6 +49,8 @@ class Assessment(EqualByValue):
         Largest rotation under each motion at the strength of the site, nan where it overturns the object [rad].
     site : Site
         The site.
+    resolution : float
+        Largest relative distance of the factors on records that were tried [-]; 0 if all motions are pulses.
     """
 
     columns: Mapping[str, NDArray[Any]]
@@ -57,6 +60,7 @@ class Assessment(EqualByValue):
     factors: NDArray[np.float64]
     rotations: NDArray[np.float64]
     site: Site
+    resolution: float = 0.0
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -138,7 +142,8 @@ class Assessment(EqualByValue):
         """
         row = integer("row", row, 0, len(self.objects) - 1)
         one = self.objects[row]
-        return factors_by_direction(one.planes_around, one.restitution, self.site.motions, stop)
+        apart = self.resolution or RESOLUTION
+        return factors_by_direction(one.planes_around, one.restitution, self.site.motions, stop, apart)
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a data frame."""
@@ -183,4 +188,6 @@ class Assessment(EqualByValue):
             return f"{head}none>"
         margin = f"up to {self.highest_factor:g}" if worst["factor"] is None else f"from {worst['factor']:.3g}"
         how = "not overturned" if worst["factor"] is None else "overturned"
-        return f"{head}{counted};\nworst: {worst['object']}, {worst['direction']}, {how} {margin} times these motions>"
+        apart = f"; factors at most {100.0 * self.resolution:g} % apart were tried" if self.resolution else ""
+        named = f"{worst['object']}, {worst['direction']}"
+        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{apart}>"

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import needed, number, reject_given
 from rocking._base.units import Scalar
-from rocking._boundary.scan import outcome_changes, scanned
+from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
+from rocking._boundary.scan import Index, checked_resolution, outcome_changes
 from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
-from rocking._excitation.records.vertical import check_one_vertical_scale, highest_vertical_scale
+from rocking._excitation.records.vertical import (
+    HIGHEST_VERTICAL_SCALE,
+    check_one_vertical_scale,
+    highest_vertical_scale,
+)
 from rocking._model.checks import check_number, check_one_alpha, known_restitution
 from rocking._model.fields import IMPACTS, OUTCOME
 from rocking._model.labelled import variable
@@ -28,9 +35,6 @@ from rocking._solver.records.record_response import frequency_parameter_range, r
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-LOWEST_WITH_VERTICAL = 0.1
-"""Lowest amplitude tried under a record with a vertical component [-], which can lift the block below 1."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,6 +96,7 @@ def thresholds(
     alpha: Scalar | None = None,
     vertical_scale: Scalar | None = None,
     highest: Scalar | None = None,
+    resolution: Scalar = SCAN_RESOLUTION,
     stop: StopFlag | None = None,
 ) -> Thresholds:
     """Every amplitude from that of uplift to `highest` at which the outcome changes.
@@ -105,6 +110,9 @@ def thresholds(
         scaled, and the search ends where the vertical acceleration reaches -g.
     highest : float, optional
         Largest a = a_g/(g tan alpha) considered [-], (1, 1e6]; by default 100 under a pulse and 10 under a record.
+    resolution : float
+        Under a record: largest relative distance of the amplitudes tried up to the lowest that overturns [-],
+        [1e-4, 0.1].
     stop : StopFlag, optional
         Once another thread sets it, this ends soon with `StoppedError`.
 
@@ -115,7 +123,8 @@ def thresholds(
         after more than `MOST_COUNTED` impacts. A region of one way of overturning narrower than 1/2000 of the range and
         surrounded by a single other outcome can be missed; a safe band between two ways of overturning, of which all
         with more than `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`. Under a record
-        amplitudes that differ by 0.2 % are tried, and changes between them bisected to 1e-6.
+        the lowest is that of `rocking._boundary.scan.lowest_overturning`; above it amplitudes that differ by 0.2 % are
+        tried. Changes are bisected to 1e-6.
 
     Raises
     ------
@@ -133,7 +142,7 @@ def thresholds(
         given = needed("a record", frequency_parameter=frequency_parameter)
         p = number("frequency_parameter", given, *frequency_parameter_range(motion), unit="rad/s")
         groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha)}
-        return _record_changes(motion, groups, vertical_scale, top, stop)
+        return _record_changes(motion, groups, vertical_scale, top, checked_resolution(resolution), stop)
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
@@ -141,19 +150,34 @@ def thresholds(
 
 
 def _record_changes(
-    record: Record, groups: dict[str, Any], vertical_scale: Scalar | None, highest: float, stop: StopFlag | None
+    record: Record,
+    groups: dict[str, Any],
+    vertical_scale: Scalar | None,
+    highest: float,
+    resolution: float,
+    stop: StopFlag | None,
 ) -> Thresholds:
     factor = check_one_vertical_scale(record, vertical_scale) if vertical_scale is not None else 1.0
-    lowest = 1.0
+    lowest, limit = 1.0, math.inf
     if record.vertical is not None and factor > 0.0:
-        highest = min(highest, highest_vertical_scale(record) / factor)
-        lowest = min(LOWEST_WITH_VERTICAL, highest)
+        limit = min(highest_vertical_scale(record), HIGHEST_VERTICAL_SCALE) / factor
+        # uplift is where a abs(f) reaches 1 + a w: at a sample, since both are linear between samples
+        upwards = factor * record.vertical / STANDARD_GRAVITY
+        excess = np.abs(record.acceleration) / record.peak_acceleration - upwards
+        lowest = float(1.0 / excess.max())
 
-    def solve(amplitudes: Floats) -> Response:
+    def solve(amplitudes: Floats, threads: int | None = None) -> Response:
         scaled = None if record.vertical is None else factor * amplitudes
-        return record_response(record, slenderness=1.0 / amplitudes, vertical_scale=scaled, **groups, stop=stop)
+        slenderness = 1.0 / amplitudes
+        return record_response(
+            record, slenderness=slenderness, vertical_scale=scaled, **groups, threads=threads, stop=stop
+        )
 
-    found, above = outcome_changes(lambda one: solve(one).overturned, scanned(lowest, max(highest, lowest)))
+    def lines(_line: Index, amplitudes: Floats, threads: int | None) -> tuple[Floats, NDArray[np.bool_]]:
+        there = solve(amplitudes, threads)
+        return there.peak_rotation, there.overturned
+
+    found, above = outcome_changes(lines, lowest, max(highest, lowest), limit, resolution=resolution, stop=stop)
     there = solve(found) if found.size else None
     outcome = np.empty(0, np.int8) if there is None else there.outcome
     return Thresholds(found, above, outcome, np.empty(0, np.int32) if there is None else there.impacts)

@@ -120,6 +120,12 @@ Samples = Annotated[
     ),
 ]
 Seed = Annotated[int, typer.Option(help="Seed of these variants.", metavar="[NUMBER]")]
+Resolution = Annotated[
+    float,
+    typer.Option(
+        help="Largest relative distance of the factors on a record that are tried, 0.0001 to 0.1.", metavar="[-]"
+    ),
+]
 Unit = Annotated[
     str | None, typer.Option(help="Unit of the records if their files state none, such as g.", metavar="[UNIT]")
 ]
@@ -192,6 +198,7 @@ def assess(
     sensitivity: Sensitivity = True,
     samples: Samples = 0,
     seed: Seed = 0,
+    resolution: Resolution = 0.005,
     output: Output = None,
     report: Report = None,
     title: Title = "Assessment of free-standing objects",
@@ -245,7 +252,15 @@ def assess(
                 "objects", objects, "\n".join(["a table with one object or more, or a mesh", *bad])
             )
         with progress(f"assessing {len(given)} objects") as advance:
-            found = assess_objects(given, site, sensitivity=sensitivity, samples=samples, seed=seed, progress=advance)
+            found = assess_objects(
+                given,
+                site,
+                sensitivity=sensitivity,
+                samples=samples,
+                seed=seed,
+                resolution=resolution,
+                progress=advance,
+            )
         if output is not None:
             _write("output", output, found.to_csv(bad_rows=table.bad_rows))
         if report is not None:
@@ -335,12 +350,16 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) ->
     units = {one.name: one.unit for one in OUTPUTS if one.label != one.name}
     if form.kind == "json":
         about = {"details": found.details, "columns": table.columns, "skipped": table.skipped}
-        printing.print_json(columns | about | {"motions": found.motions, "bad_rows": bad})
+        printing.print_json(
+            columns | about | {"motions": found.motions, "resolution": found.resolution, "bad_rows": bad}
+        )
         return
     if form.kind == "csv":
         printing.print_csv(found.with_details(columns), form, units)
         return
     printing.print_table({name: columns[name] for name in SHOWN}, units)
+    if found.resolution:
+        typer.echo(f"factors on records: at most {100.0 * found.resolution:g} % apart were tried")
     concerned: dict[str, list[str]] = {}
     for row in rows:
         for text in filter(None, row["warnings"].split("; ")):

@@ -22,6 +22,7 @@ from rocking._base.errors import (
     reject_given,
 )
 from rocking._base.units import Scalar, Values
+from rocking._boundary.scan import RESOLUTION, checked_resolution
 from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.body_response import BODY_FIELDS, BodyResponse, respond_bodies
 from rocking._dimensional.curves import (
@@ -146,6 +147,7 @@ class RespondingBody(AbstractBody):
         period: Values | None = None,
         restitution: Values = "momentum",
         highest: Scalar | None = None,
+        resolution: Scalar = RESOLUTION,
         stop: StopFlag | None = None,
     ) -> BodyThresholds:
         """Every peak acceleration of a pulse, or factor of a record, at which the outcome changes, for each body.
@@ -157,6 +159,9 @@ class RespondingBody(AbstractBody):
         highest : float, optional
             Highest peak acceleration [m/s2] or factor [-] searched, > 0; by default 100 times that of uplift under a
             pulse, 10 times under a record.
+        resolution : float
+            Largest relative distance of the factors of a record that are tried in search of the lowest [-],
+            [1e-4, 0.1]; above it they are 0.2 % apart.
         stop : StopFlag, optional
             Cancels the work.
 
@@ -175,11 +180,14 @@ class RespondingBody(AbstractBody):
         if isinstance(self, AbstractBlock) and numbers:
             if isinstance(motion, Record):
                 reject_given("a record", period=period)
-                return scale_thresholds(motion, self, restitution=numbers["restitution"], highest=highest, stop=stop)
+                eta = numbers["restitution"]
+                return scale_thresholds(
+                    motion, self, restitution=eta, highest=highest, resolution=resolution, stop=stop
+                )
             return block_thresholds(BlockProblem(self, motion, self.uplift_acceleration, **numbers), highest, stop)
         strength = {"scale": 1.0} if isinstance(motion, Record) else {"peak_acceleration": 1.0}
         problem, *_ = self._problem(motion, period=period, restitution=restitution, **strength)
-        return thresholds_of(problem, highest, stop)
+        return thresholds_of(problem, highest, stop, checked_resolution(resolution))
 
     def spectrum(
         self,

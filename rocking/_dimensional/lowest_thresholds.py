@@ -1,20 +1,33 @@
-"""Lowest peak accelerations of a pulse that overturn bodies, for arrays of bodies at once."""
+"""Lowest peak accelerations of a motion that overturn bodies, for arrays of bodies at once."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError
+from rocking._boundary.scan import (
+    BALANCED,
+    FEWEST,
+    SHARES,
+    Nodes,
+    SolveLines,
+    beside,
+    lowest_overturning,
+    refined,
+)
+from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.search import RESOLUTION, refine_brackets
 from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
+from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bodies import outcome_margin_of, solve_motion
@@ -22,8 +35,8 @@ from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-Solved = tuple[Array, Array, NDArray[np.int32], NDArray[np.bool_]]
-"""Margin of the outcome, peak |theta|/alpha, impacts, and whether the body overturns."""
+Solved = tuple[Array, NDArray[np.bool_], Array, NDArray[np.int32]]
+"""Peak |theta|/alpha, whether the body overturns, margin of the outcome, and impacts."""
 
 HIGHEST = 100.0
 """Largest peak acceleration searched over that of uplift [-]."""
@@ -59,71 +72,54 @@ CLOSE, LAYERS = 32, 4
 Layers of outcomes lie close together there, the more of them the more flights there are.
 """
 
-BALANCED = 1.0
-"""|theta|/alpha of a body that is balanced on an edge, and of one that overturns."""
-
 AT_ONCE = 4
 """Coarse nodes solved at a time, before the bodies that have overturned are left out."""
 
-PARTS = 4
-"""Parts of an array of bodies for each core; `FEWEST` bodies in one at least, below which the overhead counts."""
-
-FEWEST = 64
-
 
 @dataclass(eq=False)
-class _Nodes:
-    """Solved nodes of several bodies in order of body, then amplitude; arrays (nodes,)."""
+class _Nodes(Nodes):
+    """With the margin of the outcome and the number of impacts."""
 
-    line: Index
-    place: Index
     margin: Array
-    peak: Array
     impacts: NDArray[np.int32]
-    overturned: NDArray[np.bool_]
-
-    def joined(self, other: _Nodes) -> _Nodes:
-        """Those of both up to the first of each body that overturns, in order."""
-        both = _Nodes(*(np.concatenate(pair) for pair in zip(vars(self).values(), vars(other).values(), strict=True)))
-        order = np.argsort(both.line * GRID.size + both.place, kind="stable")  # of two sorted runs: one merge
-        line, place, overturned = both.line[order], both.place[order], both.overturned[order]
-        first = np.full(line.max(initial=-1) + 1, GRID.size)
-        np.minimum.at(first, line[overturned], place[overturned])
-        kept = order[place <= first[line]]
-        return _Nodes(*(column[kept] for column in vars(both).values()))
 
 
-def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFlag | None = None) -> Array:
-    """The lowest peak acceleration of a pulse that overturns each body of a problem, whose own one is not read.
+def lowest_thresholds(
+    problem: BodyProblem, highest: Array | float, stop: StopFlag | None = None, *, resolution: float = SCAN_RESOLUTION
+) -> Array:
+    """The lowest peak acceleration of a motion that overturns each body of a problem, whose own one is not read.
 
-    The nodes of `rocking.thresholds` are searched from uplift on: every 128th one up to the first that
-    overturns, then those between them where the body could overturn, see `COARSE`. The change of outcome is bracketed
-    to `RESOLUTION` in 1/a, and both ends of the bracket have been solved.
+    Under a record as `rocking._boundary.scan.lowest_overturning`. Under a pulse the nodes of `rocking.thresholds` are
+    searched from uplift on: every 128th one up to the first that overturns, then those between them where the body
+    could overturn, see `COARSE`. The change of outcome is bracketed to `RESOLUTION` in 1/a, and both ends of the
+    bracket have been solved.
 
     Parameters
     ----------
     problem : BodyProblem
-        Bodies under a pulse.
+        The bodies and the motion.
     highest : float array
-        Highest peak acceleration searched, which broadcasts with the problem [m/s2]; at most `HIGHEST` times that of
-        uplift is searched.
+        Highest peak acceleration searched, which broadcasts with the problem [m/s2]; under a pulse at most `HIGHEST`
+        times that of uplift is searched, under a record up to where the vertical acceleration reaches -g.
     stop : StopFlag, optional
         Cancels the work, which then raises `StoppedError`.
+    resolution : float
+        Under a record: largest relative distance of the accelerations that are tried [-].
 
     Returns
     -------
     float array
         Peak acceleration at which the body overturns [m/s2], nan where none up to the highest was found.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For a record.
     """
     motion = problem.motion
-    if isinstance(motion, Record):
-        raise InvalidArgumentError("motion", motion, "a pulse")
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
+    if isinstance(motion, Record):
+        peak = motion.peak_acceleration
+        lines = replace(problem, acceleration=np.full(shape, peak))
+        start, limit = record_range(lines)
+        factor = np.broadcast_to(highest, shape).ravel() / peak
+        found = lowest_overturning(record_lines(lines, stop), start, factor, limit, resolution=resolution, stop=stop)
+        return found.reshape(shape) * peak
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
     cells = replace(problem, acceleration=np.asarray(uplift)).cells
     top = (np.broadcast_to(highest, shape) / uplift).ravel()
@@ -134,8 +130,51 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
     def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
         found[part] = _lowest(motion, cells[part], count[part], top[part], stop)
 
-    fill_chunks(fill, top.size, max(FEWEST, math.ceil(top.size / (PARTS * AVAILABLE_CORES))), AVAILABLE_CORES, stop)
+    fill_chunks(fill, top.size, max(FEWEST, math.ceil(top.size / (SHARES * AVAILABLE_CORES))), AVAILABLE_CORES, stop)
     return found.reshape(shape) * uplift
+
+
+def record_lines(problem: BodyProblem, stop: StopFlag | None = None) -> SolveLines:
+    """The bodies of a problem under its record at the factor 1, as lines of other factors."""
+    cells = problem.cells
+
+    def solve(line: Index, factor: Array, threads: int | None) -> tuple[Array, NDArray[np.bool_]]:
+        chosen = cells[line]
+        chosen["slenderness"] /= factor[:, None]
+        chosen["vertical"] *= factor
+        records, _ = solve_motion(problem.motion, chosen, threads, stop)
+        return records["peak_rotation"], records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
+
+    return solve
+
+
+def record_range(problem: BodyProblem) -> tuple[Array, Array]:
+    """Factors of a record at which each body uplifts, and at which the vertical acceleration reaches -g; (size,).
+
+    Uplift of an edge is where the horizontal acceleration over g tan(alpha_s) of the other reaches 1 + w/g
+    (`rocking._model.body`): at a sample, since all of them are linear between samples.
+
+    Parameters
+    ----------
+    problem : BodyProblem
+        Bodies under a record at the factor 1.
+    """
+    record: Any = problem.motion
+    resisted = problem.cells["slenderness"] * record.peak_acceleration  # g tan(alpha_s)
+    gravity = np.broadcast_to(problem.body.gravity, problem.shape).ravel()
+    if record.vertical is None:
+        first, second = record.acceleration.max(), -record.acceleration.min()
+        excess = np.maximum(first / resisted[:, 1], second / resisted[:, 0])
+        limit = np.full(gravity.size, math.inf)
+    else:
+        excess = np.array(
+            [
+                (np.maximum(record.acceleration / left, -record.acceleration / right) - record.vertical / g).max()
+                for (right, left), g in zip(resisted.tolist(), gravity.tolist(), strict=True)
+            ]
+        )
+        limit = np.array([highest_vertical_scale(record, g) for g in gravity.tolist()])
+    return 1.0 / np.maximum(excess, 1.0 / HIGHEST_SCALE), np.minimum(limit, HIGHEST_SCALE)
 
 
 def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: Array, stop: StopFlag | None) -> Array:
@@ -147,7 +186,7 @@ def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: A
         records, edges = solve_motion(motion, chosen, 1, stop)
         margin = np.maximum(outcome_margin_of(records, edges, chosen), -1.0)
         overturned = records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
-        return margin, np.where(overturned, BALANCED, records["peak_rotation"]), records["impacts"], overturned
+        return np.where(overturned, BALANCED, records["peak_rotation"]), overturned, margin, records["impacts"]
 
     safe = np.clip(_certain_survival(motion, cells), 1.0, HIGHEST)
     start = np.searchsorted(-GRID, -1.0 / safe, "right") - 1
@@ -158,7 +197,7 @@ def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: A
         line = nodes.line[above]
 
         def classify(slenderness: Array, lines: Array, _eta: Array) -> tuple[NDArray[np.int64], Array]:
-            margin, *_, overturned = solve(lines.astype(np.intp), slenderness)
+            _, overturned, margin, _ = solve(lines.astype(np.intp), slenderness)
             return overturned.astype(np.int64), margin
 
         points = np.stack([np.ones(line.size), line, np.zeros(line.size)], axis=1)
@@ -187,28 +226,21 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
         nodes = nodes.joined(solved(line[inside], np.minimum(place, count[left, None] - 1)[inside]))
         first += AT_ONCE * COARSE
         end[nodes.line[nodes.overturned]] = 0
-    while True:
-        same = np.diff(nodes.line) == 0
-        gap = np.where(same, np.diff(nodes.place), 0)
-        flights = np.minimum(1 + np.maximum(nodes.impacts[:-1], nodes.impacts[1:]), MOST_FLIGHTS)
-        likely = _reach(nodes.margin, same, flights) >= 0.0
-        likely &= _reach(nodes.peak, same, np.maximum(flights, FEWEST_FLIGHTS)) >= BALANCED
-        likely &= np.maximum(nodes.peak[:-1], nodes.peak[1:]) > QUIET
-        first = np.full(count.size, 2 * GRID.size)
-        first[nodes.line[nodes.overturned]] = nodes.place[nodes.overturned]
-        close = first[nodes.line[1:]] - nodes.place[1:] < np.minimum(CLOSE, LAYERS * flights)
-        below = nodes.overturned[1:] | np.append(nodes.overturned, False)[2:]
-        halved = np.flatnonzero((gap > 1) & (likely | close | below))
-        if not halved.size:
-            return nodes
-        nodes = nodes.joined(solved(nodes.line[halved], (nodes.place[halved] + nodes.place[halved + 1]) // 2))
+    return refined(nodes, solved, _halved)
 
 
-def _reach(values: Array, same: NDArray[np.bool_], multiple: NDArray[np.integer]) -> Array:
-    """The larger of two consecutive values of a body plus a multiple of the variation there; arrays (values - 1,)."""
-    step = np.where(same, np.abs(np.diff(values)), 0.0)
-    variation = np.maximum(step, np.maximum(np.append(0.0, step)[:-1], np.append(step, 0.0)[1:]))
-    return np.asarray(np.maximum(values[:-1], values[1:]) + multiple * variation)
+def _halved(nodes: _Nodes) -> NDArray[np.bool_]:
+    """Whether each interval between two nodes is halved."""
+    same = np.diff(nodes.line) == 0
+    gap = np.where(same, np.diff(nodes.place), 0)
+    flights = np.minimum(1 + np.maximum(nodes.impacts[:-1], nodes.impacts[1:]), MOST_FLIGHTS)
+    likely = _reach(nodes.margin, same, flights) >= 0.0
+    likely &= _reach(nodes.peak, same, np.maximum(flights, FEWEST_FLIGHTS)) >= BALANCED
+    likely &= np.maximum(nodes.peak[:-1], nodes.peak[1:]) > QUIET
+    first = nodes.first_overturned(2 * GRID.size)
+    close = first[nodes.line[1:]] - nodes.place[1:] < np.minimum(CLOSE, LAYERS * flights)
+    below = nodes.overturned[1:] | np.append(nodes.overturned, False)[2:]
+    return np.asarray((gap > 1) & (likely | close | below))
 
 
 def _certain_survival(pulse: AbstractPulse, cells: NDArray[np.void]) -> Array:
@@ -222,3 +254,9 @@ def _certain_survival(pulse: AbstractPulse, cells: NDArray[np.void]) -> Array:
     needed = (2.0 * p * np.sin(0.5 * alpha)).min(axis=0)
     gained = (p * p).max(axis=0) * np.tan(alpha.min(axis=0)) * impulse_of(pulse).total / cells["rate"]
     return np.asarray(needed / gained)
+
+
+def _reach(values: Array, same: NDArray[np.bool_], multiple: NDArray[np.integer]) -> Array:
+    """The larger of two consecutive values of a body plus a multiple of the variation there; arrays (values - 1,)."""
+    step = np.where(same, np.abs(np.diff(values)), 0.0)
+    return np.asarray(np.maximum(values[:-1], values[1:]) + multiple * beside(step))

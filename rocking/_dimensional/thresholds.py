@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, number
 from rocking._base.units import Scalar
 from rocking._boundary.amplitude import amplitude_changes, thresholds
-from rocking._boundary.scan import lowest_overturning, outcome_changes, scanned
+from rocking._boundary.scan import (
+    RESOLUTION,
+    SolveLines,
+    checked_resolution,
+    lowest_overturning,
+    outcome_changes,
+)
+from rocking._boundary.scan import (
+    Index as Lines,
+)
 from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.lowest_thresholds import record_lines, record_range
 from rocking._dimensional.problem import (
     HIGHEST_SCALE,
     BlockProblem,
@@ -30,9 +39,7 @@ from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import Index, with_index
-from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._numba.compilation import Record as KernelRecord
 from rocking._solver.records.record_response import record_response
 
 if TYPE_CHECKING:
@@ -74,6 +81,8 @@ class BodyThresholds(EqualByValue):
         Whether the search for one body ended at the factor at which the vertical acceleration reaches -g.
     index : (name, labels) or None
         Index of the last axis of the bodies if an argument was a series (pandas).
+    resolution : float
+        Of a record: largest relative distance of the factors tried up to the lowest value [-]; 0 of a pulse.
     """
 
     value: Array
@@ -82,6 +91,7 @@ class BodyThresholds(EqualByValue):
     strength: str
     ends_in_flight: bool = False
     index: Index | None = field(default=None, compare=False)
+    resolution: float = 0.0
 
     @property
     def lowest(self) -> Array:
@@ -118,6 +128,8 @@ class BodyThresholds(EqualByValue):
         name, unit, from_strength, up_to = WORDS[self.strength]
         top = threshold_text(float(self.searched[1]))
         end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
+        if self.resolution:
+            end = f", of factors at most {100.0 * self.resolution:g} % apart{end}"
         if not self.changes:
             return f"no {name} up to {top}{unit} was found to overturn it{end}"
         first, *others = self.changes
@@ -156,7 +168,9 @@ class BodyThresholds(EqualByValue):
         return self.to_xarray().drop_vars("searched").to_dataframe()
 
 
-def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: StopFlag | None = None) -> BodyThresholds:
+def thresholds_of(
+    problem: BodyProblem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
+) -> BodyThresholds:
     """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
 
     Under a pulse as `rocking.thresholds`; under a record as `scale_thresholds`.
@@ -169,24 +183,35 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
         Highest strength searched, in its unit; by default 100 times that of uplift under a pulse, 10 under a record.
     stop : StopFlag, optional
         Cancels the work, which then raises `StoppedError`.
+    resolution : float
+        As of `scale_thresholds`.
     """
     motion, shape = problem.motion, problem.shape
     by_record = isinstance(motion, Record)
     unit = motion.peak_acceleration if isinstance(motion, Record) else 1.0
     problem = replace(problem, acceleration=np.full(shape, unit))  # of the strength 1
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / unit
-    if isinstance(motion, Record) and motion.vertical is not None:
-        uplift = np.array([_uplift_scale(motion, motion.vertical, cell) for cell in problem.cells])
-    top = uplift * HIGHEST[by_record] if highest is None else np.full(uplift.size, highest)
     limit = np.full(uplift.size, math.inf)
     if isinstance(motion, Record):
-        top = np.minimum(top, HIGHEST_SCALE)
-        gravity = np.broadcast_to(problem.body.gravity, shape).ravel() / STANDARD_GRAVITY
-        limit = highest_vertical_scale(motion) * gravity
-    flies, top = limit < top, np.minimum(top, limit)
-    changes = _record_changes if by_record else _pulse_changes
-    none = np.empty(0), np.empty(0, dtype=np.bool_)
-    found = [changes(problem, k, uplift[k], top[k], stop) if top[k] > uplift[k] else none for k in range(uplift.size)]
+        found_uplift, limit = record_range(problem)
+        uplift = uplift if motion.vertical is None else found_uplift
+    top = uplift * HIGHEST[by_record] if highest is None else np.full(uplift.size, highest)
+    top = np.minimum(top, HIGHEST_SCALE) if by_record else top
+    flies, searched = limit < top, np.minimum(top, limit)
+    lines = record_lines(problem, stop) if by_record else None
+
+    def changes(k: int) -> tuple[Array, Flags]:
+        if searched[k] <= uplift[k]:
+            return np.empty(0), np.empty(0, dtype=np.bool_)
+        if lines is None:
+            return _pulse_changes(problem, k, uplift[k], searched[k], stop)
+
+        def solve(line: Lines, scale: Array, threads: int | None) -> tuple[Array, Flags]:
+            return lines(line + k, scale, threads)
+
+        return outcome_changes(solve, uplift[k], top[k], limit[k], resolution=resolution, stop=stop)
+
+    found = [changes(k) for k in range(uplift.size)]
     most = max((values.size for values, _ in found), default=0)
     value, above = np.full((uplift.size, most), math.nan), np.zeros((uplift.size, most), dtype=np.bool_)
     for k, (values, up) in enumerate(found):
@@ -194,23 +219,12 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
     return BodyThresholds(
         value.reshape(*shape, most),
         above.reshape(*shape, most),
-        np.stack([uplift, np.maximum(uplift, top)], axis=-1).reshape(*shape, 2),
+        np.stack([uplift, np.maximum(uplift, searched)], axis=-1).reshape(*shape, 2),
         "scale" if by_record else "peak_acceleration",
         ends_in_flight=bool(flies.all()) and shape == (),
         index=problem.index,
+        resolution=resolution if by_record else 0.0,
     )
-
-
-def _uplift_scale(record: Record, vertical: Array, cell: KernelRecord) -> float:
-    """Smallest factor at which a body uplifts under a record with a vertical component [m/s2]; `cell` at factor 1 [-].
-
-    Uplift of an edge is where the horizontal acceleration over g tan(alpha_s) of the other reaches 1 + w/g
-    (`rocking._model.body`): at a sample, since all of them are linear between samples.
-    """
-    resisted = cell["slenderness"] * record.peak_acceleration  # g tan(alpha_s)
-    horizontal = np.maximum(record.acceleration / resisted[1], -record.acceleration / resisted[0])
-    excess = float((horizontal - cell["vertical"] * vertical / STANDARD_GRAVITY).max())
-    return 1.0 / max(excess, 1.0 / HIGHEST_SCALE)
 
 
 def _pulse_changes(
@@ -223,21 +237,8 @@ def _pulse_changes(
     return found.amplitude * uplift, found.overturns_above
 
 
-def _record_changes(
-    problem: BodyProblem, k: int, uplift: float, highest: float, stop: StopFlag | None
-) -> tuple[Array, Flags]:
-    solve, cell = problem.solver(k, stop), problem.cells[k]
-    rate, slenderness = float(cell["rate"]), float(cell["slenderness"].min())
-
-    def overturns(scales: Array) -> Flags:
-        records, _ = solve(slenderness / scales, np.full(scales.size, rate), np.zeros(scales.size))
-        return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
-
-    return outcome_changes(overturns, scanned(uplift, highest))
-
-
 def block_thresholds(
-    problem: BlockProblem, highest: float | None = None, stop: StopFlag | None = None
+    problem: BlockProblem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
 ) -> BodyThresholds:
     """Every strength at which the outcome for a block changes.
 
@@ -250,13 +251,16 @@ def block_thresholds(
         acceleration of the problem, twice its factor, where that is more.
     stop : StopFlag, optional
         Cancels the work, which then raises `StoppedError`.
+    resolution : float
+        As of `scale_thresholds`.
     """
     block, motion, groups = problem.block, problem.motion, problem.groups
     if isinstance(motion, Record):
         if highest is None:
             highest = max(HIGHEST[1] * uplift_scale(motion, block), BEYOND[1] * problem.scale)
         top = min(highest, HIGHEST_SCALE)
-        return scale_thresholds(motion, block, restitution=groups["restitution"], highest=top, stop=stop)
+        eta = groups["restitution"]
+        return scale_thresholds(motion, block, restitution=eta, highest=top, resolution=resolution, stop=stop)
     uplift, slenderness = block.uplift_acceleration, groups.pop("slenderness")
     above_uplift = max(HIGHEST[0], BEYOND[0] / slenderness) if highest is None else highest / uplift
     if above_uplift <= 1.0:
@@ -273,22 +277,26 @@ def scale_thresholds(
     *,
     restitution: Scalar = "momentum",
     highest: Scalar | None = None,
+    resolution: Scalar = RESOLUTION,
     stop: StopFlag | None = None,
 ) -> BodyThresholds:
     """Every scale of a record at which the outcome for a block changes, by (2.2).
 
-    Scales that differ by 0.2 % are solved from that of uplift on, and each pair between which the outcome changes is
-    bisected. A range of one outcome that is narrower can be missed. Both components of the record are scaled; the
-    search ends below the scale at which the vertical acceleration reaches -g.
+    The lowest is that of `rocking._boundary.scan.lowest_overturning` from the scale of uplift on, at this resolution;
+    above it scales that differ by 0.2 % are solved. Each change is bisected. A range of one outcome that is narrower
+    can be missed. Both components of the record are scaled; the search ends below the scale at which the vertical
+    acceleration reaches -g.
 
     Arguments and errors are those of `rocking.Block.thresholds`; the highest scale is at most 1e6.
     """
-    uplift, top, flies = search_range(record, block, _checked_highest(highest))
-    if top <= uplift:
-        return BodyThresholds(np.empty(0), np.empty(0, np.bool_), np.array([uplift, uplift]), "scale", flies)
-    overturns = _solver(record, block, restitution_of(block, restitution), stop)
-    found = outcome_changes(overturns, scanned(uplift, top))
-    return BodyThresholds(*found, np.array([uplift, top]), "scale", flies)
+    share, given = checked_resolution(resolution), _checked_highest(highest)
+    uplift, top, flies = search_range(record, block, given)
+    solve = block_lines(record, block, restitution_of(block, restitution), stop=stop)
+    none = np.empty(0), np.empty(0, np.bool_)
+    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
+    found = outcome_changes(solve, uplift, top, limit, resolution=share, stop=stop) if top > uplift else none
+    searched = np.array([uplift, max(uplift, top)])
+    return BodyThresholds(found[0], found[1], searched, "scale", flies, resolution=share)
 
 
 def overturning_scale(
@@ -297,24 +305,34 @@ def overturning_scale(
     *,
     restitution: Scalar = "momentum",
     highest: Scalar | None = None,
+    resolution: Scalar = RESOLUTION,
     stop: StopFlag | None = None,
 ) -> float:
     """Lowest scale of a record at which it overturns a block [-]; nan if there is none.
 
     The first of `scale_thresholds`, which has the same arguments, in less time.
     """
-    uplift, top, _ = search_range(record, block, _checked_highest(highest))
-    return lowest_overturning(_solver(record, block, restitution_of(block, restitution), stop), scanned(uplift, top))
+    share, given = checked_resolution(resolution), _checked_highest(highest)
+    uplift, top, _ = search_range(record, block, given)
+    solve = block_lines(record, block, restitution_of(block, restitution), stop=stop)
+    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
+    return float(lowest_overturning(solve, np.array([uplift]), top, limit, resolution=share, stop=stop)[0])
 
 
 def _checked_highest(highest: Scalar | None) -> float | None:
     return None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
 
 
-def _solver(record: Record, block: AbstractBlock, eta: float, stop: StopFlag | None) -> Callable[[Array], Flags]:
-    """Whether the block overturns, as a function of the scales."""
+def block_lines(
+    record: Record, block: AbstractBlock, eta: float, *, scales_size: bool = False, stop: StopFlag | None = None
+) -> SolveLines:
+    """A block under a record, as one line of scales of the record; or of factors of its p, if these are scaled."""
 
-    def overturns(scales: Array) -> Flags:
-        return record_response(record, **record_groups(record, block, scales, eta), stop=stop).overturned
+    def solve(_line: Lines, scale: Array, threads: int | None) -> tuple[Array, Flags]:
+        groups = record_groups(record, block, np.ones(scale.size) if scales_size else scale, eta)
+        if scales_size:
+            groups["frequency_parameter"] = block.frequency_parameter * scale
+        found = record_response(record, **groups, threads=threads, stop=stop)
+        return found.peak_rotation, found.overturned
 
-    return overturns
+    return solve

@@ -12,10 +12,12 @@ from scipy.special import ndtri
 
 from rocking._base.errors import InvalidArgumentError, float_array, number
 from rocking._base.units import Scalar
-from rocking._dimensional.thresholds import scale_thresholds
+from rocking._boundary.scan import RESOLUTION, checked_resolution
+from rocking._dimensional.thresholds import overturning_scale
 from rocking._excitation.records.record import Record, offset_doubts
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
+from rocking._numba.cancellation import StopFlag
 from rocking.suites.hazard import Hazard, annual_rate
 from rocking.suites.hazard_files import hazard_arrays
 
@@ -44,7 +46,7 @@ def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str
     -------
     xarray.Dataset
         `survival` [-] and `annual_rate` [1/year] over `branch` and the dimensions of the medians of the fragility; nan
-        where there is no curve. `survival_lower`, if every intensity above the highest one overturns the rock.
+        where there is no curve. `survival_lower` and `survival_upper` are those of the bounds of the rate.
 
     Raises
     ------
@@ -66,11 +68,12 @@ def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str
             "annual_rate": found["annual_rate"],
             "survival": np.exp(-time * found["annual_rate"]),
             "survival_lower": np.exp(-time * found["annual_rate_upper"]),
+            "survival_upper": np.exp(-time * found["annual_rate_lower"]),
         },
         attrs={"years": time, "measure": fragility.attrs.get("measure", "")},
     )
-    for name in ("survival", "survival_lower"):
-        result[name].attrs = {"units": "1", "long_name": "probability that the rock has not been overturned"}
+    for name, bound in (("survival", ""), ("survival_lower", ", at least"), ("survival_upper", ", at most")):
+        result[name].attrs = {"units": "1", "long_name": f"probability that the rock has not been overturned{bound}"}
     return result if several else result.isel(branch=0)
 
 
@@ -85,7 +88,14 @@ def _branches(hazard: Any) -> tuple[list[Any], bool]:
     return ([(intensity, branch) for branch in checked], True) if checked.ndim == 2 else ([hazard], False)
 
 
-def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: Scalar = 0.95) -> xr.Dataset:
+def unexceeded(
+    body: AbstractBlock,
+    motions: Sequence[Record],
+    *,
+    probability: Scalar = 0.95,
+    resolution: Scalar = RESOLUTION,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
     """Pairs of PGA and PGV that a rock that stands has, with a probability, not seen.
 
     Every record is scaled to the lowest factor at which it overturns the rock. The logarithm of its PGA there is fitted
@@ -101,6 +111,10 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         At least four records that overturn it, of different PGV/PGA.
     probability : float
         P that a motion of the pair overturns the rock [-], (0, 1).
+    resolution : float
+        Largest relative distance of the factors that are tried [-], [1e-4, 0.1].
+    stop : StopFlag, optional
+        Cancels the work.
 
     Returns
     -------
@@ -122,7 +136,7 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
     """
     share = number("probability", probability, 0.0, 1.0, closed="neither")
     pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))
-    lowest = np.array([next(iter(scale_thresholds(one, body).value.tolist()), np.nan) for one in motions])
+    lowest = np.array([overturning_scale(one, body, resolution=resolution, stop=stop) for one in motions])
     over = np.isfinite(lowest)
     x, y = np.log(pgv / pga), np.log(lowest * pga)
     if over.sum() < 4 or np.ptp(x[over]) == 0.0:
@@ -143,5 +157,6 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         {name: variable("record", values, unit, text) for name, (unit, values, text) in names.items()}
         | {"intercept": ((), intercept), "slope": ((), slope), "dispersion": ((), dispersion)},
         {"record": ("record", [one.name for one in motions])},
-        {"probability": share} | ({"warnings": "; ".join(doubts)} if doubts else {}),
+        {"probability": share, "resolution": checked_resolution(resolution)}
+        | ({"warnings": "; ".join(doubts)} if doubts else {}),
     )

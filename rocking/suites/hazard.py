@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from os import PathLike
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError
 from rocking.suites.curve import curve_probability
+from rocking.suites.fits import FitStatus
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.hazard_files import hazard_arrays
 
@@ -31,6 +32,12 @@ STEP = 0.02
 """Largest part of ln x that is integrated at once [-], by `NODES` Gauss points."""
 
 NODES = 4
+
+NARROW, PARTS = 0.1, np.linspace(-8.0, 8.0, 65)
+"""Dispersion below which the parts are divided around the median [-], and where, in dispersions from it."""
+
+NEGLIGIBLE = 0.01
+"""Share of the rate that intensities below the hazard curve may add without a word [-]."""
 
 
 Hazard: TypeAlias = "str | PathLike[str] | xr.DataArray | tuple[ArrayLike, ArrayLike]"
@@ -52,8 +59,11 @@ def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `annual_rate` [1/year] with the dimensions of the medians, nan where there is no curve;
-        `annual_rate_upper`, in which every intensity above the highest one reaches the limit state.
+        `annual_rate` [1/year] with the dimensions of the medians, nan where there is no curve, and its bounds.
+        `annual_rate_lower`: above the hazard curve the probability is that at its end, below it nothing is added.
+        `annual_rate_upper`: every intensity above the highest one reaches the limit state; infinite if the probability
+        at the lowest one is so large that weaker ones, whose rate is not known, could add 1 %. Without a curve they
+        hold for a limit state that no record reaches up to the highest level, or that all reach from the lowest one on.
 
     Raises
     ------
@@ -63,27 +73,76 @@ def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
     if not {"median_intensity", "dispersion", "model"} <= {*fragility.variables}:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
     x, rates = check_hazard_curve(hazard_arrays(hazard, fragility.attrs.get("measure")))
-    weights, nodes = hazard_quadrature(x, rates)
-    found = xr.full_like(fragility["median_intensity"], np.nan)
-    at_end = xr.full_like(fragility["median_intensity"], np.nan)
+    shape = fragility["median_intensity"]
+    lower, upper = (xr.full_like(shape, np.nan) for _ in range(2))
+    levels = fragility["intensity"].values[[0, -1]] if "intensity" in fragility.coords else np.array([np.nan, np.nan])
     for name in fragility["model"].values.tolist():
         own = {"model": name}
-        median, dispersion = (fragility[part].sel(own).values[..., None] for part in ("median_intensity", "dispersion"))
-        found.loc[own] = curve_probability(name, nodes, median, dispersion) @ weights
-        at_end.loc[own] = curve_probability(name, x[-1], median, dispersion)[..., 0]
-    lower = found + at_end * rates[-1]
-    about = {"units": "year-1", "comment": f"hazard curve from {x[0]:g} to {x[-1]:g}, nothing is added below"}
+        median, dispersion = (fragility[part].sel(own).values for part in ("median_intensity", "dispersion"))
+        bounds: Any = curve_rates(name, x, rates, median, dispersion)
+        if "fit_status" in fragility:
+            status = fragility["fit_status"].sel(own).values
+            bounds = [
+                np.where(status == FitStatus.NONE_REACHES, none, np.where(status == FitStatus.ALL_REACH, every, each))
+                for none, every, each in zip(*outcome_rates(x, rates, levels), bounds, strict=True)
+            ]
+        lower.loc[own], upper.loc[own] = bounds
+    estimate = lower.where(np.isfinite(shape))
+    about = {"units": "year-1", "comment": f"hazard curve from {x[0]:g} to {x[-1]:g}"}
+    meaning = "annual rate of reaching the limit state"
     return xr.Dataset(
         {
-            "annual_rate": lower.assign_attrs(
-                about, long_name="annual rate of reaching the limit state, above the hazard curve as at its end"
-            ),
-            "annual_rate_upper": (found + rates[-1]).assign_attrs(
-                about, long_name="annual rate of reaching the limit state, reached by all above the hazard curve"
-            ),
+            "annual_rate": estimate.assign_attrs(about, long_name=f"{meaning}, above the hazard curve as at its end"),
+            "annual_rate_lower": lower.assign_attrs(about, long_name=f"{meaning}, at least"),
+            "annual_rate_upper": upper.assign_attrs(about, long_name=f"{meaning}, at most; infinite: not bounded"),
         },
         attrs={"measure": fragility.attrs.get("measure", "")},
     )
+
+
+def curve_rates(model: str, x: Array, rates: Array, median: Array, dispersion: Array) -> tuple[Array, Array]:
+    """Bounds of the annual rate at which curves reach their limit states, nan without a curve [1/year].
+
+    Parameters
+    ----------
+    model : str
+        Kind of the curves.
+    x, rates : float array
+        The hazard curve.
+    median, dispersion : float array (...)
+        Of the curves.
+
+    Returns
+    -------
+    (float array (...), float array (...))
+        At least and at most, see `annual_rate`.
+    """
+    weights, nodes = hazard_quadrature(x, rates)
+    found = np.asarray(curve_probability(model, nodes, median[..., None], dispersion[..., None]) @ weights)
+    for k in np.argwhere(np.abs(dispersion) < NARROW):
+        at, width = float(median[tuple(k)]), abs(float(dispersion[tuple(k)]))
+        inner = np.unique(at * np.exp(width * PARTS))
+        parts = np.union1d(x, inner[(inner > x[0]) & (inner < x[-1])])
+        own, finer = hazard_quadrature(parts, np.exp(np.interp(np.log(parts), np.log(x), np.log(rates))))
+        found[tuple(k)] = curve_probability(model, finer, at, dispersion[tuple(k)]) @ own
+    at_start, at_end = (curve_probability(model, end, median, dispersion) for end in (x[0], x[-1]))
+    lower = found + at_end * rates[-1]
+    unbounded = at_start * rates[0] > NEGLIGIBLE * lower
+    return lower, np.where(unbounded, np.inf, found + rates[-1])
+
+
+def outcome_rates(x: Array, rates: Array, levels: Array) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Bounds of the annual rate if no record reaches a limit state up to the last level, or all from the first on."""
+
+    def exceeded(level: float, above: float) -> float:
+        """Rate at which a level is exceeded; `above` the hazard curve."""
+        if level >= x[-1]:
+            return above if level > x[-1] else float(rates[-1])
+        return float(np.exp(np.interp(np.log(level), np.log(x), np.log(rates))))
+
+    first, last = levels[0], levels[-1]
+    at_most = np.inf if last < x[0] else exceeded(last, rates[-1])
+    return (0.0, at_most), (exceeded(first, 0.0), np.inf)
 
 
 def hazard_quadrature(x: Array, rates: Array) -> tuple[Array, Array]:

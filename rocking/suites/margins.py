@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from rocking._boundary.scan import SCAN_RATIO, lowest_overturning, scanned
-from rocking._dimensional.problem import record_groups, uplift_scale
+from rocking._boundary.scan import RESOLUTION, Index, lowest_overturning
+from rocking._dimensional.problem import HIGHEST_SCALE, uplift_scale
+from rocking._dimensional.thresholds import block_lines
 from rocking._excitation.records.record import Record
+from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import record_response
 from rocking.suites.outcomes import Array, Suite
 
 
@@ -21,9 +20,9 @@ def with_margins(
 ) -> xr.Dataset:
     """Outcomes with the mildest intensity at which each record overturns each block.
 
-    From uplift on, or from the mildest level if the measure is a size of the block, intensities that differ by 0.2 %
-    are solved up to the first level at which the block overturns, or to the last one. A narrower range is missed unless
-    a level lies in it.
+    From uplift on, or from the mildest level if the measure is a size of the block, intensities are searched up to the
+    first level at which the block overturns, or to the last one, by `rocking._boundary.scan.lowest_overturning`. A
+    range narrower than its resolution can be missed unless a level lies in it.
 
     Parameters
     ----------
@@ -49,7 +48,7 @@ def with_margins(
     about = {
         "units": suite.measure.unit,
         "long_name": "mildest intensity at which the record overturns the block",
-        "comment": f"narrower ranges of intensities than {100.0 * (SCAN_RATIO - 1.0):.1g} % can be missed",
+        "comment": f"of intensities at most {100.0 * RESOLUTION:g} % apart",
     }
     return outcomes.assign(overturning_intensity=(("block", "record"), found, about))
 
@@ -63,20 +62,17 @@ def _mildest(
     """
     block, scales = suite.blocks[number], suite.measure.scales_amplitude
     own = suite.measure.of(record, block)
-    eta = float(suite.restitution[number])
+    lines = block_lines(record, block, float(suite.restitution[number]), scales_size=not scales, stop=stop)
 
-    def overturns(severity: Array) -> NDArray[np.bool_]:
-        groups: dict[str, Any] = {**record_groups(record, block, severity if scales else np.ones(1), eta)}
-        if not scales:
-            groups["frequency_parameter"] = block.frequency_parameter * severity
-        return record_response(record, **groups, threads=threads, stop=stop).overturned
+    def solve(line: Index, severity: Array, _threads: int | None) -> tuple[Array, NDArray[np.bool_]]:
+        return lines(line, severity, threads)  # those asked for
 
     severities = suite.levels / own if scales else (own / suite.levels)[::-1]
     in_order = overturned if scales else overturned[::-1]
     last = float(severities[in_order.argmax() if in_order.any() else -1])
-    found = lowest_overturning(
-        overturns, scanned(uplift_scale(record, block) if scales else float(severities[0]), last)
-    )
+    lowest = uplift_scale(record, block) if scales else float(severities[0])
+    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE) if scales else last
+    found = float(lowest_overturning(solve, np.array([lowest]), last, limit, stop=stop)[0])
     if in_order.any() and np.isnan(found):  # the level lies within a rounding of a change of outcome
         found = last
     return own * found if scales else own / found

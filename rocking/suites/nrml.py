@@ -11,6 +11,7 @@ Its unit of PGA is g, of PGV cm/s. The readers of openquake.engine 3.26 take bot
 from __future__ import annotations
 
 import math
+import warnings
 import xml.etree.ElementTree as ET
 from os import PathLike
 from typing import IO, Literal
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, one_of
+from rocking.suites.curve import curve_probability
 from rocking.suites.fits import FitStatus, fit_curve
 from rocking.suites.table import with_block
 
@@ -31,6 +33,9 @@ TYPES = {"pga": ("PGA", STANDARD_GRAVITY), "pgv": ("PGV", 0.01)}
 
 STEP_DISPERSION = 1e-3
 """Dispersion that is written for a step [-], such as uplift over the PGA: OpenQuake has no curve of dispersion 0."""
+
+SMALL = 0.01
+"""Fitted probability at the lowest level above which a warning is given [-]: OpenQuake takes it for zero below."""
 
 LIMIT_STATES = ("rocks", "overturns")
 
@@ -60,6 +65,11 @@ def write_nrml(
     ------
     InvalidArgumentError
         If the measure has no counterpart, there is one level only, or a fit does not exist.
+
+    Warns
+    -----
+    UserWarning
+        If a fitted curve is above 0.01 at the lowest level, below which OpenQuake has no damage.
     """
     one_of("format", format, ("discrete", "lognormal"))
     measure = fragility.attrs.get("measure", "")
@@ -93,6 +103,13 @@ def write_nrml(
             if fit.status not in (FitStatus.FITTED, FitStatus.SEPARATED):
                 raise InvalidArgumentError("format", format, f"discrete: block-{k + 1} {state}: {fit.status.sentence}")
             beta = max(fit.dispersion, STEP_DISPERSION)
+            at_start = float(curve_probability("lognormal", levels[0], fit.median, beta))
+            if at_start > SMALL:
+                text = (
+                    f"block-{k + 1} {state}: at noDamageLimit, the lowest level, the fitted probability is "
+                    f"{at_start:.2g}, and OpenQuake has none below: add lower levels, or write format='discrete'"
+                )
+                warnings.warn(text, UserWarning, stacklevel=2)
             mean = fit.median / unit * math.exp(0.5 * beta**2)
             deviation = mean * math.sqrt(math.expm1(beta**2))
             ET.SubElement(function, "params", ls=state, mean=f"{mean:.9g}", stddev=f"{deviation:.9g}")

@@ -11,6 +11,7 @@ from rocking._assessment.assess import assess
 from rocking._assessment.columns import OUTPUTS, VERDICTS
 from rocking._assessment.objects import Bodies, Object
 from rocking._assessment.search import HIGHEST_FACTOR
+from rocking._assessment.sensitivity import SIZE_ERROR
 from rocking._assessment.site import Site
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.rigid_body import RigidBody
@@ -73,17 +74,13 @@ def test_rows_come_worst_first_with_verdicts_of_the_share() -> None:
 
 def test_the_smallest_width_and_the_largest_height_are_where_the_outcome_changes() -> None:
     (row,) = assess(Object("pier", width=0.4, height=1.6), SITE).rows
-    for change, overturns in ((1.0 + 1e-6, False), (1.0 - 1e-6, True)):
-        for pier in (
-            Object("pier", width=row["smallest_width"] * change, height=1.6),
-            Object("pier", width=0.4, height=row["largest_height"] / change),
-        ):
-            body = Bodies.of([pier]).scaled().rigid
-            outcomes = [
-                body.response(one.motion, peak_acceleration=one.peak_acceleration, period=one.period).overturned[0]
-                for one in SITE.motions
-            ]
-            assert any(outcomes) == overturns
+    for change, overturns in ((1.0, False), (1.0 - 2.0 * SIZE_ERROR, True)):
+        piers = [
+            Object("width", width=row["smallest_width"] * change, height=1.6),
+            Object("height", width=0.4, height=row["largest_height"] / change),
+        ]
+        for one in assess(piers, SITE, sensitivity=False).rows:
+            assert (one["share"] > 0.0) == overturns
 
 
 def test_each_shape_reaches_the_ground_velocity_and_moving_ground_only_if_asked() -> None:
@@ -106,7 +103,13 @@ def test_suite_of_records_with_hazard() -> None:
     assert (worst["object"], best["object"]) == ("slender", "stocky")
     assert worst["share_lower"] < worst["share"] <= worst["share_upper"]
     assert 1e-4 < worst["annual_rate"] < 0.1
-    assert best["annual_rate"] < worst["annual_rate"]
+    assert worst["annual_rate_lower"] == worst["annual_rate"] <= worst["annual_rate_upper"]
+    assert (best["annual_rate"], best["annual_rate_lower"], best["annual_rate_upper"]) == (
+        None,
+        0.0,
+        pytest.approx(1e-4),
+    )
+    assert "the annual rate of overturning is at least 0, at most 0.0001" in best["warnings"]
     body = Bodies.of([slender]).scaled().rigid
     outcomes = [body.response(one, scale=4.0 / one.peak_acceleration).overturned[0] for one in records]
     assert {one.name for one, hit in zip(records, outcomes, strict=True) if hit} <= {

@@ -55,10 +55,3 @@ def test_nothing_is_found_above_the_highest_acceleration_or_below_uplift() -> No
     assert np.isnan(lowest_thresholds(problem, np.where(known, 0.999 * found, 1e-3))[known]).all()
     np.testing.assert_array_equal(lowest_thresholds(problem, np.where(known, 1.001 * found, 1e-3))[known], found[known])
     assert np.isnan(lowest_thresholds(problem, 0.5 * np.asarray(bodies.uplift_acceleration))).all()
-
-
-def test_a_record_is_refused() -> None:
-    record = rocking.Record([0.0, 1.0, 0.0], 0.1, "g")
-    problem = BodyProblem(random_bodies(1, 2), record, np.ones(()), np.ones(()), None)
-    with pytest.raises(rocking.InvalidArgumentError, match="motion"):
-        lowest_thresholds(problem, 10.0)

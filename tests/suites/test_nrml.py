@@ -109,3 +109,12 @@ def test_fragility_of_arrays_of_bodies_is_written_by_body():
     for file, found in zip(files, (array, listed), strict=True):
         write_nrml(found, file)
     assert files[0].getvalue() == files[1].getvalue()
+
+
+def test_a_fitted_curve_that_is_not_small_at_its_lowest_level_warns(found):
+    weak = found.copy(deep=True)
+    weak["overturned"][{"record": slice(0, 2), "block": 0}] = 1
+    weak["overturned"][{"intensity": 0, "record": 1, "block": 0}] = 0
+    with pytest.warns(UserWarning, match="at noDamageLimit, the lowest level, the fitted") as warned:
+        write_nrml(weak, io.BytesIO(), format="lognormal")
+    assert {str(one.message).partition(":")[0] for one in warned} == {"block-1 rocks", "block-1 overturns"}

@@ -10,6 +10,7 @@ from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
 from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, plain_numbers
+from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
@@ -87,6 +88,11 @@ class AssessParams(Params):
         json_schema_extra={"minimum": 0, "maximum": MAX_SAMPLES},
     )
     seed: int = Field(0, description="seed of these variants [-]", json_schema_extra={"minimum": 0, "maximum": 2**53})
+    resolution: float = Field(
+        RESOLUTION,
+        description="largest relative distance of the factors on a record that are tried [-]",
+        json_schema_extra={"minimum": RESOLUTIONS[0], "maximum": RESOLUTIONS[1]},
+    )
     sensitivity: bool = Field(True, description="find the factors of changed objects, and sizes not overturned")
     format: TableFormat = None
 
@@ -203,7 +209,7 @@ def _field(column: Column) -> Any:
 
 AssessedRow: type[BaseModel] = create_model(
     "AssessedRow",
-    __doc__="One object in one direction; null: not known, of a factor: none up to `highest_factor`.",
+    __doc__="One object in one direction; null: not known, of a factor: none of those tried up to `highest_factor`.",
     **{column.name: _field(column) for column in OUTPUTS},
 )
 
@@ -223,6 +229,9 @@ class AssessResponse(Answer):
     rows: list[AssessedRow] = Field(description="one for each object and direction, the worst first")  # type: ignore[valid-type]
     motions: list[str] = Field(description="motions of the site; from both sides each")
     highest_factor: float = Field(description="highest factor on the motions that was searched [-]")
+    resolution: float = Field(
+        description="largest relative distance of the factors on records that were tried, 0 without records [-]"
+    )
     bad_rows: list[UnreadRow] = Field(description="rows that were not read; the others are assessed")
     details: dict[str, list[str]] = Field(
         {}, description="other texts of the object of each row, by their headers in the table"

@@ -210,7 +210,7 @@ class RecordResponse(BlockSummary):
     )
     overturning_scale: float | None = Field(
         description="lowest factor of the record found at which it overturns [-]; null: none was found, or it was not "
-        "asked for; narrower ranges than 0.2 % can be missed"
+        "asked for; of factors at most 0.5 % apart"
     )
     impacts: int = Field(description="number of impacts while the ground moves [-]")
     peak_rotation: float | None = Field(description="max |theta|/alpha [-]; null if overturned")
@@ -279,8 +279,8 @@ class RecordScalesResponse(Answer):
     impacts: list[int] = Field(description="number of impacts while the ground moves [-]")
     exceeded_alpha: list[bool] = Field(description="whether the rotation passes alpha")
     thresholds: list[ScaleThreshold] = Field(
-        description="all scales at which the outcome changes, ascending, from that of uplift to the largest; narrower "
-        "ranges of one outcome than 0.2 % can be missed"
+        description="scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at "
+        "most 0.5 % apart up to the lowest, 0.2 % above it"
     )
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD

@@ -102,7 +102,7 @@ class LimitState(BaseModel):
 
 
 class RecordMargin(BaseModel):
-    """How far a record is from overturning the block; ranges of intensity narrower than 0.2 % can be missed."""
+    """How far a record is from overturning the block; of intensities at most 0.5 % apart."""
 
     record: str = Field(description="name of the record")
     overturning_intensity: float | None = Field(

@@ -1,0 +1,195 @@
+"""One criterion in every answer: a motion overturns a body if it does so at a factor up to 1, of those tried."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rocking
+from rocking._assessment.objects import Bodies
+from rocking._assessment.search import factors_of, overturned_by
+from rocking._boundary.scan import RELATIVE_ERROR
+from rocking.suites import annual_rate
+from tests.sampling import sample
+from tests.suites.motions import noise
+
+RECORDS = [noise(seed, 800, 0.02) for seed in range(3)]
+
+HEIGHT, SHARE = st.floats(0.4, 2.5), st.floats(0.12, 0.45)
+
+
+def test_few_pairs_overturn_below_the_factor_and_none_by_more_than_a_few_percent() -> None:
+    """With twelve factors up to 10 a scan of 2,000 finds a lower one in 78 of 96 pairs, by up to 43 %."""
+    objects = [
+        rocking.Object(f"{k}", width=w, height=h) for k, (w, h) in enumerate([(0.3, 1.5), (0.25, 0.9), (0.6, 2)])
+    ]
+    body = Bodies.of(objects).scaled()
+    site = rocking.Site(pga=3.0, records=[noise(seed) for seed in range(4)])
+    found = factors_of(body, site.motions)
+    lower = []
+    for motion, factor in zip(site.motions, found.T, strict=True):
+        start = np.asarray(body.uplift_acceleration) / motion.peak_acceleration
+        tried = start[:, None] * (factor / start)[:, None] ** ((np.arange(500) + 0.5) / 500)
+        hits = overturned_by(body.column, motion, None, tried * motion.peak_acceleration)
+        lower += [1.0 - tried[k, hit.argmax()] / factor[k] if hit.any() else 0.0 for k, hit in enumerate(hits)]
+    assert np.isfinite(found).all()
+    assert sum(share > 2e-6 for share in lower) <= 1
+    assert max(lower) < 0.02
+
+
+def test_every_interface_to_records_has_one_lowest_factor() -> None:
+    body, records = rocking.Block(0.3, 1.5), [noise(seed) for seed in range(4)]
+    site = rocking.Site(records=records)
+    expected = factors_of(Bodies.of([rocking.Object("one", width=0.3, height=1.5)]).scaled(), site.motions)[0]
+    each = [body.thresholds(one) for one in records]
+    np.testing.assert_allclose([one.lowest for one in each], expected, rtol=2e-6)
+    assert each[0].resolution == 0.005
+    assert "of factors at most 0.5 % apart" in each[0].sentence
+    rock = rocking.unexceeded(body, records)
+    pga = [one.peak_acceleration for one in records]
+    np.testing.assert_allclose(rock["overturning_acceleration"] / pga, expected, rtol=2e-6)
+    group = rocking.thresholds(
+        records[0], frequency_parameter=body.frequency_parameter, restitution=body.right.restitution, alpha=body.alpha
+    )
+    assert group.amplitude[0] * body.uplift_acceleration / pga[0] == pytest.approx(expected[0], rel=2e-6)
+
+
+@pytest.mark.parametrize("value", [0.0, 1e-5, 0.2, float("nan")])
+def test_resolutions_out_of_range_are_refused(value: float) -> None:
+    site, one = rocking.Site(records=RECORDS), rocking.Object("one", width=0.3, height=1.0)
+    for call in (
+        lambda: rocking.assess(one, site, resolution=value),
+        lambda: rocking.Block(0.3, 1.0).thresholds(RECORDS[0], resolution=value),
+    ):
+        with pytest.raises(rocking.InvalidArgumentError, match="resolution"):
+            call()
+
+
+def test_a_coarser_resolution_tries_fewer_factors_and_is_part_of_the_result() -> None:
+    one = rocking.Object("one", width=0.3, height=1.0)
+    site = rocking.Site(records=RECORDS)
+    fine, coarse = (rocking.assess(one, site, sensitivity=False, resolution=r) for r in (0.005, 0.05))
+    assert (fine.resolution, coarse.resolution) == (0.005, 0.05)
+    assert "at most 5 % apart" in repr(coarse)
+    assert coarse.columns["factor"][0] > fine.columns["factor"][0] * (1.0 - 0.01)
+    assert rocking.assess(one, rocking.Site(3.0, 0.3), sensitivity=False).resolution == 0.0
+
+
+def test_the_base_that_suffices_is_not_overturned_and_no_wider_one() -> None:
+    """The smallest width of the first was 0.1177 m, and 0.12 to 0.142 m overturn."""
+    site = rocking.Site(pga=1.5036191065667797, pgv=0.1733357013388602)
+    (row,) = rocking.assess(rocking.Object("a", width=0.168, height=1.00627), site).rows
+    assert row["smallest_width"] > 0.142
+    rng = np.random.default_rng(8)
+    for height, share in sample(list(zip(rng.uniform(0.4, 2.5, 40), rng.uniform(0.12, 0.45, 40), strict=True)), 4):
+        for place in (rocking.Site(3.0, 0.35), rocking.Site(2.5, records=RECORDS)):
+            one = rocking.Object("one", width=height * share, height=height)
+            (row,) = rocking.assess(one, place).rows
+            ratios = np.array([1.0, 1.01, 1.03, 1.1, 1.2, 1.5])
+            tried = [rocking.Object("b", width=row["smallest_width"] * r, height=height) for r in ratios.tolist()]
+            tried += [rocking.Object("h", width=one.width, height=row["largest_height"] / r) for r in ratios.tolist()]
+            over = rocking.assess(tried, place, sensitivity=False).columns["share"] > 0.0
+            assert not over.any(), (height, share)
+
+
+@settings(max_examples=8, deadline=None, derandomize=True)
+@given(height=HEIGHT, share=SHARE, records=st.booleans())
+def test_verdict_factor_shares_and_samples_agree(height: float, share: float, records: bool) -> None:
+    site = rocking.Site(2.5, records=RECORDS) if records else rocking.Site(3.0, 0.3, shapes=["sine", "ricker", "c2"])
+    one = rocking.Object("one", width=height * share, height=height, tolerance=1e-9)
+    found = rocking.assess(one, site, sensitivity=False, samples=20)
+    (row,) = found.rows
+    assert (row["share"] > 0.0) == (row["verdict"] in ("overturns in some motions", "overturns in most"))
+    assert (row["share"] > 0.0) == (row["factor"] is not None and row["factor"] <= 1.0)
+    assert len(list(filter(None, row["overturned_by"].split("; ")))) == round(row["share"] * len(site.motions))
+    if records:
+        assert row["share_lower"] <= row["share"] <= row["share_upper"]
+    for motion, factor in zip(site.motions, found.factors[0], strict=True):
+        if np.isfinite(factor):
+            body = Bodies.of([one]).scaled()
+            tried = factor * motion.peak_acceleration * np.array([1.0 + 1e-12, 1.0 - 1.1 * RELATIVE_ERROR])
+            assert overturned_by(body.column, motion, None, tried)[0].tolist() == [True, False]
+
+
+def test_sampled_shares_of_a_tiny_tolerance_are_the_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The restitution is that of the body, too."""
+    from rocking._assessment import sensitivity  # noqa: PLC0415
+
+    monkeypatch.setattr(sensitivity, "ETA_CHANGE", 1e-12)
+    rng = np.random.default_rng(3)
+    objects = [
+        rocking.Object(f"{k}", width=h * s, height=h, tolerance=1e-12)
+        for k, (h, s) in enumerate(zip(rng.uniform(0.4, 2.0, 8), rng.uniform(0.12, 0.4, 8), strict=True))
+    ]
+    for site in (rocking.Site(3.0, 0.3), rocking.Site(2.5, records=RECORDS)):
+        for row in rocking.assess(objects, site, sensitivity=False, samples=4).rows:
+            assert row["sampled_share"] == float(row["share"] > 0.0), row
+
+
+def test_a_harsher_hazard_has_no_lower_rate_and_bounds_hold_the_rate() -> None:
+    objects = [rocking.Object(f"{k}", width=w, height=1.0) for k, w in enumerate([0.12, 0.2, 0.3, 2.0])]
+    x, rates = np.array([0.5, 2.0, 8.0, 20.0]), np.array([1e-2, 1e-3, 1e-4, 1e-6])
+    mild, harsh = (
+        rocking.assess(
+            objects, rocking.Site(2.5, records=RECORDS, hazard=(x, scale * rates)), sensitivity=False
+        ).columns
+        for scale in (1.0, 3.0)
+    )
+    for name in ("annual_rate", "annual_rate_lower", "annual_rate_upper"):
+        known = ~np.isnan(mild[name])
+        assert known.any()
+        assert (harsh[name][known] >= mild[name][known]).all()
+    known = ~np.isnan(mild["annual_rate"])
+    bounded = ~np.isnan(mild["annual_rate_upper"])
+    assert (mild["annual_rate_lower"] <= mild["annual_rate_upper"])[bounded].all()
+    assert (mild["annual_rate_lower"] <= mild["annual_rate"])[known].all()
+
+
+@pytest.mark.parametrize(
+    ("curve", "bounds"),
+    [(([0.05, 0.5], [1e-2, 1e-3]), (0.0, 1e-3)), (([50.0, 90.0], [1e-3, 1e-4]), (1e-3, np.inf))],
+)
+def test_a_hazard_curve_that_does_not_reach_far_enough_bounds_the_rate(curve, bounds) -> None:
+    one = rocking.Object("one", width=0.25, height=1.0)
+    (row,) = rocking.assess(one, rocking.Site(2.5, records=[noise(4)], hazard=curve), sensitivity=False).rows
+    assert row["annual_rate"] is None
+    assert row["annual_rate_lower"] == pytest.approx(bounds[0])
+    assert row["annual_rate_upper"] == (None if bounds[1] == np.inf else pytest.approx(bounds[1]))
+    assert "hazard curve does not reach far enough" in row["warnings"]
+    levels = np.geomspace(*curve[0], 5)
+    block = rocking.Block(0.25, 1.0)
+    found = rocking.fragility([noise(4), noise(5)], block, intensity=levels)
+    rate = annual_rate(found, curve).sel(model="lognormal").squeeze()
+    assert (rate["annual_rate_lower"].item(), rate["annual_rate_upper"].item()) == pytest.approx(bounds)
+    alive = rocking.survival(found, curve, years=100.0).sel(model="lognormal").squeeze()
+    assert alive["survival_upper"].item() == pytest.approx(np.exp(-100.0 * bounds[0]))
+    assert alive["survival_lower"].item() == pytest.approx(np.exp(-100.0 * bounds[1]))
+
+
+@pytest.mark.parametrize("dispersion", [0.0, 1e-9])
+def test_the_rate_of_a_step_is_the_hazard_at_its_median(dispersion: float) -> None:
+    found = rocking.fragility([noise(1)], rocking.Block(0.25, 1.0), intensity=np.geomspace(1.0, 20.0, 9))
+    found["dispersion"][:] = dispersion
+    for median in (1.0, 1.23456, 2.0, 3.3333):
+        found["median_intensity"][:] = median
+        found["fit_status"][:] = 0
+        rate = annual_rate(found, ([0.5, 2.0, 5.0], [0.3, 0.01, 1e-4]))["annual_rate"].values
+        expected = np.exp(np.interp(np.log(median), np.log([0.5, 2.0, 5.0]), np.log([0.3, 0.01, 1e-4])))
+        np.testing.assert_allclose(rate, expected, rtol=1e-7)
+
+
+@settings(max_examples=4, deadline=None, derandomize=True)
+@given(height=HEIGHT, share=SHARE)
+def test_a_body_with_equal_edges_a_block_and_a_mesh_of_it_agree(tmp_path_factory, height: float, share: float) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    width = height * share
+    path = tmp_path_factory.mktemp("mesh") / "block.stl"
+    box = trimesh.creation.box([width, 0.5 * height, height])
+    box.apply_translation([0.0, 0.0, 0.5 * height])
+    box.export(path)
+    equal = rocking.RigidBody(left=0.5 * width, right=0.5 * width, height=0.5 * height)
+    for motion, arguments in ((RECORDS[0], {}), ("sine", {"period": 0.7})):
+        one, other = (body.thresholds(motion, **arguments).lowest for body in (rocking.Block(width, height), equal))
+        assert float(other) == pytest.approx(float(one), rel=1e-6, nan_ok=True)
+        scanned = rocking.RigidBody.from_mesh(path).thresholds(motion, **arguments).lowest
+        assert float(scanned) == pytest.approx(float(one), rel=1e-3, nan_ok=True)
