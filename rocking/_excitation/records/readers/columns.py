@@ -76,7 +76,8 @@ _BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[][^()\[\]]*+[)\]]")
 
 KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
-    r"(time|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)\b.*|timestamps?|seconds?|sekunden",
+    r"(time|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)( (since|from|after|seit|depuis|desde)\b.*| \w+)?|"
+    r"timestamps?|seconds?|sekunden",
     "counter": r"(frame|frames|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|step|bild|punkt|"
     r"messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|count|counter|zähler|lfd)"
     r"( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)",
@@ -399,7 +400,7 @@ def _columns(
     for k in range(first - 1, -1, -1):
         whole = file.head[k].strip()
         line = whole.strip(_COMMENT).strip() if whole[:1] in "#%!*/" else whole
-        parts = _row_of_units(line, separator, width, quantity)
+        parts = _row_of_units(line, separator, width)
         if parts and not units and not found:
             units = parts
             continue
@@ -421,16 +422,22 @@ def _columns(
     return place, columns
 
 
-def _row_of_units(line: str, separator: str | None, width: int, quantity: str) -> list[str]:
+def _row_of_units(line: str, separator: str | None, width: int) -> list[str]:
     """The texts of a line of units, one of each column; empty if it is none."""
-    fields = _fields(line, separator)
-    fields = fields if len(fields) == width else line.split()
-    known = [
-        units_in(part.strip(" .[]"), quantity) is not None or any(unit_name(part.strip(" ."), one) for one in UNITS)
-        for part in fields
-    ]
-    blank = [part in ("", "-", "[-]", "(-)") for part in fields]
-    return fields if len(fields) == width > 1 and any(known) and all(map(max, known, blank)) else []
+    joined = _BRACKETS.sub(lambda found: "".join(found[0].split()), line)
+    for fields in (_fields(line, separator), joined.split(), re.split(r"\s{2,}", line)):
+        known = [_is_unit(part) for part in fields]
+        blank = [part in ("", "-", "[-]", "(-)") for part in fields]
+        if len(fields) == width > 1 and any(known) and all(map(max, known, blank)):
+            return fields
+    return []
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a text is a unit, or two names of one, such as gal(cm/s/s)."""
+    pair = re.fullmatch(r"([^()\[\]]+)\(([^()]+)\)", text.strip(" .[]"))
+    parts = (pair[1], pair[2]) if pair else (text,)
+    return any(all(unit_name(part.strip(" ."), one) for part in parts) for one in UNITS)
 
 
 def _names(line: str, separator: str | None, width: int, quantity: str, surely: bool = False) -> list[str]:
@@ -708,9 +715,9 @@ def _check_leading(layout: Layout, values: Array, time_step: float | None) -> No
     for k in range(min(3, values.size - 2)):
         value, others = abs(values[k]), np.abs(values[k + 1 :]).max()
         counted = value > 3.0 and values.size - 3 <= value <= values.size
-        known = value == round(value) or value <= LONGEST_STEP or any(abs(value / g - 1.0) < 1e-3 for g in _FACTORS)
+        known = value == round(value) or value <= LONGEST_STEP
         written = (uniform and forms[k] != forms[-1]) or (exact and digits[k] <= 2)
-        if value > 0.0 and (counted or value > JUMP * others or value in steps or (written and known)):
+        if value > 0.0 and (counted or value > JUMP * others or value in (*steps, *_GRAVITY) or (written and known)):
             lead = k + 1
     if lead:
         shown = ", ".join(texts[:lead])
@@ -718,7 +725,8 @@ def _check_leading(layout: Layout, values: Array, time_step: float | None) -> No
         raise layout.file.error(layout.first, f"{shown} before {texts[lead]}", allowed)
 
 
-_FACTORS = (9.80665, 980.665, 386.089, 32.174, 9.81, 981.0)
+_GRAVITY = (9.8, 9.81, 9.807, 9.80665, 980.0, 980.665, 981.0, 386.0, 386.09, 386.089, 386.4, 32.17, 32.174, 32.2)
+"""Factors from g [-] that people write above the samples."""
 
 
 def _form(text: str) -> tuple[tuple[int, bool], int]:
