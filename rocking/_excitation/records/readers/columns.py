@@ -72,7 +72,7 @@ _COMMA_NUMBERS = re.compile(
 )
 """A row of several numbers, separated by blanks, whose commas are decimal signs."""
 
-_BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[][^()\[\]]*+[)\]]")
+_BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[](?:[^()\[\]]++|\([^()\[\]]*+\))*+[)\]]")
 
 KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
@@ -396,7 +396,6 @@ def _columns(
     """
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []
-    nearest = True
     for k in range(first - 1, -1, -1):
         whole = file.head[k].strip()
         line = whole.strip(_COMMENT).strip() if whole[:1] in "#%!*/" else whole
@@ -404,10 +403,12 @@ def _columns(
         if parts and not units and not found:
             units = parts
             continue
-        surely, direct = bool(units) and not found, nearest  # of one column, a line further above may be a title
-        nearest = nearest and not re.search(r"\w", line)
-        names = _names(line, separator, width, quantity, surely) or _names(whole, separator, width, quantity)
-        if names and (width > 1 or direct or _known(_base(names[0]))):
+        surely = bool(units) and not found
+        names = _names(line, separator, width, quantity, surely)
+        if not names and width > 1 and whole.startswith("#"):  # the name of a counter, not the sign of a comment
+            names = _names(whole, separator, width, quantity)
+            names = names if all(_known(_base(name)) for name in names[1:]) else []
+        if names and (width > 1 or _known(_base(names[0]))):  # of one column, any other line may be a title
             texts = units if not found and units else [""] * width
             found.append((k, [_column(name, text, quantity) for name, text in zip(names, texts, strict=True)]))
     if not found:
@@ -460,11 +461,11 @@ def _names(line: str, separator: str | None, width: int, quantity: str, surely: 
 
 def _is_name(text: str) -> bool:
     """Whether a text can name a column: it has letters, no colon or equals sign, and no number of a title."""
-    plain = re.sub(r"[(\[][^()\[\]]*[)\]]", "", text)
+    plain = _BRACKETS.sub("", text)
     return (
         0 < len(text) <= MAX_NAME
         and not NUMBER.fullmatch(text)
-        and re.search(r"[^\W\d_]|[#№]", text) is not None
+        and re.search(r"[^\W\d_]|[#№]", plain) is not None
         and not re.search(r"[:=]", text)
         and not re.search(r"(?<![\w.])(\d*\.\d+|\d{4,})(?![\w.])|\b(peak|pga|max\w*|scaled|factor)\b", plain, re.I)
     )
@@ -480,8 +481,8 @@ def _base(name: str) -> str:
     """A plain name without the unit behind it, if what is left is known; else the plain name."""
     words = re.split(r"[\s_]+", name.strip())
     for k in range(1, len(words)):
-        if any(unit_name("".join(words[k:]), one) for one in UNITS) and _known(base := _plain(" ".join(words[:k]))):
-            return base
+        if any(unit_name("".join(words[k:]), one) for one in UNITS) and _is_quantity(words[:k]):
+            return _plain(" ".join(words[:k]))
     return _plain(name)
 
 
@@ -490,6 +491,11 @@ def _known(plain: str) -> str:
     if re.fullmatch(SAMPLES, plain):
         return "samples"
     return next((kind for kind, names in KINDS.items() if re.fullmatch(names, plain)), "")
+
+
+def _is_quantity(words: list[str]) -> bool:
+    """Whether words name a quantity that has a unit."""
+    return _known(_plain(" ".join(words))) in ("samples", "time", "other")
 
 
 def _column(name: str, unit_text: str, quantity: str) -> Column:
@@ -518,7 +524,7 @@ def unit_in_name(name: str, quantity: str) -> str | None:
     parts = re.split(r"_+", name.strip())[-MAX_UNIT_PARTS:]
     words = name.split()[-MAX_UNIT_PARTS:]
     texts = ["".join(parts[k:]) for k in range(1, len(parts))] + [name.partition("/")[2]]
-    texts += ["".join(words[k:]) for k in range(1, len(words)) if _known(_plain(" ".join(words[:k])))]
+    texts += ["".join(words[k:]) for k in range(1, len(words)) if _is_quantity(words[:k])]
     return next((unit for text in texts if (unit := unit_name(text.strip(" ."), quantity))), None)
 
 
@@ -557,10 +563,18 @@ def _unnamed_times(layout: Layout) -> list[int]:
     Whole numbers and long steps may also be a counter, or times in another unit: the column is marked as a counter.
     """
     cells = [_cells(layout, row)[0] for row in layout.file.head[layout.first :] if row.strip()]
-    if all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells)])):
+    if len(cells) > 2 and all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells[1:])])):
         return []  # perhaps one series, whose last row is shorter
     (values,) = _table(layout, [0])
     if not _rises(values):
+        if (
+            values.size > 3
+            and _rises(values[1:])
+            and np.ptp(np.diff(values[1:])) < STEP_TOLERANCE * np.diff(values[1:]).max()
+        ):
+            found = f"{layout.file.head[layout.first].strip()} above rows whose first numbers rise"
+            more = "" if layout.skipped else ", or the argument `skip`"
+            raise layout.file.error(layout.first, found, f"times from the first row on{more}")
         return []
     step = (values[-1] - values[0]) / (values.size - 1)
     if step <= LONGEST_STEP and (values != np.round(values)).any():
