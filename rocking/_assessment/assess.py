@@ -23,7 +23,7 @@ from rocking._assessment.search import (
     responses_of,
 )
 from rocking._assessment.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
-from rocking._assessment.site import Motion, Site
+from rocking._assessment.site import Motion, Site, record_doubts
 from rocking._assessment.sliding import sliding_displacement
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, integer
@@ -161,7 +161,7 @@ def assess(
         columns["sampled_share"] = sampled_share(
             given, bodies, factors, motions, variants, chosen_seed, share_apart, stop
         )
-    columns["warnings"] = _warnings(given, columns, site.doubts)
+    columns["warnings"] = _warnings(given, columns, record_doubts(site))
     order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]

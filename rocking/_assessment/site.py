@@ -192,16 +192,6 @@ class Site:
                 raise InvalidArgumentError("floor_periods", self.floor_periods, allowed)
         return floors
 
-    @property
-    def doubts(self) -> list[str]:
-        """What is in doubt of the records, in words: their remarks, and offsets where they are scaled by their PGA."""
-        pairs = ((given,) if isinstance(given, Record) else given for given in vars(self)["records"])
-        records = [record for pair in pairs for record in pair]
-        found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
-        if self.pga is not None or self.hazard is not None:
-            found += offset_doubts(records)
-        return [*dict.fromkeys(text.replace("; ", ", ") for text in found)]
-
     def _records(self) -> list[Motion]:
         found = []
         for group, given in enumerate(vars(self)["records"]):
@@ -238,6 +228,16 @@ class Site:
         found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
         scale = motion.peak_acceleration / ground.peak_acceleration
         return replace(motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0)
+
+
+def record_doubts(site: Site) -> list[str]:
+    """What is in doubt of the records, in words: their remarks, and offsets where they are scaled by their PGA."""
+    pairs = ((given,) if isinstance(given, Record) else given for given in vars(site)["records"])
+    records = [record for pair in pairs for record in pair]
+    found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
+    if site.pga is not None or site.hazard is not None:
+        found += offset_doubts(records)
+    return [*dict.fromkeys(text.replace("; ", ", ") for text in found)]
 
 
 def _checked_pair(given: Any) -> Record | tuple[Record, Record]:

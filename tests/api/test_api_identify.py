@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -94,3 +95,12 @@ def test_parameters_out_of_range_and_large_bodies_are_refused(client, trace):
         assert_problem(client.post(f"{URL}?{query}", json=trace), 422, name)
     assert_problem(client.post(URL, content=" " * 2_000_000), 413, "body")
     assert_problem(client.post(URL, json=trace, headers={"content-type": "text/xml"}), 415, "Content-Type")
+
+
+def test_frames_are_no_times(client):
+    body = (Path(__file__).parents[1] / "data/field/frame_counter.csv").read_bytes()
+    headers = {"Content-Type": "text/csv", "Accept": "application/json"}
+    problem = assert_problem(client.post("/v1/identify", content=body, headers=headers), 422)
+    assert "the column frame, a counter" in problem["detail"]
+    found = client.post("/v1/identify", params={"time_step": 1.0 / 60.0}, content=body, headers=headers).json()
+    assert found["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]

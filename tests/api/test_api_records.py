@@ -280,3 +280,11 @@ def test_errors_of_the_vertical_component_name_the_parameter(client, motion):
     assert_problem(post(client, body, route="scales", **columns, scale_max=5.0), 422, "scale_max")
     by_default = post(client, body, route="scales", **columns).json()
     assert by_default["scale"][-1] == pytest.approx(9.80665 / motion.acceleration.max())
+
+
+def test_leading_numbers_are_skipped_on_request(client):
+    body = (ROOT / "tests/data/field/factor_and_step_first.txt").read_bytes()
+    stated = {"unit": "g", "time_step": 0.01}
+    assert "`skip`: 2" in assert_problem(post(client, body, **stated), 422)["detail"]
+    assert post(client, body, **stated, skip=2).json()["record"]["samples"] == 40
+    assert_problem(post(client, body, **stated, skip=-1), 422)

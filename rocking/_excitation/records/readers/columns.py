@@ -72,11 +72,12 @@ _COMMA_NUMBERS = re.compile(
 )
 """A row of several numbers, separated by blanks, whose commas are decimal signs."""
 
-_BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[][^()\[\]]*+[)\]]")
+_BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[](?:[^()\[\]]++|\([^()\[\]]*+\))*+[)\]]")
 
 KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
-    r"(time|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)\b.*|timestamps?|seconds?|sekunden",
+    r"(time|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)( (since|from|after|seit|depuis|desde)\b.*| \w+)?|"
+    r"timestamps?|seconds?|sekunden",
     "counter": r"(frame|frames|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|step|bild|punkt|"
     r"messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|count|counter|zähler|lfd)"
     r"( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)",
@@ -395,18 +396,19 @@ def _columns(
     """
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []
-    nearest = True
     for k in range(first - 1, -1, -1):
         whole = file.head[k].strip()
         line = whole.strip(_COMMENT).strip() if whole[:1] in "#%!*/" else whole
-        parts = _row_of_units(line, separator, width, quantity)
+        parts = _row_of_units(line, separator, width)
         if parts and not units and not found:
             units = parts
             continue
-        surely, direct = bool(units) and not found, nearest  # of one column, a line further above may be a title
-        nearest = nearest and not re.search(r"\w", line)
-        names = _names(line, separator, width, quantity, surely) or _names(whole, separator, width, quantity)
-        if names and (width > 1 or direct or _known(_base(names[0]))):
+        surely = bool(units) and not found
+        names = _names(line, separator, width, quantity, surely)
+        if not names and width > 1 and whole.startswith("#"):  # the name of a counter, not the sign of a comment
+            names = _names(whole, separator, width, quantity)
+            names = names if all(_known(_base(name)) for name in names[1:]) else []
+        if names and (width > 1 or _known(_base(names[0]))):  # of one column, any other line may be a title
             texts = units if not found and units else [""] * width
             found.append((k, [_column(name, text, quantity) for name, text in zip(names, texts, strict=True)]))
     if not found:
@@ -421,16 +423,22 @@ def _columns(
     return place, columns
 
 
-def _row_of_units(line: str, separator: str | None, width: int, quantity: str) -> list[str]:
+def _row_of_units(line: str, separator: str | None, width: int) -> list[str]:
     """The texts of a line of units, one of each column; empty if it is none."""
-    fields = _fields(line, separator)
-    fields = fields if len(fields) == width else line.split()
-    known = [
-        units_in(part.strip(" .[]"), quantity) is not None or any(unit_name(part.strip(" ."), one) for one in UNITS)
-        for part in fields
-    ]
-    blank = [part in ("", "-", "[-]", "(-)") for part in fields]
-    return fields if len(fields) == width > 1 and any(known) and all(map(max, known, blank)) else []
+    joined = _BRACKETS.sub(lambda found: "".join(found[0].split()), line)
+    for fields in (_fields(line, separator), joined.split(), re.split(r"\s{2,}", line)):
+        known = [_is_unit(part) for part in fields]
+        blank = [part in ("", "-", "[-]", "(-)") for part in fields]
+        if len(fields) == width > 1 and any(known) and all(map(max, known, blank)):
+            return fields
+    return []
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a text is a unit, or two names of one, such as gal(cm/s/s)."""
+    pair = re.fullmatch(r"([^()\[\]]+)\(([^()]+)\)", text.strip(" .[]"))
+    parts = (pair[1], pair[2]) if pair else (text,)
+    return any(all(unit_name(part.strip(" ."), one) for part in parts) for one in UNITS)
 
 
 def _names(line: str, separator: str | None, width: int, quantity: str, surely: bool = False) -> list[str]:
@@ -453,11 +461,11 @@ def _names(line: str, separator: str | None, width: int, quantity: str, surely: 
 
 def _is_name(text: str) -> bool:
     """Whether a text can name a column: it has letters, no colon or equals sign, and no number of a title."""
-    plain = re.sub(r"[(\[][^()\[\]]*[)\]]", "", text)
+    plain = _BRACKETS.sub("", text)
     return (
         0 < len(text) <= MAX_NAME
         and not NUMBER.fullmatch(text)
-        and re.search(r"[^\W\d_]|[#№]", text) is not None
+        and re.search(r"[^\W\d_]|[#№]", plain) is not None
         and not re.search(r"[:=]", text)
         and not re.search(r"(?<![\w.])(\d*\.\d+|\d{4,})(?![\w.])|\b(peak|pga|max\w*|scaled|factor)\b", plain, re.I)
     )
@@ -473,8 +481,8 @@ def _base(name: str) -> str:
     """A plain name without the unit behind it, if what is left is known; else the plain name."""
     words = re.split(r"[\s_]+", name.strip())
     for k in range(1, len(words)):
-        if any(unit_name("".join(words[k:]), one) for one in UNITS) and _known(base := _plain(" ".join(words[:k]))):
-            return base
+        if any(unit_name("".join(words[k:]), one) for one in UNITS) and _is_quantity(words[:k]):
+            return _plain(" ".join(words[:k]))
     return _plain(name)
 
 
@@ -483,6 +491,11 @@ def _known(plain: str) -> str:
     if re.fullmatch(SAMPLES, plain):
         return "samples"
     return next((kind for kind, names in KINDS.items() if re.fullmatch(names, plain)), "")
+
+
+def _is_quantity(words: list[str]) -> bool:
+    """Whether words name a quantity that has a unit."""
+    return _known(_plain(" ".join(words))) in ("samples", "time", "other")
 
 
 def _column(name: str, unit_text: str, quantity: str) -> Column:
@@ -511,7 +524,7 @@ def unit_in_name(name: str, quantity: str) -> str | None:
     parts = re.split(r"_+", name.strip())[-MAX_UNIT_PARTS:]
     words = name.split()[-MAX_UNIT_PARTS:]
     texts = ["".join(parts[k:]) for k in range(1, len(parts))] + [name.partition("/")[2]]
-    texts += ["".join(words[k:]) for k in range(1, len(words)) if _known(_plain(" ".join(words[:k])))]
+    texts += ["".join(words[k:]) for k in range(1, len(words)) if _is_quantity(words[:k])]
     return next((unit for text in texts if (unit := unit_name(text.strip(" ."), quantity))), None)
 
 
@@ -550,10 +563,18 @@ def _unnamed_times(layout: Layout) -> list[int]:
     Whole numbers and long steps may also be a counter, or times in another unit: the column is marked as a counter.
     """
     cells = [_cells(layout, row)[0] for row in layout.file.head[layout.first :] if row.strip()]
-    if all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells)])):
+    if len(cells) > 2 and all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells[1:])])):
         return []  # perhaps one series, whose last row is shorter
     (values,) = _table(layout, [0])
     if not _rises(values):
+        if (
+            values.size > 3
+            and _rises(values[1:])
+            and np.ptp(np.diff(values[1:])) < STEP_TOLERANCE * np.diff(values[1:]).max()
+        ):
+            found = f"{layout.file.head[layout.first].strip()} above rows whose first numbers rise"
+            more = "" if layout.skipped else ", or the argument `skip`"
+            raise layout.file.error(layout.first, found, f"times from the first row on{more}")
         return []
     step = (values[-1] - values[0]) / (values.size - 1)
     if step <= LONGEST_STEP and (values != np.round(values)).any():
@@ -708,9 +729,9 @@ def _check_leading(layout: Layout, values: Array, time_step: float | None) -> No
     for k in range(min(3, values.size - 2)):
         value, others = abs(values[k]), np.abs(values[k + 1 :]).max()
         counted = value > 3.0 and values.size - 3 <= value <= values.size
-        known = value == round(value) or value <= LONGEST_STEP or any(abs(value / g - 1.0) < 1e-3 for g in _FACTORS)
+        known = value == round(value) or value <= LONGEST_STEP
         written = (uniform and forms[k] != forms[-1]) or (exact and digits[k] <= 2)
-        if value > 0.0 and (counted or value > JUMP * others or value in steps or (written and known)):
+        if value > 0.0 and (counted or value > JUMP * others or value in (*steps, *_GRAVITY) or (written and known)):
             lead = k + 1
     if lead:
         shown = ", ".join(texts[:lead])
@@ -718,7 +739,8 @@ def _check_leading(layout: Layout, values: Array, time_step: float | None) -> No
         raise layout.file.error(layout.first, f"{shown} before {texts[lead]}", allowed)
 
 
-_FACTORS = (9.80665, 980.665, 386.089, 32.174, 9.81, 981.0)
+_GRAVITY = (9.8, 9.81, 9.807, 9.80665, 980.0, 980.665, 981.0, 386.0, 386.09, 386.089, 386.4, 32.17, 32.174, 32.2)
+"""Factors from g [-] that people write above the samples."""
 
 
 def _form(text: str) -> tuple[tuple[int, bool], int]:
