@@ -94,19 +94,19 @@ class Column:
         """
         if not self.unit:
             return cell
-        text = cell.strip()
+        text = cell.strip().removeprefix("'")  # of a spreadsheet's text
         if text.lower() in self.words:
             return text.lower()
-        found = _NUMBER.fullmatch(text.removeprefix("'")) if len(text) <= MAX_LENGTH else None
+        found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
         if not found:
             raise InvalidArgumentError(
                 self.name, text[:MAX_LENGTH], "a number, with its unit or with one in the header"
             )
-        number = self._number(found[1].strip(), found[2], text, "" if text.startswith("'") else decimal)
+        number = self._number(found[1].strip(), found[2], text, "" if cell.strip() != text else decimal)
         written = unit_name(found[3], self.unit) if found[3] else unit or self.assumed
         if written is None:
             raise InvalidArgumentError(self.name, text, f"a unit such as {', '.join(UNITS[self.unit])}")
-        if not written and self.unit in USUAL:
+        if not written and self.unit in USUAL and number:
             usual = USUAL[self.unit][-1]
             allowed = f"a unit: write {self.name} [{usual}] in the header, or {text} {usual} in the cell"
             raise InvalidArgumentError(self.name, text, allowed)
@@ -235,6 +235,6 @@ def stated_unit(text: str, unit: str) -> str | None:
     """The unit that a header states, of any name, if it is one of a quantity, such as "m"."""
     for _, written, must in _splits(text):
         known = unit_name(written, unit) if written else None
-        if known and (must or known not in ("m", "in")):  # "Made in" has no unit
+        if known and (must or written.lower() not in ("m", "in") or "_" in text):  # "Made in" has no unit
             return known
     return None
