@@ -12,7 +12,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import MAX_LENGTH, UNITS, USUAL, unit_name
 
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/:]\s*([^\s,/:]{1,8})\s*$|\bin\s+([^\s,/]{1,12})\s*$")
-_LAST = re.compile(r"[\s_]+([^\s_]{1,12})\s*$")
+_LAST = re.compile(r"[\s_]+([^\s_()\[\]]{1,12})\s*$")
 _PARTS = re.compile(r"[/|,;:()\[\]=]")
 _ROUND = re.compile(r"(?<!\w)[\u00d8\u00f8\u2300\u2205\u03a6\u03c6](?!\w)")
 _SIGNS = re.compile('[%\u2030\u00b0"\u2033$\u20ac\u00a3]')
@@ -218,8 +218,10 @@ def read_header(text: str, names: Mapping[str, Column], argument: str) -> tuple[
         one = named(name, names)
         if one is None:
             continue
-        if one.unit not in UNITS:
+        if one.unit not in UNITS and must:
             return one, ""
+        if one.unit not in UNITS:  # "room name" is no room
+            continue
         stated = written or name if _SIGNS.search(name) else written
         known = unit_name(stated, one.unit) if stated else ""
         if known is None and named(stated, names) is one:  # its symbol, such as "friction (mu)"

@@ -88,7 +88,7 @@ _LENGTH_WORD = re.compile(
 _NO_LENGTH = re.compile(
     r"year|date|period|found|acquired|signed|gallery|hall|saal|sala|condition|zustand|stato|etat|rank|priority|class|categor"
     r"|period|century|jahr|anno|annee|\bano\b|made|qty|quantit|count|pieces|anzahl|stuck|value|price|cost|wert|preis"
-    r"|valore|prezzo|valeur|prix|valor|precio|room|raum|floor|level|stockwerk|shelf|case|page|number|\bno\b|\bnr\b|\bid\b"
+    r"|valore|prezzo|valeur|prix|valor|precio|room|raum|floor|level|stockwerk|shelf|case|page|number|\bno\b|\bnr\b|id$"
     r"|code|index|age|\blot\b|weight|mass|score|rating|angle|percent"
 )
 _LAST_UNIT = re.compile(r"\s(?:in|m)\s*$", re.IGNORECASE)
@@ -617,13 +617,14 @@ def _with_units(
                 )
             columns[place] = one, unit
         lengths |= {place: True for place in others if place < len(below) and unit_name(below[place], "m")}
-    weak = {place for place in others if _LENGTH_WORD.search(plain_name(name_and_unit(line.texts[place])[0]))}
+    names = {place: plain_name(name_and_unit(line.texts[place])[0]) for place in others}
+    weak = set()
+    for place, name in names.items():
+        found = _LENGTH_WORD.search(name)
+        exempt = _NO_LENGTH.search(name) and (found is None or found[0] in ("base", "side", "size"))  # "base price"
+        if (found or _LAST_UNIT.search(line.texts[place])) and not exempt:
+            weak.add(place)
     weak |= line.grouped & set(others)
-    weak |= {
-        place
-        for place in others
-        if _LAST_UNIT.search(line.texts[place]) and not _NO_LENGTH.search(line.texts[place].lower())
-    }
     return columns, dict.fromkeys(sorted(weak), False) | lengths, last
 
 

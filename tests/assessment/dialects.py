@@ -82,11 +82,11 @@ class Writer:
         pick = self.dice.choice
         self.delimiter = pick(",;\t|")
         self.point = pick(".,")
-        self.grouping = pick(["", " ", "'", "," if self.point == "." else "."])  # of thousands
+        self.mixed = self.dice.random() < 0.2
+        self.grouping = pick(["", " ", "'", "" if self.mixed else "," if self.point == "." else "."])  # of thousands
         if self.delimiter == "," and self.grouping == "." and not typed:
             self.grouping = ""  # between commas, one point is a decimal sign
-        self.mixed = self.dice.random() < 0.2
-        self.style = pick(["header", "header", "cells", "line", "column", "columns", "group", "title"])
+        self.style = pick(["header", "header", "cells", "line", "column", "columns", "group", "title", "none"])
         kept = ["mass", "friction", "restitution"]
         self.round = self.dice.random() < 0.4
         self.columns = ["width", "height", *(["diameter"] if self.round else [])]

@@ -252,3 +252,15 @@ def test_json_that_is_no_list_of_objects_is_refused(text: str) -> None:
 def test_a_missing_file_is_refused() -> None:
     with pytest.raises(InvalidArgumentError, match="can be read"):
         read_objects(TABLES / "missing.csv")
+
+
+def test_columns_with_names_like_those_that_are_read_are_others() -> None:
+    header = ["Room Name", "base price", "artistId", "Floor area (sq ft)", "width_cm", "HEIGHT (CM)", "Weight_grams"]
+    (one,) = objects_of_csv(csv_of(header, ["hall", "12.5", "38", "120", "60", "160", "250"])).objects
+    assert (one.width, one.height, one.mass, one.notes) == (pytest.approx(0.6), pytest.approx(1.6), 0.25, "")
+    assert one.details == dict(zip(header, ["hall", "12.5", "38", "120"], strict=False))
+
+
+def test_two_columns_of_one_quantity_are_named() -> None:
+    with pytest.raises(InvalidArgumentError, match=r"Height \(in\.\); Height \(cm\)"):
+        objects_of_csv("Height (in.),Height (cm),Width (cm)\n24.5,62.2,25.4\n")
