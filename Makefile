@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify deposit test browser serve docs bench stress slurm deploy-check fuzz mutants oldest newest wheel lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm deploy-check fuzz mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -48,7 +48,13 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	ruff format --check .
 	ruff check .
 	snakefmt --check Snakefile workflow
-	pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --max-worker-restart 0
+	$(PYTEST)
+	@echo 'passed; of long enumerations a sample: make test-all runs all'
+
+test-all: .venv/project browser ## run all tests, with all of what `make test` tries a sample (SEED= for other random requests)
+	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) $(PYTEST)
+
+PYTEST := pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 
 browser: .venv/project ## fetch Chromium for the tests of the web page if there is none (ROCKING_NO_BROWSER=1: skip them)
 	@test -n '$(ROCKING_NO_BROWSER)' || { python -m tests.api.explorer.chromium && python -m tests.api.explorer.axe; }
@@ -76,7 +82,7 @@ SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin
 deploy-check: .venv/project ## slow and greedy clients of the service alone, and behind nginx if it is installed; a minute
 	python -m tests.api.check_deployment
 
-fuzz: .venv/project ## send 5,000 random requests to the service (SEED= for others), try all of which `make test` tries a sample; 15 minutes
+fuzz: .venv/project ## those of the tests of `make test-all` that have samples: 5,000 random requests (SEED= for others); 15 minutes
 	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q $$(grep -rlE 'FUZZ_CASES|tests.sampling' --include='test_*.py' tests)
 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)

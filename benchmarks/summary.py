@@ -16,7 +16,7 @@ from typing import Any
 from benchmarks.ablations import suite as ablations
 from benchmarks.accuracy import grid_size, tolerance
 from benchmarks.cells import DIAGRAMS
-from benchmarks.cost import bodies, growth, solver, stages, work_precision
+from benchmarks.cost import bodies, first_call, growth, solver, stages, work_precision
 from benchmarks.cost import records as recorded_motions
 from benchmarks.service import performance
 
@@ -30,6 +30,7 @@ TABLES = {
     "tolerance": ("Tolerance", tolerance.table),
     "records": ("Recorded motions", recorded_motions.table),
     "bodies": ("Bodies with two edges", bodies.table),
+    "first-call": ("After the installation", first_call.table),
     "service": ("Service", performance.table),
     "ablations": ("Ablations", ablations.table),
     "stages": ("Stages of the reproduction", lambda record: stages.table(record["stages"])),
@@ -95,10 +96,6 @@ def page(folder: Path) -> Iterator[str]:
     for name, (title, table) in TABLES.items():
         if name in read:
             yield f"\n## {title}\n\n```\n{table(read[name])}\n```"
-    if "first-call" in read:
-        yield "\n## First response of a new process [s]\n"
-        for state, times in read["first-call"]["seconds"].items():
-            yield f"- kernels {state}: " + ", ".join(f"{name} {value:.3g}" for name, value in times.items())
 
 
 def main() -> None:

@@ -16,19 +16,16 @@ from rocking._excitation.records.record import Record
 from rocking._history.time_history import time_history
 from rocking._lookup.cube import Cube
 from rocking._lookup.cube_slice import slice_of
-from rocking._numba.kernel_cache import NOT_KEPT, cache_folder
+from rocking._numba.kernel_cache import COMPLETE, NOT_KEPT, cache_folder
 from rocking._solver.peak_response import peak_response
 from rocking._solver.records.record_response import record_response
 from rocking._spectra.cubes import spectra
-
-COMPLETE_MARKER = "complete"
-"""File in the cache folder that marks it as complete."""
 
 
 def is_missing() -> bool:
     """Whether there is a cache folder and it is not complete."""
     folder = cache_folder()
-    return folder is not None and not (Path(folder) / COMPLETE_MARKER).exists()
+    return folder is not None and not (Path(folder) / COMPLETE).exists()
 
 
 def load_kernels() -> None:
@@ -57,7 +54,7 @@ def main() -> None:
     if folder is not None and is_missing():
         load_kernels()
         if not NOT_KEPT.is_set():
-            (Path(folder) / COMPLETE_MARKER).touch()
+            (Path(folder) / COMPLETE).touch()
 
 
 if __name__ == "__main__":

@@ -203,7 +203,7 @@ def body(text: str, form: str) -> None:
             parse_csv(text.encode(), 10_000, StopFlag())
         else:
             kind = {"blocks": BlockRows, "pulse": with_samples(MapParams), "json": with_samples(BatchParams)}[form]
-            read_json(kind, text.encode(), {"pulse": "sine"}, LookupOptions)
+            read_json(kind, text.encode(), {"pulse": "sine"}, LookupOptions, StopFlag())
 
 
 def places(text: str, *parts: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Parts of long enumerations: a run of the tests takes a random sample, `make fuzz` all.
+"""Parts of long enumerations: a run of the tests takes a random sample, `make test-all` all.
 
 Each run draws another sample, so that many runs together cover the whole. A failure shows its seed, with which
 `FUZZ_SEED` repeats the sample; FUZZ_ALL=1 takes all.

@@ -1,41 +1,71 @@
-"""The wheel, built once for all tests of a process, and an installation of it."""
+"""The wheel, and an installation of it: made once for all processes of a test run."""
 
+import fcntl
+import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
-PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
-"""Packages of the wheel and their folders."""
+from benchmarks.installation import build_wheel, copy_source, install
+from rocking import precompile
+from rocking._numba import kernel_cache
+
+
+class Installation(NamedTuple):
+    """A virtual environment with the wheel."""
+
+    folder: Path
+    packages: Path
+
+    @property
+    def python(self) -> str:
+        return str(self.folder / "bin" / "python")
+
+    def environment(self, **variables: str) -> dict[str, str]:
+        """Variables of a process that sees the installation, not this checkout."""
+        own = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "NUMBA_CACHE_DIR")}
+        return own | variables
 
 
 @pytest.fixture(scope="session")
-def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy to build from, because the build writes files next to its sources."""
-    source = tmp_path_factory.mktemp("source")
-    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, source)
-    for folder in PACKAGES.values():
-        shutil.copytree(ROOT / folder, source / folder, ignore=shutil.ignore_patterns("__pycache__"))
-    return source
+def build(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Path:
+    """Folder with `source`, from which the wheel was built, the wheel in `dist`, and `installed`."""
+    base = tmp_path_factory.getbasetemp()
+    if os.environ.get("PYTEST_XDIST_WORKER"):
+        base = base.parent  # shared by all workers
+    folder = base / f"wheel-{testrun_uid}"
+    with (base / "wheel.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not folder.exists():
+            copy_source(folder / "source")
+            install(build_wheel(folder / "source", folder / "dist"), folder / "installed")
+    return folder
 
 
 @pytest.fixture(scope="session")
-def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("wheel")
-    build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--no-index", "--quiet"]
-    subprocess.run([*build, "--wheel-dir", str(folder), str(source)], check=True)
-    (wheel,) = folder.glob("rocking-*.whl")
+def source(build: Path) -> Path:
+    return build / "source"
+
+
+@pytest.fixture(scope="session")
+def wheel(build: Path) -> Path:
+    (wheel,) = (build / "dist").iterdir()
     return wheel
 
 
 @pytest.fixture(scope="session")
-def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the wheel; the packages that it requires are those of this environment."""
-    folder = tmp_path_factory.mktemp("installed")
-    install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--quiet", "--target"]
-    subprocess.run([*install, str(folder), str(wheel)], check=True)
+def installed(build: Path) -> Installation:
+    (package,) = (build / "installed").glob("**/rocking/__init__.py")
+    return Installation(build / "installed", package.parents[1])
+
+
+@pytest.fixture(scope="session")
+def kernels(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the compiled kernels of this checkout, for NUMBA_CACHE_DIR; not marked as of a state of the package."""
+    precompile.main()
+    compiled = Path(str(kernel_cache.cache_folder()))
+    folder = tmp_path_factory.mktemp("kernels")
+    shutil.copytree(compiled, folder / compiled.name, ignore=shutil.ignore_patterns("sources-*"))
     return folder

@@ -50,6 +50,8 @@ def smoke_run(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Pat
 
     The first worker process of a test run that needs it runs the workflow; the others wait.
     """
+    if made := os.environ.get("ROCKING_SMOKE_RUN"):  # by the test run that started this one
+        return Path(made)
     base = tmp_path_factory.getbasetemp()
     if os.environ.get("PYTEST_XDIST_WORKER"):
         base = base.parent  # shared by all workers

@@ -1,4 +1,4 @@
-"""The pulses of a configuration: names of the catalogue, and pulses given by samples under names of their own.
+"""The pulses of a configuration: of the catalogue, by name and parameters, or by samples under names of their own.
 
 The samples of a pulse are an input of the jobs that depend on them, a file whose name contains their digest: other
 samples of the same name make the products of this pulse again, and no others.
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._excitation.pulses import PULSE_NAMES
+from rocking._excitation.pulses import PULSE_NAMES, pulse
 from rocking._excitation.sampled import SampledPulse
 from workflow import parts
 
@@ -34,9 +34,10 @@ def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:
         If it is neither a name of the catalogue nor samples with another name.
     """
     if not isinstance(entry, Mapping):
-        if entry not in PULSE_NAMES:
+        made = pulse(entry)
+        if made.name.partition("(")[0] not in PULSE_NAMES:
             raise InvalidArgumentError("pulse", entry, f"one of {', '.join(PULSE_NAMES)}, or samples with a name")
-        return str(entry)
+        return made.name
     given = dict(entry)
     for key in given:
         if key not in KEYS:
@@ -64,22 +65,22 @@ def different(pulses: Iterable[str | SampledPulse]) -> dict[str, str | SampledPu
         If two have one name.
     """
     found: dict[str, str | SampledPulse] = {}
-    for pulse in pulses:
-        name = pulse if isinstance(pulse, str) else pulse.name
+    for one in pulses:
+        name = one if isinstance(one, str) else one.name
         if name in found:
             raise InvalidArgumentError("name", name, "different names of pulses")
-        found[name] = pulse
+        found[name] = one
     return found
 
 
-def samples_file(pulse: SampledPulse) -> str:
+def samples_file(sampled: SampledPulse) -> str:
     """Path of the file with the samples of a pulse, in the folder of a run."""
-    return f"{parts.FOLDER}/pulses/{pulse.name}.{pulse.digest[:16]}.json"
+    return f"{parts.FOLDER}/pulses/{sampled.name}.{sampled.digest[:16]}.json"
 
 
-def write_samples(pulse: SampledPulse, path: Path) -> None:
+def write_samples(sampled: SampledPulse, path: Path) -> None:
     """Write a file from which `rocking.SampledPulse.from_file` makes the same pulse again, to the last digit."""
-    given = {"name": pulse.name, "acceleration": pulse.values.tolist(), "time": pulse.phases.tolist()}
+    given = {"name": sampled.name, "acceleration": sampled.values.tolist(), "time": sampled.phases.tolist()}
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_suffix(".partial")
     partial.write_text(json.dumps(given | {"period": 2.0 * math.pi}), encoding="utf-8")

@@ -13,7 +13,8 @@ import shutil
 import sys
 import tempfile
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -54,8 +55,8 @@ def main(arguments: Sequence[str]) -> None:
     use_temporary_folder(options.directory)
     for difference in chain(forget_false_records(options.directory), forget_damaged_parts(options.directory)):
         print(f"{difference}; it is made again", flush=True)
-    limit_passes_of_the_scheduler()
-    snakemake([*_memory_limit(arguments), *arguments])
+    with limited_passes_of_the_scheduler():
+        snakemake([*_memory_limit(arguments), *arguments])
 
 
 def _memory_limit(arguments: Sequence[str]) -> list[str]:
@@ -68,16 +69,19 @@ def _memory_limit(arguments: Sequence[str]) -> list[str]:
     return [f"--resources=mem_mb={megabytes:.0f}"]
 
 
-def limit_passes_of_the_scheduler() -> None:
-    """Let at most one further pass of Snakemake's scheduler wait at a time.
+@contextmanager
+def limited_passes_of_the_scheduler() -> Iterator[None]:
+    """Let at most one further pass of Snakemake's scheduler wait at a time, in this block.
 
     A pass that leaves jobs ready starts another one a second later, for its limit of jobs per second, and so does each
     job that ends. Without this, after a hundred jobs a hundred passes a second look at all inputs of all ready jobs;
-    the run of the atlas took 40 % of a processor for itself. The method is private: a Snakemake that does not have it,
-    or has another one of this name, keeps its own.
+    the run of the atlas took 40 % of a processor for itself. Its option for longer times between passes makes each run
+    end as much later. The method is private: a Snakemake that does not have it, or has another one of this name, keeps
+    its own.
     """
     original = getattr(JobScheduler, METHOD, None)
     if original is None or [*inspect.signature(original).parameters] != ["self", "delay"]:
+        yield
         return
     waiting = threading.Lock()
 
@@ -96,6 +100,10 @@ def limit_passes_of_the_scheduler() -> None:
             timer.start()
 
     setattr(JobScheduler, METHOD, schedule_pass)
+    try:
+        yield
+    finally:
+        setattr(JobScheduler, METHOD, original)
 
 
 def use_temporary_folder(directory: Path) -> None:

@@ -113,6 +113,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     async with anyio.create_task_group() as background:
         background.start_soon(_load_kernels, service, app.state.when_ready)
         background.start_soon(_warn_without_cubes, service)
+        background.start_soon(service.dataset_checker.watch)
         yield
         background.cancel_scope.cancel()
     for executor in (service.executor, service.parser):

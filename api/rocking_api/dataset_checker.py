@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
@@ -17,6 +18,9 @@ LOG = logging.getLogger("rocking.service")
 
 MAX_WAIT = 0.1
 """How long a request waits for the check to finish [s]."""
+
+WATCH_SECONDS = 5.0
+"""Time between two looks at the folder without a request [s]."""
 
 
 class State(NamedTuple):
@@ -52,18 +56,29 @@ class DatasetChecker:
 
     async def state(self) -> State:
         """The complete result, or the result so far after `MAX_WAIT`."""
-        if self._task is None or self._task.done():
-            names = await anyio.to_thread.run_sync(self._cubes.catalogue.names)
+        names, unreadable = await anyio.to_thread.run_sync(self._cubes.catalogue.scan)
+        if self._task is None or self._task.done() or names != self._state.names:
+            if self._task is not None:
+                self._task.cancel()  # of other files; those that it has checked are known
             self._state = State(names, len(names), {})
+            for name in self.damaged.keys() - {*names, *unreadable}:  # removed
+                self._note(name, None)
             self._task = asyncio.create_task(self._check(names))
         await asyncio.wait({self._task}, timeout=MAX_WAIT)
         if self._task.done():
             self._task.result()  # raises an error of the check
         return self._state
 
+    async def watch(self) -> None:
+        """Check again and again, so that a request never meets the state of a folder that was replaced long ago."""
+        while True:
+            with suppress(OSError):
+                await self.state()
+            await asyncio.sleep(WATCH_SECONDS)
+
     async def _check(self, names: list[str]) -> None:
         problems: dict[str, str] = {}
-        for k, name in enumerate(names):
+        for k, name in enumerate(sorted(names, key=lambda name: name not in self.damaged)):
             try:
                 problem = await anyio.to_thread.run_sync(partial(self._cubes.problem, name))
             except UnknownDatasetError:

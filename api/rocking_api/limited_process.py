@@ -21,7 +21,7 @@ from rocking._base.errors import InvalidArgumentError
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag
 
-SECONDS = 20
+SECONDS = 10
 """Most processor time of a file [s]."""
 
 MEMORY = 1024**3

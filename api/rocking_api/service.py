@@ -21,7 +21,7 @@ from rocking_api.execution.kernels import Kernels
 from rocking_api.http.body import limited_body
 from rocking_api.http.encoding import Form
 from rocking_api.http.memory_budget import MemoryBudget
-from rocking_api.http.parameters import query_parameters, read_json, read_query
+from rocking_api.http.parameters import check_json, query_parameters, read_json, read_query
 from rocking_api.metrics import Metrics
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import options_of
@@ -67,13 +67,13 @@ class Service:
         self.kernels = Kernels(settings.max_seconds)
         self.metrics = Metrics()
         self.executor = BoundedExecutor(
-            settings.max_workers, settings.max_queue, settings.max_seconds, on_change=self.metrics.heavy
+            settings.max_workers, settings.max_queue, settings.max_seconds, self.metrics.heavy, trials=True
         )
         self.dataset_checker = DatasetChecker(self.cubes, self.metrics.damaged)
         self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.suites = SuiteReader(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)
-        self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
+        self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds, trials=True)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
 
     async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
@@ -86,7 +86,7 @@ class Service:
         """
         params.check()
         await self.kernels.wait()
-        return await self.executor.run(work, request)
+        return await self.executor.run(work, request, request.state.reservation.held)
 
     async def read_body(self, request: Request, limit: int, hint: str = "") -> bytes:
         """The body of a request, of at most `limit` bytes, see `limited_body`; `hint` is for larger ones."""
@@ -105,27 +105,33 @@ class Service:
         Raises
         ------
         InvalidArgumentError
-            If parameters or body do not fit, see `read_json` and `limited_body`.
+            If parameters or body do not fit, see `check_json`, `read_json` and `limited_body`.
         """
         query = query_parameters(request)
         raw = await self.read_body(request, limit, hint)
         if form != "json" or (body.takes_lists and raw.lstrip()[:1] != b"{"):
+            if form == "json":
+                await self.run_parser(lambda stop: check_json(raw, stop), request)
             params = read_query(kind, query)
             params.check()
             return params, raw
 
-        def parse(_: StopFlag) -> tuple[P, B | bytes]:
-            found = read_json(body, raw, query, kind)
+        def parse(stop: StopFlag) -> tuple[P, B | bytes]:
+            found = read_json(body, raw, query, kind, stop)
             params = options_of(found, kind)
             params.check()
             return params, found
 
         return await self.run_parser(parse, request)
 
-    async def run_parser(self, work: Work[T], request: Request, large: bool = False) -> T:
-        """Parse a body in a thread; large bodies one at a time, until the time limit or the client disconnects."""
-        if large or request.state.reservation.held > LARGE_BODY:
-            return await self.parser.run(work, request)
+    async def run_parser(self, work: Work[T], request: Request, large: bool = False, *, in_process: bool = False) -> T:
+        """Parse a body in a thread; large bodies in a queue of their own, the smallest first.
+
+        Those that a process of its own reads, `in_process`, follow after them; see `BoundedExecutor.run`.
+        """
+        held = request.state.reservation.held
+        if large or in_process or held > LARGE_BODY:
+            return await self.parser.run(work, request, held, is_long=in_process)
         return await self.run_io(lambda: work(StopFlag()))
 
     async def run_io(self, work: Callable[[], T]) -> T:

@@ -1,45 +1,102 @@
-"""Time of the first response of a new process: `python -m benchmarks.cost.first_call`.
+"""What a user waits for after the installation: `python -m benchmarks.cost.first_call`.
 
-Measured in a fresh copy of the package, whose kernels must be compiled, and again with the kernels cached on disk.
+All is measured in an installation of the wheel (`benchmarks.installation`): the first response of a process, the
+README's first command, and the service until it listens; each with kernels that must be compiled, and with those on
+disk. Then the bytes of the wheel, the packages and the kernels, and the memory of a process after its first response.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import shutil
 import subprocess
-import sys
 import tempfile
+import time
 from pathlib import Path
+from typing import Any
 
-import rocking
+from benchmarks.installation import build_wheel, copy_source, install
 from benchmarks.measure import save, versions
 
+SIZE = ("--width", "0.4m", "--height", "1.6m")
+README_COMMAND = ("response", "--pulse", "sine", *SIZE, "--peak-acceleration", "0.6g", "--period", "0.5s")
+
 FIRST_CALL = """
-import time
+import json, resource, time
 begin = time.perf_counter()
 import rocking
 imported = time.perf_counter()
 rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
 first = time.perf_counter()
 rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
-print(imported - begin, first - imported, time.perf_counter() - first)
+times = {"import": imported - begin, "first_call": first - imported, "second_call": time.perf_counter() - first}
+print(json.dumps([times, 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss]))
 """
 
 
-def seconds() -> dict[str, dict[str, float]]:
-    """Return the times of import, first call and second call in a new process, with kernels compiled and cached [s]."""
-    with tempfile.TemporaryDirectory() as folder:
-        source = Path(rocking.__file__).parent
-        shutil.copytree(source, Path(folder) / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
-        measured = {}
-        for state in ("compiled", "cached"):
-            done = subprocess.run(
-                [sys.executable, "-c", FIRST_CALL], cwd=folder, capture_output=True, text=True, check=True
-            )
-            names = ("import", "first_call", "second_call")
-            measured[state] = dict(zip(names, map(float, done.stdout.split()), strict=True))
-    return measured
+def measured(programs: Path, packages: Path, folder: Path) -> dict[str, Any]:
+    """Times of new processes [s] with kernels compiled and cached, and bytes; the programs are in a folder."""
+    hidden = ("PYTHONPATH", "NUMBA_CACHE_DIR")
+    environment = {name: value for name, value in os.environ.items() if name not in hidden}
+    python, rocking = str(programs / "python"), str(programs / "rocking")
+
+    def run(*command: str) -> str:
+        return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True).stdout
+
+    found: dict[str, Any] = {
+        "packages_bytes": size(packages / "rocking") + size(packages / "rocking_api"),
+        "seconds": {},
+    }
+    for state in ("compiled", "cached"):
+        if state == "cached":
+            run(python, "-m", "rocking.precompile")
+        times, found["memory_bytes"] = json.loads(run(python, "-c", FIRST_CALL))
+        if state == "compiled":
+            remove_kernels(packages)
+        began = time.perf_counter()
+        run(rocking, *README_COMMAND)
+        times["command"] = time.perf_counter() - began
+        if state == "compiled":
+            remove_kernels(packages)
+        began = time.perf_counter()
+        serve = [rocking, "serve", "--port", "0"]
+        with subprocess.Popen(serve, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True) as service:
+            assert service.stderr is not None
+            next(line for line in service.stderr if "running on http" in line)
+            times["service"] = time.perf_counter() - began
+            service.terminate()
+            service.communicate()
+        found["seconds"][state] = times
+    return found | {"kernels_bytes": sum(size(path) for path in kernels_of(packages))}
+
+
+def kernels_of(packages: Path) -> list[Path]:
+    """The folders of the compiled kernels."""
+    return [*(packages / "rocking" / "__pycache__").glob("kernels-*")]
+
+
+def remove_kernels(packages: Path) -> None:
+    """Let the next process compile."""
+    for path in kernels_of(packages):
+        shutil.rmtree(path)
+
+
+def size(folder: Path) -> int:
+    """Bytes of the files of a folder without what was compiled from them, or of the folder of kernels."""
+    files = (path for path in folder.rglob("*") if "__pycache__" not in path.relative_to(folder).parts)
+    return sum(path.stat().st_size for path in files if path.is_file())
+
+
+def table(found: dict[str, Any]) -> str:
+    """The measurements as text."""
+    names = [*found["seconds"]["cached"]]
+    lines = [f"{'kernels':10}" + "".join(f"{name:>13}" for name in names) + "   s"]
+    for state, times in found["seconds"].items():
+        lines.append(f"{state:10}" + "".join(f"{times[name]:13.4f}" for name in names))
+    sizes = {name: found[f"{name}_bytes"] for name in ("wheel", "packages", "kernels", "memory")}
+    return "\n".join([*lines, ", ".join(f"{name} {value / 1e6:.3g} MB" for name, value in sizes.items())])
 
 
 def main() -> None:
@@ -47,12 +104,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=Path("results/benchmarks/first-call.json"))
     out = parser.parse_args().out
-    found = seconds()
-    save({"seconds": found, "versions": versions("numpy", "numba")}, out)
-    print(f"{'kernels':12}{'import':>10}{'first':>10}{'second':>10}   s for one cell")
-    for state, times in found.items():
-        print(f"{state:12}" + "".join(f"{value:10.4f}" for value in times.values()))
-    print(f"\nwritten to {out}")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        copy_source(folder / "source")
+        wheel = build_wheel(folder / "source", folder / "dist")
+        packages = install(wheel, folder / "installed")
+        found = measured(folder / "installed" / "bin", packages, folder) | {"wheel_bytes": wheel.stat().st_size}
+    save(found | {"versions": versions("numpy", "numba")}, out)
+    print(f"{table(found)}\n\nwritten to {out}")
 
 
 if __name__ == "__main__":

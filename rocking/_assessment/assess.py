@@ -105,7 +105,7 @@ def assess(
         if progress is not None:
             progress(share / parts)
 
-    motions, bodies = site.motions, Bodies.of(given)
+    motions, bodies = site.find_motions(stop), Bodies.of(given)
     body = bodies.scaled()
     factors = factors_of(body, motions, stop, advance)
     overturned, rotation, displacement = responses_of(body, motions, stop)
@@ -146,7 +146,7 @@ def assess(
         columns |= changed_objects(given, bodies, motions, stop, lambda share: advance(1.0 + share))
     if variants:
         columns["sampled_share"] = sampled_share(given, bodies, motions, variants, chosen_seed, stop)
-    columns["warnings"] = _warnings(given, columns)
+    columns["warnings"] = _warnings(given, columns, site.doubts)
     order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]
@@ -211,8 +211,8 @@ def _sliding(
     }
 
 
-def _warnings(objects: Sequence[Object], columns: dict[str, Any]) -> list[str]:
-    """What is in doubt of each row, in words."""
+def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequence[str]) -> list[str]:
+    """What is in doubt of each row, in words; `doubts` are those of the motions."""
     given = [one for one in objects for _ in one.planes]
     found = []
     for k, one in enumerate(given):
@@ -232,5 +232,5 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any]) -> list[str]:
         less, more = columns["factor_less_restitution"][k], columns["factor_more_restitution"][k]
         if (less <= 1.0) != (more <= 1.0):
             texts.append(f"the answer changes within {ETA_CHANGE:g} of the coefficient of restitution")
-        found.append("; ".join(texts))
+        found.append("; ".join([*texts, *doubts]))
     return found

@@ -143,7 +143,11 @@ OUTPUTS = (
         "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, too",
     ),
     Column("slides_at", "s", "earliest of these times"),
-    Column("sliding", "m", "displacement if it only slides, where it slides first; the other bound"),
+    Column(
+        "sliding",
+        "m",
+        "largest displacement if it only slides, with the vertical components, where it slides first",
+    ),
     Column(
         "smallest_width",
         "m",

@@ -210,6 +210,17 @@ class Object:
         return {name: Plane(given[name], given[f"offset_{name}"], height, centre, 1.0, 1.0) for name in names}
 
     @property
+    def body(self) -> RigidBody:
+        """The body in each plane, over the dimension `direction`."""
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
+        given = Bodies.of([self]).scaled().rigid.parameters
+        names = {"direction": list(self.planes)}
+        return RigidBody(
+            **{key: xr.DataArray(value, names, "direction") if value.ndim else value for key, value in given.items()}
+        )
+
+    @property
     def planes_around(self) -> dict[float, Plane]:
         """The planes across the sides of its base, by angle from the width towards the depth, below 180 [degrees]."""
         planes = self.planes

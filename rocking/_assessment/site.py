@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,11 +18,13 @@ from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, as_pulse
 from rocking._excitation.records.floor import PERIODS as MODE_PERIODS
 from rocking._excitation.records.floor import floor_motion
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, offset_doubts
 from rocking.suites.hazard_curve import check_hazard_curve
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from rocking._numba.cancellation import StopFlag
 
 Array = NDArray[np.float64]
 
@@ -94,9 +96,9 @@ class Site:
         The suite; its records count as independent and equally likely, with their vertical components. Two horizontal
         components of one station are assessed at angles every 15 degrees from the first towards the second one and
         count as one record, which overturns an object if it does so at an angle. The PGA of a pair is the larger one.
-    hazard : xarray.DataArray or (array_like, array_like)
-        Peak ground accelerations [m/s2], ascending, and annual rates of exceedance [1/year]; with records. As of
-        `rocking.suites.read_hazard`.
+    hazard : path, xarray.DataArray or (array_like, array_like)
+        Peak ground accelerations [m/s2], ascending, and annual rates of exceedance [1/year]; with records. A file, or a
+        result, of `rocking.suites.read_hazard`.
     shapes : sequence of str or AbstractPulse, optional
         Pulse shapes; by default all pulses by name that leave the ground at rest.
     moving_ground : bool
@@ -115,7 +117,7 @@ class Site:
     pgv: Scalar | None = None
     periods: tuple[Scalar, Scalar] | None = None
     records: Record | Sequence[Record | tuple[Record, Record]] = ()
-    hazard: xr.DataArray | tuple[ArrayLike, ArrayLike] | None = None
+    hazard: str | PathLike[str] | xr.DataArray | tuple[ArrayLike, ArrayLike] | None = None
     shapes: Sequence[str | AbstractPulse] | None = None
     moving_ground: bool = False
     floor_periods: Values | None = None
@@ -149,7 +151,9 @@ class Site:
         if self.hazard is not None:
             if not self.records:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
-            object.__setattr__(self, "hazard", check_hazard_curve(_hazard_pair(self.hazard)))
+            from rocking.suites.hazard_files import hazard_arrays  # noqa: PLC0415  (xarray takes longer to load)
+
+            object.__setattr__(self, "hazard", check_hazard_curve(hazard_arrays(self.hazard, "pga")))
         if self.periods is not None:
             given_periods: Any = self.periods
             ends = in_range("periods", given_periods, *LENGTH, unit="s")
@@ -163,20 +167,40 @@ class Site:
                 raise InvalidArgumentError("shapes", self.shapes, "one or more pulses")
             object.__setattr__(self, "shapes", tuple(as_pulse(shape) for shape in self.shapes))
 
-    @cached_property
+    @property
     def motions(self) -> list[Motion]:
         """The motions, each once; of a pulse its mirror image is not listed, which is assessed as well."""
+        return self.find_motions(None)
+
+    def find_motions(self, stop: StopFlag | None) -> list[Motion]:
+        """`motions`, which are found once; `stop` cancels the work, which is long on a floor."""
+        if "_motions" not in self.__dict__:
+            object.__setattr__(self, "_motions", self._found(stop))
+        found: list[Motion] = self.__dict__["_motions"]
+        return found
+
+    def _found(self, stop: StopFlag | None) -> list[Motion]:
         found = self._records() if self.records else self._pulses()
         if self.floor_periods is None:
             return found
         floors, size = [], 0
         for one in found:
-            floors.append(self._on_floor(one))
+            floors.append(self._on_floor(one, stop))
             size += floors[-1].motion.samples  # type: ignore[operator]
             if size > MOST_SAMPLES:
                 allowed = f"periods at which all motions together have at most {MOST_SAMPLES} samples"
                 raise InvalidArgumentError("floor_periods", self.floor_periods, allowed)
         return floors
+
+    @property
+    def doubts(self) -> list[str]:
+        """What is in doubt of the records, in words: their remarks, and offsets where they are scaled by their PGA."""
+        pairs = ((given,) if isinstance(given, Record) else given for given in vars(self)["records"])
+        records = [record for pair in pairs for record in pair]
+        found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
+        if self.pga is not None or self.hazard is not None:
+            found += offset_doubts(records)
+        return [*dict.fromkeys(text.replace("; ", ", ") for text in found)]
 
     def _records(self) -> list[Motion]:
         found = []
@@ -206,24 +230,14 @@ class Site:
             chosen = [(f"{one.name}, {t:.3g} s", one, t) for one in pulses for t in tried]
         return [Motion(name, one, pga[0], t, group, pga[0]) for group, (name, one, t) in enumerate(chosen)]
 
-    def _on_floor(self, motion: Motion) -> Motion:
+    def _on_floor(self, motion: Motion, stop: StopFlag | None) -> Motion:
         given = motion.motion
         ground = given if isinstance(given, Record) else sampled(motion)
         modes: Any = (self.floor_periods, self.floor_damping, self.floor_participation)
-        found = floor_motion(ground, **dict(zip(("periods", "damping", "participation"), modes, strict=True)))
+        names = "periods", "damping", "participation"
+        found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
         scale = motion.peak_acceleration / ground.peak_acceleration
         return replace(motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0)
-
-
-def _hazard_pair(given: Any) -> tuple[ArrayLike, ArrayLike]:
-    """Intensities and rates of a hazard curve of PGA."""
-    if isinstance(given, Sequence) and len(given) == 2:
-        return given[0], given[1]
-    if getattr(given, "dims", None) != ("intensity",):
-        raise InvalidArgumentError("hazard", given, "intensities and annual rates")
-    if given.attrs.get("measure", "pga") != "pga":
-        raise InvalidArgumentError("hazard", given.attrs["measure"], "a hazard curve of pga")
-    return given["intensity"].values, given.values
 
 
 def _checked_pair(given: Any) -> Record | tuple[Record, Record]:

@@ -1,8 +1,8 @@
 """Displacement of a block that only slides (Newmark 1965, both directions), exact for linear pieces of acceleration.
 
-The block slides with the velocity v relative to the ground: v' = -a - sgn(v) mu g; it starts where |a| exceeds mu g and
-sticks where v returns to zero. It is the other bound where mu < tan(alpha): sliding together with rocking is not
-modelled.
+The block slides with the velocity v relative to the ground: v' = -a - sgn(v) mu (g + w), w the vertical acceleration of
+the ground, upwards; it starts where |a| exceeds mu (g + w) and sticks where v returns to zero. On a piece a and w are
+linear, so that v is quadratic and its zeros are exact. Sliding together with rocking is not modelled.
 
 References
 ----------
@@ -30,12 +30,13 @@ def sliding_displacement(motion: Motion, friction: float) -> float:
     Parameters
     ----------
     motion : Motion
-        The motion; a vertical component is not regarded.
+        The motion, with its vertical component, > -g.
     friction : float
         Coefficient of friction [-], > 0.
     """
-    times, samples, _ = _pieces(motion)
-    return largest_slip(times, samples, friction * STANDARD_GRAVITY)
+    times, samples, vertical = _pieces(motion)
+    resistance = friction * (STANDARD_GRAVITY + vertical)
+    return largest_slip(times, samples, resistance, friction * STANDARD_GRAVITY)
 
 
 def first_exceedance(motion: Motion, friction: float) -> float:
@@ -70,12 +71,22 @@ def _pieces(motion: Motion) -> tuple[Array, Array, Array]:
     return phases * (motion.period / (2.0 * math.pi)), values * motion.peak_acceleration, np.zeros(values.size)
 
 
-def largest_slip(times: Array, acceleration: Array, resistance: float) -> float:
-    """Largest |displacement| [m] under accelerations that are linear between times; arrays (samples,), SI units."""
+def largest_slip(times: Array, acceleration: Array, resistance: Array, at_end: float) -> float:
+    """Largest |displacement| [m] under accelerations that are linear between times.
+
+    Parameters
+    ----------
+    times, acceleration : ndarray
+        Shape (samples,) [s], and of the ground [m/s2].
+    resistance : ndarray
+        Shape (samples,); of the friction [m/s2], > 0, linear between times as well.
+    at_end : float
+        The resistance after the motion [m/s2].
+    """
     slip = velocity = largest = 0.0
     exceeds = np.abs(acceleration) > resistance
     starts = np.flatnonzero(exceeds[:-1] | exceeds[1:]).tolist()  # pieces on which a block at rest may start to slide
-    at, values = times.tolist(), acceleration.tolist()
+    at, values, resisting = times.tolist(), acceleration.tolist(), resistance.tolist()
     k = 0
     while k < len(at) - 1:
         if velocity == 0.0:
@@ -83,37 +94,36 @@ def largest_slip(times: Array, acceleration: Array, resistance: float) -> float:
             if following == len(starts):
                 break
             k = starts[following]
-        left, here = at[k + 1] - at[k], values[k]
-        rate = (values[k + 1] - here) / left
+        left, here, held = at[k + 1] - at[k], values[k], resisting[k]
+        rate, change = (values[k + 1] - here) / left, (resisting[k + 1] - held) / left
         k += 1
         while left > 0.0:
             if velocity == 0.0:
-                wait = _time_to_slip(here, rate, resistance)
+                # |a| - resistance is the larger of two linear functions, for sliding towards - and towards +
+                waits = {-side: _time_to_excess(side * here - held, side * rate - change) for side in (1.0, -1.0)}
+                direction = min(waits, key=waits.__getitem__)
+                wait = waits[direction]
                 if wait >= left:
                     break
-                left, here = left - wait, here + rate * wait
-                direction = -math.copysign(1.0, here)
+                left, here, held = left - wait, here + rate * wait, held + change * wait
             else:
                 direction = math.copysign(1.0, velocity)
-            push = -here - direction * resistance  # v' at the start of the step, v'' = -rate
-            step = _time_to_stop(velocity, push, -rate, left)
+            push, growth = -here - direction * held, -rate - direction * change  # v' at the start of the step, and v''
+            step = _time_to_stop(velocity, push, growth, left)
             stops = step < left
-            slip += step * (velocity + step * (0.5 * push - rate * step / 6.0))
-            velocity = 0.0 if stops else velocity + step * (push - 0.5 * rate * step)
-            here, left = here + rate * step, left - step
+            slip += step * (velocity + step * (0.5 * push + growth * step / 6.0))
+            velocity = 0.0 if stops else velocity + step * (push + 0.5 * growth * step)
+            here, held, left = here + rate * step, held + change * step, left - step
             largest = max(largest, abs(slip))
-    if velocity != 0.0:
-        slip += math.copysign(velocity * velocity / (2.0 * resistance), velocity)  # after the motion
+    slip += math.copysign(velocity * velocity / (2.0 * at_end), velocity)  # after the motion
     return max(largest, abs(slip))
 
 
-def _time_to_slip(acceleration: float, rate: float, resistance: float) -> float:
-    """Time until |a| exceeds the resistance."""
-    if abs(acceleration) > resistance or (abs(acceleration) == resistance and acceleration * rate > 0.0):
+def _time_to_excess(excess: float, rate: float) -> float:
+    """Time until a linear function is positive, infinite if it never is."""
+    if excess > 0.0 or (excess == 0.0 and rate > 0.0):
         return 0.0
-    if rate == 0.0:
-        return math.inf
-    return (math.copysign(resistance, rate) - acceleration) / rate
+    return -excess / rate if rate > 0.0 else math.inf
 
 
 def _time_to_stop(velocity: float, push: float, change: float, left: float) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking._assessment.columns import INPUTS, REQUIRED, STAND_INS
 from rocking._assessment.objects import Object
@@ -22,6 +22,9 @@ from rocking._dimensional.table_reader import (
     read_file,
     text_of,
 )
+
+if TYPE_CHECKING:
+    from rocking._numba.cancellation import StopFlag
 
 
 @dataclass(frozen=True, repr=False)
@@ -84,12 +87,12 @@ def read_objects(source: str | PathLike[str], *, columns: Mapping[str, str] | No
     return _objects(read_file(source, replace(SCHEMA, renamed=dict(columns or {}))))
 
 
-def objects_of_text(raw: bytes, *, json: bool, most: int | None = None) -> ObjectTable:
-    """Objects from the bytes of a text, JSON or CSV; the errors of `read_objects`.
+def objects_of_text(raw: bytes, *, json: bool, most: int | None = None, stop: StopFlag | None = None) -> ObjectTable:
+    """Objects from the bytes of a text, JSON or CSV; the errors of `read_objects`. `stop` cancels the work.
 
     Beyond `most` rows the table is refused by `TooManyRowsError`, before an object is made.
     """
-    return objects_of_json(text_of(raw), most) if json else objects_of_csv(text_of(raw), most)
+    return objects_of_json(text_of(raw), most) if json else objects_of_csv(text_of(raw), most, stop)
 
 
 def objects_of_json(text: str, most: int | None = None) -> ObjectTable:
@@ -115,9 +118,9 @@ def objects_of_json(text: str, most: int | None = None) -> ObjectTable:
     return ObjectTable(found, bad)
 
 
-def objects_of_csv(text: str, most: int | None = None) -> ObjectTable:
-    """Objects from text with separated columns; the errors of `read_objects`."""
-    return _objects(read_csv(text, SCHEMA, most))
+def objects_of_csv(text: str, most: int | None = None, stop: StopFlag | None = None) -> ObjectTable:
+    """Objects from text with separated columns; the errors of `read_objects`. `stop` cancels the work."""
+    return _objects(read_csv(text, SCHEMA, most, stop))
 
 
 def _objects(table: Table[Object]) -> ObjectTable:

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import ast
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-"""Folder of the package and, in a checkout, of `workflow/` and `environment.lock`."""
+"""Folder of the package and, in a checkout, of `workflow/` and `environment.lock`; in an installation of all others."""
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 """Attributes of statements that hold statements."""
@@ -24,10 +24,14 @@ class SourceTree:
     ----------
     root : Path
         Folder that holds the files and the lock, and from which absolute imports are resolved.
+    packages : collection of str, optional
+        The packages in it that imports are followed to; default: all. An installation has those of others beside this
+        one: they are not read.
     """
 
-    def __init__(self, root: Path = PROJECT) -> None:
+    def __init__(self, root: Path, packages: Collection[str] | None = None) -> None:
         self.root = root.resolve()
+        self._packages = packages
         self._contents: dict[Path, bytes] = {}
         self._syntax: dict[Path, ast.Module] = {}
         self._imported: dict[Path, list[Path]] = {}
@@ -37,7 +41,7 @@ class SourceTree:
         return sorted(_package(self.root))
 
     def files(self, *paths: Path) -> list[Path]:
-        """All files under `root` that the given files import, directly or indirectly, and these files; sorted.
+        """All files of `packages` that the given files import, directly or indirectly, and these files; sorted.
 
         A package with an `__init__.pyi` loads its names lazily. Importing a module through it does not add a dependency
         on every public name; importing a name that is not a module does, and then all its files are included.
@@ -80,7 +84,9 @@ class SourceTree:
 
     def _imports(self, path: Path) -> list[Path]:
         if path not in self._imported:
-            self._imported[path] = sorted({*_imported_files(path, self.syntax(path), self.root)})
+            names = _absolute_names(path.relative_to(self.root), self.syntax(path))
+            followed = [one for one in names if self._packages is None or one[0].partition(".")[0] in self._packages]
+            self._imported[path] = sorted({file for one in followed for file in _module_files(*one, self.root)})
         return self._imported[path]
 
 
@@ -103,17 +109,18 @@ def _package(root: Path) -> Iterable[Path]:
     return (root / "rocking").rglob("*.py")
 
 
-def _imported_files(path: Path, syntax: ast.Module, root: Path) -> Iterable[Path]:
+def _absolute_names(path: Path, syntax: ast.Module) -> Iterable[tuple[str, str]]:
+    """What a file at `path` below the root imports: dotted names, with the module of which each may be an attribute."""
     for name, base, level in imported_names(syntax):
         if base is None:
-            yield from _module_files(name, root)
+            yield name, ""
             continue
-        parts = path.relative_to(root).parts[:-level] if level else ()
-        full = ".".join([*parts, *([base] if base else [])])
-        yield from _module_files(f"{full}.{name}", root, attribute_of=full)
+        parts = path.parts[:-level] if level else ()
+        parent = ".".join([*parts, *([base] if base else [])])
+        yield f"{parent}.{name}", parent
 
 
-def _module_files(name: str, root: Path, attribute_of: str | None = None) -> Iterable[Path]:
+def _module_files(name: str, attribute_of: str, root: Path) -> Iterable[Path]:
     """Files of a dotted name; if it is not a module, those of the module that has it as an attribute."""
     place = root.joinpath(*name.split("."))
     module = place.with_suffix(".py") if place.name else place
@@ -125,7 +132,7 @@ def _module_files(name: str, root: Path, attribute_of: str | None = None) -> Ite
     elif initial.is_file():
         yield initial
     elif attribute_of:
-        yield from _module_files(attribute_of, root)
+        yield from _module_files(attribute_of, "", root)
     parent = name.rpartition(".")[0]
     if "." in parent and (root.joinpath(*parent.split(".")) / "__init__.py").is_file():
         yield root.joinpath(*parent.split(".")) / "__init__.py"

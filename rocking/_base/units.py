@@ -37,6 +37,9 @@ UNITS: dict[str, dict[str, float]] = {
         "gal": 0.01,
         "mm/s2": 0.001,
         "g": STANDARD_GRAVITY,
+        "mg": STANDARD_GRAVITY / 1000.0,
+        "%g": STANDARD_GRAVITY / 100.0,
+        "g/10": STANDARD_GRAVITY / 10.0,
         "in/s2": 0.0254,
         "ft/s2": 0.3048,
     },
@@ -90,6 +93,8 @@ _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "ft": ("ft.", "foot", "feet", "'", "\u2032", "\u2019"),
     "gal": ("gals",),
     "g": ("gs", "gravity"),  # of accelerations
+    "mg": ("milli-g", "millig"),
+    "%g": ("percentg", "%ofg", "percentofg"),
     "ms": ("millis",),
     "us": ("\u00b5s", "\u03bcs", "micros"),
     "min": ("minute", "minutes"),
@@ -112,12 +117,16 @@ def _forms(name: str) -> tuple[str, ...]:
     length, _, time = name.partition("/")
     if time == "s2":
         return (name, f"{length}/s/s", f"{length}s-2", f"{length}/s-2", f"{length}s2")
-    return (name, f"{length}s-1") if time else (name, *_OTHER_NAMES.get(name, ()))
+    return (name, f"{length}s-1") if time == "s" else (name, *_OTHER_NAMES.get(name, ()))
+
+
+_SIGNS = str.maketrans("¹²⁻−", "12--")
+"""Signs of powers, and the minus sign of mathematics."""
 
 
 def _plain(text: str) -> str:
     """A unit in lower case without what may be left out; second is s."""
-    plain = re.sub(r"\*\*|\*(?=\s*s-)|[\s_^()\[\]]", "", text.lower().replace("²", "2"))
+    plain = re.sub(r"\*\*|\*(?=\s*s-)|[\s_^()\[\]·⋅]", "", text.lower().translate(_SIGNS))
     return re.sub(r"sec(?:ond)?s?", "s", plain)
 
 

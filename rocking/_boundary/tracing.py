@@ -29,6 +29,13 @@ from rocking._numba.cancellation import StopFlag
 if TYPE_CHECKING:
     import xarray as xr
 
+MISSED = 2.0
+"""Width of regions without a finest layer that no node may show, over the distance of the nodes [-].
+
+Of 112,000 points within 0.001 of curves of c2 and of the cosine at eta = 0.96, 1,650 were in bands that are not drawn,
+the widest of 1.06 node distances.
+"""
+
 UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
 """Blocks that the pulse can uplift."""
 
@@ -73,12 +80,12 @@ def overturning_boundary(
         impacts or after impacts that accumulate to rest: that is one region. Attributes: chord_error [-], the largest
         distance of a chord from its curve, at the middles of the chords; uncounted_chord_error, the same for the
         curves of regions whose `impacts` are -1; thinnest_region [-], the width in 1/a below which a region is not
-        resolved and its two neighbours are taken to meet; thinnest_uncounted_region [-], the same for regions whose
-        `impacts` are -1 and for safe bands between two of them; end_distance [-], the distance in log omega within
-        which the ends of these regions are known, and below which they are not resolved (`END` for all others);
-        node_distance [-], the largest distance of the nodes in 1/a; unmeasured_chords, the number of chords at whose
-        middle the curve was not found; open_ends, the number of ends of regions that are known to a step of the nodes
-        only.
+        resolved and its two neighbours are taken to meet; thinnest_uncounted_region [-], the width below which a region
+        whose `impacts` are -1, or a safe band beside one, may be missing; end_distance [-], the distance in log omega
+        within which the ends of these regions are known, and below which they are not resolved (`END` for all
+        others); node_distance [-], the largest distance of the nodes in 1/a; unmeasured_chords, the number of chords at
+        whose middle the curve was not found; open_ends, the number of ends of regions that are known to a step of the
+        nodes only.
 
     Raises
     ------
@@ -119,14 +126,15 @@ def trace_curves(
     chains = chains_of(join for k in tracer.panels for join in tracer.joins[k])
     refined = refine_chords(chains, classify_regions, largest=CHORD, uncounted=tracer.chord, end=END)
     chains, error, uncounted_error, unknown = refined
+    node_distance = float(np.diff(rows, axis=0).max())
     return _as_dataset(chains).assign_attrs(
         restitution=eta,
         chord_error=error,
         uncounted_chord_error=uncounted_error,
         thinnest_region=THINNEST,
-        thinnest_uncounted_region=tracer.thinnest,
+        thinnest_uncounted_region=THINNEST if tracer.thinnest == THINNEST else MISSED * node_distance,
         end_distance=tracer.end,
-        node_distance=float(np.diff(rows, axis=0).max()),
+        node_distance=node_distance,
         open_ends=tracer.open_ends,
         unmeasured_chords=unknown,
     )

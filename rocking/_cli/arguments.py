@@ -92,7 +92,7 @@ def _error_text(error: InvalidArgumentError) -> str:
 
 
 def read_pulse(text: str) -> AbstractPulse:
-    """The pulse of a name, or else that in a file; a leading minus mirrors either.
+    """The pulse of a name with its parameters, or else that in a file; a leading minus mirrors either.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def read_pulse(text: str) -> AbstractPulse:
         If the text is neither a name nor a file that holds a pulse.
     """
     name = text.removeprefix("-")
-    if name in pulse_names():
+    if name.partition("(")[0].strip() in pulse_names():
         return as_pulse(text)
     from rocking._excitation.sampled import SampledPulse
 

@@ -7,11 +7,11 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import OutputOptions, with_options
+from rocking._cli.options import BaselineOrder, Component, OutputOptions, Skip, with_options
 
 if TYPE_CHECKING:
     from rocking._assessment.report import Project
@@ -180,6 +180,9 @@ def assess(
     vertical: Vertical = None,
     unit: Unit = None,
     time_step: TimeStep = None,
+    component: Component = None,
+    skip: Skip = None,
+    baseline_order: BaselineOrder = None,
     hazard: Hazard = None,
     floor_periods: FloorPeriods = None,
     floor_damping: FloorDamping = "0.05",
@@ -210,6 +213,7 @@ def assess(
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
     from rocking._cli.record import file_errors
+    from rocking._excitation.pulses import split_pulses
     from rocking.suites.hazard_files import read_hazard
 
     with option_errors(HINTS), file_errors():
@@ -219,13 +223,14 @@ def assess(
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
         if friction is not None and not mesh:
             raise InvalidArgumentError("friction", friction, "a mesh beside it; a table has a column for it")
+        stated = {"unit": unit, "time_step": time_step, "component": component, "skip": skip}
         site = Site(
             pga,
             pgv,
             None if period_min is None or period_max is None else (period_min, period_max),
-            _read(record or (), pair or (), vertical or (), unit, time_step),
+            _read(record or (), pair or (), vertical or (), baseline_order, stated),
             None if hazard is None else read_hazard(hazard),
-            None if shapes is None else shapes.split(","),
+            None if shapes is None else split_pulses(shapes),
             moving_ground,
             None if floor_periods is None else floor_periods.split(","),
             plain_numbers("floor_damping", floor_damping),
@@ -267,7 +272,7 @@ def _columns(given: Sequence[str]) -> dict[str, str]:
 
 
 def _read(
-    paths: Sequence[str], pairs: Sequence[str], verticals: Sequence[str], unit: str | None, time_step: str | None
+    paths: Sequence[str], pairs: Sequence[str], verticals: Sequence[str], order: int | None, stated: dict[str, Any]
 ) -> list[Record | tuple[Record, Record]]:
     """The records and pairs of components of a suite."""
     from rocking._base.errors import InvalidArgumentError
@@ -278,15 +283,16 @@ def _read(
         raise InvalidArgumentError("vertical", f"{len(verticals)} files", allowed)
     up = iter(verticals)
 
-    def read(path: str) -> Record:
-        return read_record(path, vertical=next(up, None), unit=unit, time_step=time_step)
+    def read(path: str, vertical: str | None = None) -> Record:
+        motion = read_record(path, vertical=vertical, **stated)
+        return motion if order is None else motion.baseline_corrected(order=order)
 
-    found: list[Record | tuple[Record, Record]] = [read(path) for path in paths]
+    found: list[Record | tuple[Record, Record]] = [read(path, next(up, None)) for path in paths]
     for one in pairs:
         first, comma, second = one.partition(",")
         if not comma:
             raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
-        found.append((read(first), read_record(second, unit=unit, time_step=time_step)))
+        found.append((read(first, next(up, None)), read(second)))
     return found
 
 

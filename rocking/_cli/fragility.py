@@ -6,13 +6,14 @@ import json as json_format
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._cli.options import OutputOptions, with_options
+from rocking._cli.options import BaselineOrder, OutputOptions, with_options
 from rocking._cli.progress import progress
 from rocking._cli.record import file_errors
 
@@ -70,6 +71,7 @@ def fragility(
     output: OutputOptions,
     table: TableOption = "levels",
     hazard: HazardOption = None,
+    baseline_order: BaselineOrder = None,
     file: FileOption = None,
 ) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
@@ -87,6 +89,8 @@ def fragility(
     with configuration_errors():
         form = printing.output_format(output)
     suite = read_suite(configuration)
+    if baseline_order is not None:
+        suite = replace(suite, records=replace(suite.records, baseline_order=baseline_order))
     with option_errors():
         if table == "sensitivity" and suite.sensitivity is None:
             raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
@@ -158,7 +162,7 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
         for motion in motions:
             for remark in motion.remarks:
                 typer.echo(f"warning: {motion.name}: {remark}", err=True)
-        return fragility_of(
+        found = fragility_of(
             motions,
             suite.blocks,
             intensity=suite.intensity,
@@ -167,6 +171,9 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
             demand=suite.demand,
             confidence=suite.confidence,
         )
+    for warning in filter(None, found.attrs.get("warnings", "").split("; ")):
+        typer.echo(f"warning: {warning}", err=True)
+    return found
 
 
 def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:

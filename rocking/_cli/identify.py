@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -21,6 +21,10 @@ Degrees = Annotated[
 Edges = Annotated[
     int, typer.Option(help="1 for a body with equal edges, 2 for one with a right and a left edge.", metavar="[1|2]")
 ]
+TimeStep = Annotated[
+    str | None,
+    typer.Option(help="Time between the rows where the file counts them, such as 0.02s or 16.7ms.", metavar="[s]"),
+]
 Confidence = Annotated[float, typer.Option(help="Confidence of the intervals, (0, 1).", metavar="[-]")]
 
 
@@ -35,6 +39,7 @@ def identify(
     ],
     output: OutputOptions,
     degrees: Degrees = False,
+    time_step: TimeStep = None,
     edges: Edges = 1,
     confidence: Confidence = 0.95,
 ) -> None:
@@ -46,15 +51,19 @@ def identify(
     with option_errors():
         form = printing.output_format(output)
         with progress("fitting the trace"):
-            found = _found(file, degrees, edges, confidence)
+            found = _found(file, degrees, time_step, edges, confidence)
     columns = {name: found[name].values.tolist() for name in ("edge", *_columns())}
     if form.kind == "csv":
         printing.print_csv(columns, form)
         return
-    about = {"impacts": found.sizes["impact"], "noise": found["noise"].item(), "offset": found["offset"].item()}
+    about: dict[str, Any] = {"impacts": found.sizes["impact"]}
+    about |= {name: found[name].item() for name in ("noise", "offset", "drift", "drift_lower", "drift_upper")}
+    about["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
     if form.kind == "json":
         printing.print_json({**columns, **about})
         return
+    for text in about.pop("warnings"):
+        typer.echo(f"warning: {text}")
     printing.print_table(columns)
     printing.print_text(about, form)
 
@@ -63,21 +72,24 @@ def _columns() -> list[str]:
     return [name + end for name in ("restitution", "alpha", "frequency_parameter") for end in ("", "_lower", "_upper")]
 
 
-def _found(path: str, degrees: bool, edges: int, confidence: float) -> xr.Dataset:
+def _found(path: str, degrees: bool, time_step: str | None, edges: int, confidence: float) -> xr.Dataset:
     from pathlib import Path
 
-    from rocking._base.errors import InvalidArgumentError, RecordFileError
+    from rocking._base.errors import InvalidArgumentError, RecordFileError, number
+    from rocking._cli.record import with_options_named
     from rocking._evidence.free_rocking import identify_free_rocking
     from rocking._excitation.records.readers.columns import read_rotations
     from rocking._excitation.records.readers.lines import TextFile
+    from rocking._excitation.records.record import TIME_STEP
 
+    step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
     try:
         file = TextFile(Path(path).name, Path(path).read_bytes())
-        time, rotation = read_rotations(file, MAX_SAMPLES, degrees or None)
+        time, rotation = read_rotations(file, MAX_SAMPLES, degrees or None, step)
     except OSError as error:
         raise typer.BadParameter(f"{path}: {error.strerror}", param_hint="FILE") from None
     except RecordFileError as error:
-        raise typer.BadParameter(str(error), param_hint="FILE") from None
+        raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
     try:
         return identify_free_rocking(time, rotation, edges=edges, confidence=confidence)
     except InvalidArgumentError as error:

@@ -65,8 +65,8 @@ class ShapeOptions(SizeOptions):
     pulse: Annotated[
         str,
         typer.Option(
-            help="Pulse, such as sine, or a file of samples: columns of numbers (accelerations, or times and "
-            "accelerations) or JSON; a leading minus mirrors it.",
+            help="Pulse, such as sine or 'mavroeidis_papageorgiou(cycles=3, phase=90deg)', or a file of samples: "
+            "columns of numbers (accelerations, or times and accelerations) or JSON; a leading minus mirrors it.",
             metavar="[NAME|FILE]",
             autocompletion=_pulses,
         ),
@@ -111,6 +111,29 @@ class SpectrumOptions(WindowOptions):
     peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.", "m/s2")] = None
 
 
+Component = Annotated[
+    str | None,
+    typer.Option(
+        help="Column or trace of a file with several; rows for one series along the rows of several columns.",
+        metavar="[NAME]",
+    ),
+]
+Skip = Annotated[
+    int | None,
+    typer.Option(
+        help="Rows of numbers above the samples of a file of columns, such as a count or a factor.", metavar="[NUMBER]"
+    ),
+]
+BaselineOrder = Annotated[
+    int | None,
+    typer.Option(
+        help="Remove a baseline of this degree, 0 to 6, from the acceleration; none by default, but for the offset of "
+        "K-NET counts.",
+        metavar="[NUMBER]",
+    ),
+]
+
+
 @dataclass(frozen=True, kw_only=True)
 class FileOptions:
     """What the file of a record does not state: arguments of `read_record`."""
@@ -122,15 +145,14 @@ class FileOptions:
     time_step: Annotated[
         str | None, typer.Option(help="Time step if the file states none, such as 0.01s.", metavar="[s]")
     ] = None
-    component: Annotated[str | None, typer.Option(help="Column or trace of a file with several.", metavar="[NAME]")] = (
-        None
-    )
+    component: Component = None
     vertical: Annotated[
         str | None,
         typer.Option(
             help="File of the vertical component, upwards, or its column or trace in the file.", metavar="[FILE|NAME]"
         ),
     ] = None
+    skip: Skip = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,12 +165,7 @@ class RecordOptions(FileOptions, SizeOptions):
     scale: Annotated[
         float, typer.Option(help="Factor of the record, of its vertical component too.", metavar="[-]")
     ] = 1.0
-    baseline_order: Annotated[
-        int | None,
-        typer.Option(
-            help="Remove a baseline of this degree, 0 to 6, from the acceleration; none by default.", metavar="[NUMBER]"
-        ),
-    ] = None
+    baseline_order: BaselineOrder = None
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 File = Annotated[
     str,
-    typer.Argument(help="Accelerogram: PEER AT2, ESM, K-NET, or columns of times and accelerations.", metavar="FILE"),
+    typer.Argument(
+        help="Accelerogram: PEER AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC, or columns of times and accelerations.",
+        metavar="FILE",
+    ),
 ]
 Thresholds = Annotated[
     bool,
@@ -72,16 +75,20 @@ def file_errors() -> Iterator[None]:
     try:
         yield
     except RecordFileError as error:
-        raise typer.BadParameter(_with_options_named(str(error)), param_hint="FILE") from None
+        raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
     except InvalidArgumentError as error:
         if error.parameter != "path":
             raise
         raise typer.BadParameter(f"{error.value}: not {error.allowed}", param_hint="FILE") from None
 
 
-def _with_options_named(message: str) -> str:
+def with_options_named(message: str) -> str:
     """A message in which arguments of functions have the names of the options."""
-    return re.sub(r"(?:the )?argument `(\w+)`", lambda found: "--" + found[1].replace("_", "-"), message)
+    return re.sub(
+        r"(?:(?:the )?argument )?`(unit|time_step|component|vertical|skip)`",
+        lambda found: "--" + found[1].replace("_", "-"),
+        message,
+    )
 
 
 def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | Literal["momentum"]]:
@@ -107,6 +114,7 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
         time_step=options.time_step,
         component=options.component,
         vertical=options.vertical,
+        skip=options.skip,
     )
     if options.baseline_order is not None:
         motion = motion.baseline_corrected(order=options.baseline_order)

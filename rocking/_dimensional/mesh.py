@@ -14,6 +14,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.units import UNITS
+from rocking._dimensional.mesh_parts import with_few_parts
 from rocking._dimensional.mesh_repair import RepairedMesh, repaired
 from rocking._model.body import PolygonProperties
 
@@ -134,8 +135,9 @@ def _mesh(path: str | Path) -> tuple[trimesh.Trimesh, list[str]]:
 def _loaded(path: Path, _changed: int, _size: int) -> RepairedMesh:
     """The mesh of a file, kept for the other directions: loading it and its inertia take most of the time."""
     # from its bytes: a file that holds all of its mesh is given no way to name others
-    source = path if path.suffix.lower() == ".gltf" else io.BytesIO(path.read_bytes())
-    mesh = trimesh.load_mesh(source, file_type=path.suffix[1:].lower(), process=True, skip_materials=True)
+    kind = path.suffix[1:].lower()
+    source = path if kind == "gltf" else io.BytesIO(with_few_parts(path.read_bytes(), kind))
+    mesh = trimesh.load_mesh(source, file_type=kind, process=True, skip_materials=True)
     if not len(mesh.faces):
         return RepairedMesh(mesh, [], "has no faces")
     middle = mesh.bounds.mean(axis=0)

@@ -85,10 +85,15 @@ class BlockTable:
 
 
 def read_table(
-    text: str, pulse: str | AbstractPulse, restitution: float | str = "momentum", *, most: int | None = None
+    text: str,
+    pulse: str | AbstractPulse,
+    restitution: float | str = "momentum",
+    *,
+    most: int | None = None,
+    stop: StopFlag | None = None,
 ) -> BlockTable:
-    """Read a table of blocks from text, as `read_blocks` does from a file; of at most `most` blocks."""
-    return _blocks(read_csv(text, _schema(pulse, {"restitution": restitution}), most))
+    """Read a table of at most `most` blocks from text, as `read_blocks` from a file. `stop` cancels the work."""
+    return _blocks(read_csv(text, _schema(pulse, {"restitution": restitution}), most, stop))
 
 
 def read_blocks(

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from itertools import chain, islice
 from os import PathLike
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from rocking._base.column import (
     Column,
@@ -32,6 +32,9 @@ from rocking._base.column import (
 )
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import UNITS, unit_name
+
+if TYPE_CHECKING:
+    from rocking._numba.cancellation import StopFlag  # numba takes longer to load than a table
 
 Item = TypeVar("Item")
 
@@ -48,6 +51,9 @@ MAX_CHARACTERS = 20_000_000
 
 MAX_COLUMNS = 1000
 """Most columns of a table."""
+
+EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
+"""Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
 
 MAX_NAME = 200
 """Longest name of a column with its unit [characters]."""
@@ -87,14 +93,15 @@ _LENGTH_WORD = re.compile(
 )
 _NO_LENGTH = re.compile(
     r"year|date|period|found|acquired|signed|gallery|hall|saal|sala|condition|zustand|stato|etat|rank|priority|class|categor"
-    r"|period|century|jahr|anno|annee|\bano\b|made|qty|quantit|count|pieces|anzahl|stuck|value|price|cost|wert|preis"
+    r"|century|jahr|anno|annee|\bano\b|made|qty|quantit|count|pieces|anzahl|stuck|value|price|cost|wert|preis"
     r"|valore|prezzo|valeur|prix|valor|precio|room|raum|floor|level|stockwerk|shelf|case|page|number|\bno\b|\bnr\b|id$"
     r"|code|index|age|\blot\b|weight|mass|score|rating|angle|percent"
 )
 _LAST_UNIT = re.compile(r"\s(?:in|m)\s*$", re.IGNORECASE)
 _AMOUNT = re.compile(r"\W*(?:c|ca|circa|approx\w*|about|um|env\w*|max|min)?[\s.:]*\d", re.IGNORECASE)
 _UNUSED = ("unused", "not used")
-_MARK = "\ufeff"
+MARK = "\ufeff"
+"""What some programs put before a text of UTF-8."""
 
 
 NAME = Column(
@@ -275,19 +282,19 @@ def text_of(raw: bytes) -> str:
         return raw.decode("cp1252", "replace")
 
 
-def read_csv(text: str, schema: Schema[Item], most: int | None = None) -> Table[Item]:
-    """A table from text with separated columns; the errors of `read_file`, a line that is not CSV, those of `most`."""
+def read_csv(text: str, schema: Schema[Item], most: int | None = None, stop: StopFlag | None = None) -> Table[Item]:
+    """A table from text; errors of `read_file`, of a line that is not CSV, of `most`. `stop` cancels the work."""
     delimiter = _delimiter(text, schema)
     # where commas separate the columns, a single point is the decimal sign
     usual = "." if delimiter == "," else ""
-    return read_rows(_rows(_open(text), delimiter, schema), schema, usual, most)
+    return read_rows(_rows(_open(text), delimiter, schema, stop), schema, usual, most)
 
 
-def rows_of_csv(text: str, schema: Schema[Any]) -> Iterator[str]:
+def rows_of_csv(text: str, schema: Schema[Any], stop: StopFlag | None = None) -> Iterator[str]:
     """The text of each row that `read_csv` counts, with its end; the errors of `read_csv`."""
-    text = text.removeprefix(_MARK)
+    text = text.removeprefix(MARK)
     source, start = _open(text), 0
-    for _ in _rows(source, _delimiter(text, schema), schema):
+    for _ in _rows(source, _delimiter(text, schema), schema, stop):
         yield text[start : source.tell()]
         start = source.tell()
 
@@ -308,12 +315,16 @@ def _fit(line: _Line) -> tuple[bool, int]:
 
 
 def _open(text: str) -> io.StringIO:
-    return io.StringIO(text.removeprefix(_MARK), newline="")
+    return io.StringIO(text.removeprefix(MARK), newline="")
 
 
-def _rows(source: Iterable[str], delimiter: str, schema: Schema[Any]) -> Iterator[list[str]]:
+def _rows(
+    source: Iterable[str], delimiter: str, schema: Schema[Any], stop: StopFlag | None = None
+) -> Iterator[list[str]]:
     rows = csv.reader(source, delimiter=delimiter, strict=True)
     while True:
+        if stop is not None:
+            stop.check()
         line = rows.line_num + 1
         try:
             row = next(rows)
@@ -339,10 +350,16 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
     import pandas as pd  # noqa: PLC0415  (takes long to load, and only sheets need it)
 
     try:
-        frame = pd.read_excel(io.BytesIO(raw), header=None, dtype=object, na_filter=False, engine="calamine")
+        with pd.ExcelFile(io.BytesIO(raw), engine="calamine") as file:
+            sheet = file.book.get_sheet_by_index(0)
+            rows, columns = sheet.total_height, sheet.total_width
+            if columns > SHEET_COLUMNS or rows * columns > SHEET_CELLS:
+                allowed = f"at most {SHEET_COLUMNS} columns and {SHEET_CELLS} cells"
+                raise InvalidArgumentError(argument, f"a sheet of {rows} rows and {columns} columns", allowed)
+            frame = pd.read_excel(file, header=None, dtype=object, na_filter=False)
     except ImportError as error:
         raise ImportError("sheets need the extra `sheets`: pip install 'rocking[sheets]'", name=error.name) from None
-    except MemoryError:
+    except (InvalidArgumentError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  (the reader of sheets has its own errors)
         raise InvalidArgumentError(argument, str(error), "a sheet of a spreadsheet, .xlsx or .ods") from None
@@ -687,6 +704,9 @@ def read_rows(
             if len(body) == most:
                 raise TooManyRowsError(schema.argument, f"more than {most} rows", f"at most {most}")
             body.append((number, row))
+        elif most is not None and number - len(body) > EMPTY_ROWS:
+            allowed = f"at most {EMPTY_ROWS} rows that are empty or totals"
+            raise TooManyRowsError(schema.argument, f"{number} rows", allowed)
     numeric = [place for place, (one, _) in header.columns.items() if one.unit]
     decimal = _decimal_sign((row[place] for _, row in body for place in numeric if place < len(row)), usual)
     labels = header.labels

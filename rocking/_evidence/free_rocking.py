@@ -8,8 +8,12 @@ pendulum near its upper equilibrium. With the peak at time t_c,
 dn the elliptic function of Jacobi. An impact multiplies the velocity by eta, so that the peaks obey
 cos(alpha - theta_n) - cos(alpha) = eta^2 (cos(alpha - theta_(n-1)) - cos(alpha)) (Housner 1963), with the factor
 (p/p')^2 where the edges differ. The whole trace therefore follows from the time of the first impact, the peak before
-it, and eta, alpha, p; these are fitted to all samples by least squares. The start is from peaks and impacts, which are
-located by a parabola in each flight.
+it, and eta, alpha, p; these are fitted to all samples by least squares, with an offset and a drift of the sensor. The
+start is from peaks and impacts, which are located by a parabola in each flight.
+
+The residual is tested: errors of one sample do not tell those of the next. Where they do, the samples count as fewer
+independent ones, which widens the intervals (for N/tau independent samples, with tau the sum of the correlations of the
+residual over the lags), and where that leaves too few, or the residual is too large, the trace is refused.
 
 References
 ----------
@@ -22,13 +26,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.special import ellipj, ellipkinc
+from scipy.stats import f as f_distribution
 from scipy.stats import t as student
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
@@ -42,6 +47,12 @@ Array = NDArray[np.float64]
 
 MAX_ROTATION = 0.8
 """Largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees."""
+
+DURATION = 1e-3, 1e5
+"""Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
+
+SHORTEST_STEP = 1e-7
+"""Shortest step between samples [s]."""
 
 MIN_IMPACTS = 3
 """Fewest impacts from which eta, alpha and p are told apart [-]."""
@@ -58,11 +69,23 @@ MIN_SAMPLES = 5
 START_SHARES = 0.3, 0.5, 0.7, 0.85, 0.95
 """Shares of alpha that the first peak is tried at [-]: of 200 traces one start in alpha left three at wrong minima."""
 
+FIRST_EDGE = 4
+"""Unknowns before those of the edges [-]."""
+
 HIGHEST_SHARE = 0.9999
 """Highest peak over alpha [-]: at alpha a flight has no end."""
 
 LARGEST_RESIDUAL = 0.1
 """Standard deviation of the residual over the first peak, above which the trace is no free rocking [-]."""
+
+NEGLIGIBLE = 1e-3
+"""Standard deviation of the residual over the first peak, below which a trace is not refused for its errors [-]."""
+
+LEAST_FREEDOM = 10.0
+"""Fewest independent samples less unknowns of a trace that is free rocking [-]."""
+
+SIGNIFICANT = 4.0
+"""Standard deviations beyond which a sum of correlations of the residual is no chance [-]."""
 
 HELD_SHARE = 0.95
 """Share of the first peak below which the body is taken as released [-]: a hand holds it before."""
@@ -89,7 +112,8 @@ def identify_free_rocking(
     edges : {1, 2}
         1 for a body with equal edges; 2 fits the three numbers of each edge.
     confidence : float
-        Of the intervals [-], (0, 1): those of least squares with independent errors of equal variance.
+        Of the intervals [-], (0, 1): those of least squares with independent errors of equal variance, which are
+        widened where the residual shows that errors follow each other, or that flights differ.
     stop : StopFlag, optional
         Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -99,13 +123,16 @@ def identify_free_rocking(
         Over `edge` ("both", or "right" and "left"): `restitution` [-] of the impacts after which the body turns on the
         edge, `alpha` [rad], `frequency_parameter` [rad/s], and the ends of their intervals, `_lower` and `_upper`. Over
         `time`: `rotation`, `fitted` and `residual` [rad], nan where nothing is fitted. Over `impact`: `impact_time` [s]
-        of the fit. `offset` and `noise` [rad]: the rotation at rest, and the standard deviation of the residual.
+        of the fit. `offset` [rad]: the rotation at rest, at the first impact; `drift` [rad/s] of the sensor, with its
+        interval. `noise` [rad]: standard deviation of the residual; `sample_noise` [rad]: of independent errors of the
+        samples. The attribute `warnings`: why intervals are wider, and a drift that stands out; empty without.
 
     Raises
     ------
     InvalidArgumentError
-        If an argument is not as described, the rotation seems to be in degrees, or the trace has fewer than three
-        impacts; for two edges, fewer than six.
+        If an argument is not as described, the rotation seems to be in degrees, the trace has fewer than three
+        impacts, for two edges fewer than six, or it is no free rocking: an oscillation, or errors from the best block
+        that last so long that fewer than `LEAST_FREEDOM` more independent samples than unknowns are left.
     StoppedError
         If `stop` was set.
 
@@ -116,7 +143,7 @@ def identify_free_rocking(
     """
     t, theta, sides = _checked(time, rotation, edges)
     level = number("confidence", confidence, 0.0, 1.0, closed="neither")
-    offset, noise, rests = _rest(theta)
+    offset, noise, _ = _rest(theta)
     flights, impacts = _flights(t, theta - offset, noise)
     needed = MIN_IMPACTS * sides
     if impacts.size < needed:
@@ -127,24 +154,106 @@ def identify_free_rocking(
     first = t[flights[0][held[-1]]]
     sign = float(np.sign(peaks[0]))
     starts = _starts(offset, impacts, peaks, sides)
-    count = needed + 1
+    count, fewer = needed + 1, False
     while True:  # a few flights first: a wrong period would shift the later ones by whole flights
-        count = min(count, len(flights))
         used = (t > first) & (t <= t[flights[count - 1][-1]])
         misfit = partial(_misfit, t[used], theta[used], sign, sides, count, stop)
         fit = min((_fitted(misfit, start) for start in starts), key=lambda one: float(one.cost))
-        if count == len(flights):
+        starts = [fit.x]
+        # the first offset is inaccurate, and errors that follow each other hardly differ from sample to sample
+        residual = math.sqrt(2.0 * fit.cost / np.count_nonzero(used))
+        flights = _flights(t, theta - _level(t, fit.x), max(noise, residual))[0]
+        if len(flights) <= needed or len(flights) == count or fewer:
             break
-        starts, count = [fit.x], count + count // 2
-        if not rests:  # the first offset is inaccurate
-            flights = _flights(t, theta - fit.x[0], noise)[0]
-    model, impacts = _trace(t[used], fit.x, sign, sides, count)
-    if fit.x[3 : 3 + sides].max() >= math.log(0.999 * MAX_ROTATION):
-        raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
-    if np.std(model - theta[used]) > LARGEST_RESIDUAL * np.abs(peaks).max():
+        fewer = len(flights) < count
+        count = min(count + count // 2, len(flights))
+    largest = float(np.abs(peaks).max())
+    if fit.x[FIRST_EDGE : FIRST_EDGE + sides].max() >= math.log(0.999 * MAX_ROTATION):
+        raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or _DEGREES)
+    if residual > LARGEST_RESIDUAL * largest:
         allowed = "free rocking: no block of the model is within 10 % of the first peak of these samples"
-        raise InvalidArgumentError("rotation", _peak_text(theta), allowed)
-    return _described(t, theta, used, model, impacts, fit, sides, level)
+        raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or allowed)
+    trace = partial(_trace, t[used], fit.x, sign, sides, count)
+    model, impacts = trace()
+    error, step = model - theta[used], float(np.ptp(t[used])) / np.count_nonzero(used)
+    correlated = _correlated(error)
+    freedom = error.size / correlated - fit.x.size
+    if freedom < LEAST_FREEDOM and residual > NEGLIGIBLE * largest:
+        raise InvalidArgumentError(
+            "rotation",
+            f"samples {residual:.3g} rad from the best block, {residual / noise:.3g} times their noise, by errors that "
+            f"last {correlated * step:.2g} s",
+            "free rocking of a rigid body on ground at rest, by a sensor whose drift does not change",
+        )
+    departure, changes = _departure(error, fit.jac, lambda one: trace(one)[0], count)
+    found = _Found(t, theta, used, model, impacts, fit, sides, level)
+    return _described(found, max(freedom, LEAST_FREEDOM), correlated, departure, changes, noise)
+
+
+class _Found(NamedTuple):
+    """A fit and what it was made from."""
+
+    t: Array
+    theta: Array
+    used: NDArray[np.bool_]
+    model: Array
+    impacts: Array
+    fit: OptimizeResult
+    sides: int
+    level: float
+
+
+def _level(t: Array, x: Array) -> Array:
+    """Rotation at rest, with the drift of the sensor."""
+    return np.asarray(x[0] + x[1] * (t - x[2]))
+
+
+def _correlated(residual: Array) -> float:
+    """Samples over which errors follow each other [-], 1 for independent ones: 1 + 2 times the sum of correlations.
+
+    The sum is over 1, 2, 4, ... lags, the largest of those that stand out from what independent errors have.
+    """
+    size = residual.size
+    power = np.abs(np.fft.rfft(residual - residual.mean(), 2 * size)) ** 2
+    covariance = np.fft.irfft(power)[:size]
+    lags = 2 ** np.arange(max(size // 4, 1).bit_length())
+    sums = np.cumsum(covariance[1:] / covariance[0])[lags - 1] if covariance[0] > 0.0 else np.zeros(lags.size)
+    return float(1.0 + 2.0 * np.max(sums, where=sums > SIGNIFICANT * np.sqrt(lags / size), initial=0.0))
+
+
+def _departure(residual: Array, jacobian: Array, trace: Callable[[Array], Array], flights: int) -> tuple[float, Array]:
+    """By how much alpha and eta would have to change from flight to flight for the residual, as a share of them [-].
+
+    0 where independent errors tell as much in one of 100 traces. The ground, or a body that is not rigid, changes the
+    flights so: a ground acceleration of a share of that of uplift changes alpha by this share. Also the derivatives
+    (samples, changes) of the trace.
+    """
+    step = 1e-6
+    units = step * np.delete(np.eye(2 * flights), flights, axis=0).reshape(-1, 2, flights)  # no impact at the start
+    at_none = trace(np.zeros((2, flights)))
+    changes = np.array([trace(one) - at_none for one in units]).T / step
+    seen = changes - jacobian @ np.linalg.lstsq(jacobian, changes)[0]
+    basis, sizes, _ = np.linalg.svd(seen, full_matrices=False)
+    basis = basis[:, sizes > 1e-6 * sizes[0]]
+    told = float(np.sum((basis.T @ residual) ** 2))
+    rank, freedom = basis.shape[1], residual.size - jacobian.shape[1] - basis.shape[1]
+    noise = (float(residual @ residual) - told) / max(freedom, 1)
+    if freedom < 1 or told <= rank * noise * float(f_distribution.isf(0.01, rank, freedom)):
+        return 0.0, changes
+    return math.sqrt((told - rank * noise) / float(np.sum(seen**2))), changes
+
+
+def _oscillation(impacts: Array, peaks: Array) -> str | None:
+    """A text if the flights last as long whatever their peak: those of a block last as its power 1/2 and more."""
+    duration = np.diff(impacts)
+    peak = np.abs(peaks[1 : duration.size + 1])
+    if np.ptp(np.log(peak)) == 0.0 or np.polyfit(np.log(peak), np.log(duration), 1)[0] > 0.25:
+        return None
+    return (
+        "free rocking, whose flights shorten with their peaks: these last "
+        f"{duration.min():.3g} to {duration.max():.3g} s for peaks of {peak.min():.3g} to {peak.max():.3g} rad, as of "
+        f"an oscillation of {0.5 / np.median(duration):.3g} Hz"
+    )
 
 
 _DEGREES = f"radians, with alpha below {MAX_ROTATION:g} rad: are these degrees?"
@@ -161,6 +270,10 @@ def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, A
         raise InvalidArgumentError("rotation", theta.shape, f"as many samples as of time, {t.shape}, at least 15")
     if not np.all(np.diff(t) > 0.0):
         raise InvalidArgumentError("time", f"a step of {np.diff(t).min():g} s", "ascending times")
+    shortest, duration = float(np.diff(t).min()), float(t[-1] - t[0])
+    if not (shortest >= SHORTEST_STEP and DURATION[0] <= duration <= DURATION[1]):
+        allowed = f"a trace of {DURATION[0]:g} to {DURATION[1]:g} s in steps of {SHORTEST_STEP:g} s or more"
+        raise InvalidArgumentError("time", f"{duration:g} s, the shortest step {shortest:g} s", allowed)
     if np.abs(theta).max() > MAX_ROTATION:
         raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
     return t, theta, integer("edges", edges, 1, 2)
@@ -209,7 +322,7 @@ def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Arr
         barrier = 1.0 - (1.0 - size / alpha) ** 2
         eta = float(np.clip(np.sqrt(np.median(barrier[1:] / barrier[:-1])), 0.3, 0.99))
         edges = np.repeat([math.log(alpha), math.log(np.median(rates)), eta], sides)
-        found.append(np.concatenate([[offset, impacts[0], size[0] / alpha], edges]))
+        found.append(np.concatenate([[offset, 0.0, impacts[0], size[0] / alpha], edges]))
     return found
 
 
@@ -220,85 +333,109 @@ def _misfit(t: Array, theta: Array, sign: float, sides: int, flights: int, stop:
 
 
 def _fitted(misfit: Callable[[Array], Array], x: Array) -> OptimizeResult:
-    sides = (x.size - 3) // 3
-    low = [-1.0, -np.inf, 1e-6, *[-12.0] * sides, *[-5.0] * sides, *[0.0] * sides]
-    high = [1.0, np.inf, HIGHEST_SHARE, *[math.log(MAX_ROTATION)] * sides, *[6.0] * sides, *[1.0] * sides]
+    sides = (x.size - FIRST_EDGE) // 3
+    low = [-1.0, -np.inf, -np.inf, 1e-6, *[-12.0] * sides, *[-5.0] * sides, *[0.0] * sides]
+    high = [1.0, np.inf, np.inf, HIGHEST_SHARE, *[math.log(MAX_ROTATION)] * sides, *[6.0] * sides, *[1.0] * sides]
     inside = np.clip(x, np.add(low, 1e-7), np.subtract(high, 1e-7))
     return least_squares(misfit, inside, bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12)
 
 
-def _trace(t: Array, x: Array, sign: float, sides: int, flights: int) -> tuple[Array, Array]:
+def _trace(
+    t: Array, x: Array, sign: float, sides: int, flights: int, changes: Array | None = None
+) -> tuple[Array, Array]:
     """Rotation at times t (samples,), and times of the impacts (flights - 1,), from all unknowns.
 
-    x: offset, time of the first impact, peak before it over alpha, and of each edge ln alpha, ln p, eta.
+    x: offset at the first impact, drift, time of that impact, peak before it over alpha, and of each edge ln alpha,
+    ln p, eta. `changes` (2, flights): of ln alpha and ln eta, flight by flight.
     """
-    offset, impact, share = x[:3]
-    alpha, p = np.exp(x[3 : 3 + sides]), np.exp(x[3 + sides : 3 + 2 * sides])
-    eta = x[3 + 2 * sides :]
+    impact, share = x[2:FIRST_EDGE]
+    alpha, p, eta = x[FIRST_EDGE:].reshape(3, sides)
+    alpha, p = np.exp(alpha), np.exp(p)
     side = 0 if sign > 0.0 else sides - 1
-    phi = float(alpha[side]) * (1.0 - share)
-    theta = np.full(t.shape, offset)
+    tilts, kicks = np.exp(np.zeros((2, flights)) if changes is None else changes).tolist()
+    angle = float(alpha[side]) * tilts[0]
+    phi = angle - float(alpha[side]) * share
+    theta = _level(t, x)
     impacts = np.empty(flights)
     begin = -math.inf
     for k in range(flights):
         m = math.cos(0.5 * phi) ** 2
         lowest = math.sin(0.5 * phi)
-        edge = math.sin(0.5 * alpha[side])
+        edge = math.sin(0.5 * angle)
         dn = min(lowest / edge, 1.0)
         half = float(ellipkinc(math.asin(math.sqrt(max(1.0 - dn * dn, 0.0) / m)), m)) / p[side]
         centre = impact - half if k == 0 else begin + half
         end = centre + half
         inside = (t > begin) & ((t <= end) if k < flights - 1 else True)
         shape = ellipj(np.clip(p[side] * (t[inside] - centre), -1e3, 1e3), m)[2]
-        theta[inside] += sign * (alpha[side] - 2.0 * np.arcsin(np.clip(lowest / shape, 0.0, 1.0)))
+        theta[inside] += sign * (angle - 2.0 * np.arcsin(np.clip(lowest / shape, 0.0, 1.0)))
         impacts[k] = begin = end
-        energy = p[side] ** 2 * (math.cos(phi) - math.cos(alpha[side]))
+        if k == flights - 1:
+            break
+        energy = p[side] ** 2 * (math.cos(phi) - math.cos(angle))
         side, sign = sides - 1 - side if sides == 2 else 0, -sign
-        cosine = math.cos(alpha[side]) + eta[side] ** 2 * max(energy, 0.0) / p[side] ** 2
-        phi = max(math.acos(min(cosine, 1.0)), (1.0 - HIGHEST_SHARE) * float(alpha[side]))
+        angle = float(alpha[side]) * tilts[k + 1]
+        cosine = math.cos(angle) + (eta[side] * kicks[k + 1]) ** 2 * max(energy, 0.0) / p[side] ** 2
+        phi = max(math.acos(min(cosine, 1.0)), (1.0 - HIGHEST_SHARE) * angle)
     return theta, impacts[:-1]
 
 
 def _described(
-    t: Array,
-    theta: Array,
-    used: NDArray[np.bool_],
-    model: Array,
-    impacts: Array,
-    fit: OptimizeResult,
-    sides: int,
-    level: float,
+    found: _Found, freedom: float, correlated: float, departure: float, changes: Array, noise: float
 ) -> xr.Dataset:
     """The result, with intervals from the Jacobian."""
-    freedom = model.size - fit.x.size
+    t, theta, used, model, impacts, fit, sides, level = found
     variance = 2.0 * fit.cost / freedom
     inverse = np.linalg.pinv(fit.jac)
     deviation = np.sqrt(variance * (inverse**2).sum(axis=1))
-    reach = float(student.ppf(0.5 * (1.0 + level), freedom)) * deviation
+    tail, texts = 0.5 * (1.0 + level), []
+    reach = float(student.ppf(tail, freedom)) * deviation
+    plain = float(student.ppf(tail, model.size - fit.x.size)) * np.sqrt(2.0 * fit.cost / (model.size - fit.x.size))
+    if departure:
+        by_changes = departure * np.sqrt(((inverse @ changes) ** 2).sum(axis=1))
+        reach = np.maximum(reach, float(student.ppf(tail, impacts.size)) * np.hypot(by_changes, deviation))
+        texts.append(f"the flights depart from those of one rigid body on ground at rest by {100 * departure:.2g} %")
+    if correlated > 1.0:
+        texts.append(f"errors follow each other over {correlated:.2g} samples")
+    if texts:
+        wider = float(np.max(reach / (plain * np.sqrt((inverse**2).sum(axis=1)))))
+        texts = [f"{' and '.join(texts)}: the intervals are up to {wider:.2g} times wider for it"]
+    if abs(fit.x[1]) > SIGNIFICANT * deviation[1]:
+        texts.append(f"the sensor drifts by {fit.x[1]:.3g} rad/s, which is taken off")
     fitted = np.full(t.shape, np.nan)
     fitted[used] = model
-    found = xr.Dataset(
+    about = "drift of the sensor"
+    result = xr.Dataset(
         {
             "rotation": variable("time", theta, "rad", "measured rotation"),
             "fitted": variable("time", fitted, "rad", "rotation of the fitted body"),
             "residual": variable("time", theta - fitted, "rad", "measured less fitted rotation"),
             "impact_time": variable("impact", impacts, "s", "times of the impacts"),
-            "offset": variable((), fit.x[0], "rad", "rotation of the body at rest"),
-            "noise": variable((), math.sqrt(variance), "rad", "standard deviation of the residual"),
+            "offset": variable((), fit.x[0], "rad", "rotation of the body at rest, at the first impact"),
+            "drift": variable((), fit.x[1], "rad s-1", about),
+            "drift_lower": variable((), fit.x[1] - reach[1], "rad s-1", f"{about}, end of the interval"),
+            "drift_upper": variable((), fit.x[1] + reach[1], "rad s-1", f"{about}, end of the interval"),
+            "noise": variable(
+                (),
+                math.sqrt(2.0 * fit.cost / (model.size - fit.x.size)),
+                "rad",
+                "standard deviation of the residual",
+            ),
+            "sample_noise": variable((), noise, "rad", "standard deviation of independent errors of the samples"),
         },
         {
             "time": variable("time", t, "s", "time"),
             "edge": variable("edge", ["both"] if sides == 1 else ["right", "left"], "", "edge of rotation"),
         },
-        {"confidence": level, "samples": int(used.sum())},
+        {"confidence": level, "samples": int(used.sum()), "warnings": "; ".join(texts)},
     )
     for k, (name, unit, meaning) in enumerate(
         [("alpha", "rad", "slenderness angle"), ("frequency_parameter", "rad s-1", "frequency parameter p"),
          ("restitution", "1", "coefficient of restitution eta of impacts after which it turns on the edge")]
     ):  # fmt: skip
-        own = slice(3 + k * sides, 3 + (k + 1) * sides)
+        own = slice(FIRST_EDGE + k * sides, FIRST_EDGE + (k + 1) * sides)
         for suffix, shift in (("", 0.0), ("_lower", -reach[own]), ("_upper", reach[own])):
             values = fit.x[own] + shift
-            about = {"units": unit, "long_name": meaning + (", end of the interval" if suffix else "")}
-            found[name + suffix] = ("edge", values if name == "restitution" else np.exp(values), about)
-    return found
+            attributes = {"units": unit, "long_name": meaning + (", end of the interval" if suffix else "")}
+            result[name + suffix] = ("edge", values if name == "restitution" else np.exp(values), attributes)
+    return result

@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from os import PathLike
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
 from rocking._base.errors import InvalidArgumentError, float_array, number
 from rocking._base.units import Scalar
 from rocking._dimensional.thresholds import scale_thresholds
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, offset_doubts
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
-from rocking.suites.hazard import annual_rate
+from rocking.suites.hazard import Hazard, annual_rate
+from rocking.suites.hazard_files import hazard_arrays
 
 MAX_YEARS = 1e9
 """Longest age of a rock [year]."""
 
 
-def survival(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, ArrayLike], *, years: Scalar) -> xr.Dataset:
+def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str]], *, years: Scalar) -> xr.Dataset:
     """Probability that a rock has stood for some years, under each branch of a hazard model.
 
     Overturning by earthquakes is a Poisson process of the rate nu = integral of P(x) abs(dH(x)), as
@@ -32,9 +34,9 @@ def survival(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, Arra
     ----------
     fragility : xarray.Dataset
         Result of `rocking.fragility`; its fitted curves are used.
-    hazard : xarray.DataArray, or pair of arrays
+    hazard : path, sequence of paths, xarray.DataArray, or pair of arrays
         As for `rocking.suites.annual_rate`; the second array of a pair may be (branches, levels), annual rates of
-        exceedance [1/year] under several branches.
+        exceedance [1/year] under several branches. Several files are as many branches.
     years : float
         Age of the rock in its present form [year], [0, 1e9].
 
@@ -57,10 +59,7 @@ def survival(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, Arra
     on probabilistic seismic hazard analysis, Bulletin of the Seismological Society of America 103(3), 1898-1911.
     """
     time = number("years", years, 0.0, MAX_YEARS, unit="year")
-    pair = () if isinstance(hazard, xr.DataArray) else tuple(hazard)
-    rates = float_array("hazard rate", pair[1], unit="1/year") if len(pair) == 2 else np.zeros(0)
-    several = rates.ndim == 2
-    branches = [(pair[0], branch) for branch in rates] if several else [hazard]
+    branches, several = _branches(hazard)
     found = xr.concat([annual_rate(fragility, one) for one in branches], "branch")
     result = xr.Dataset(
         {
@@ -73,6 +72,17 @@ def survival(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, Arra
     for name in ("survival", "survival_lower"):
         result[name].attrs = {"units": "1", "long_name": "probability that the rock has not been overturned"}
     return result if several else result.isel(branch=0)
+
+
+def _branches(hazard: Any) -> tuple[list[Any], bool]:
+    """The hazard curve of each branch, and whether there are several."""
+    if isinstance(hazard, (list, tuple)) and hazard and all(isinstance(one, str | PathLike) for one in hazard):
+        return [*hazard], True
+    if not isinstance(hazard, (list, tuple, np.ndarray)):
+        return [hazard], False
+    intensity, rates = hazard_arrays(hazard)
+    checked = float_array("hazard rate", rates, unit="1/year")
+    return ([(intensity, branch) for branch in checked], True) if checked.ndim == 2 else ([hazard], False)
 
 
 def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: Scalar = 0.95) -> xr.Dataset:
@@ -98,7 +108,7 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         Over `record`: `overturning_acceleration` [m/s2] and `overturning_velocity` [m/s] of the scaled records, nan for
         one that does not overturn the rock up to ten times the scale of uplift; `unexceeded_acceleration` and
         `unexceeded_velocity` of the line; and `intercept`, `slope` and `dispersion` [-], a (for PGA in m/s2, PGV/PGA in
-        s), b and s.
+        s), b and s. The attribute `warnings`, where there is one, names records whose offset is part of their PGA.
 
     Raises
     ------
@@ -128,9 +138,10 @@ def unexceeded(body: AbstractBlock, motions: Sequence[Record], *, probability: S
         "unexceeded_acceleration": ("m s-2", level, "PGA that overturns with the probability"),
         "unexceeded_velocity": ("m s-1", level * pgv / pga, "PGV that overturns with the probability"),
     }
+    doubts = offset_doubts(motions)
     return xr.Dataset(
         {name: variable("record", values, unit, text) for name, (unit, values, text) in names.items()}
         | {"intercept": ((), intercept), "slope": ((), slope), "dispersion": ((), dispersion)},
         {"record": ("record", [one.name for one in motions])},
-        {"probability": share},
+        {"probability": share} | ({"warnings": "; ".join(doubts)} if doubts else {}),
     )

@@ -5,16 +5,23 @@ rotation in the negative direction. Those of the catalogue are of two families: 
 block has exact arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low
 frequencies. To add a pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time, of these
 families or of one's own (`SmoothPulse`).
+
+A text names a pulse, mirrors it and states its parameters, with their units: "-mavroeidis_papageorgiou(phase=90 deg)".
 """
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable
-from functools import lru_cache
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from typing import Annotated, get_type_hints
 
-from rocking._base.errors import InvalidArgumentError, number, one_of
-from rocking._excitation.shapes import AbstractPulse, checked_number
+from rocking._base.errors import InvalidArgumentError, number, one_of, plain_number
+from rocking._base.parameter import Parameter
+from rocking._excitation.shapes import AbstractPulse
 from rocking._excitation.sinusoids import SinusoidalPulse
 from rocking._excitation.smooth import SmoothPulse
 from rocking._excitation.wavelets import WaveletPulse
@@ -31,6 +38,11 @@ __all__ = [
     "pulse_number",
     "register",
 ]
+
+
+CYCLES = Parameter("cycles", "gamma", "-", 1.0, 20.0, "right", "number of cycles within the envelope")
+
+PHASE = Parameter("phase", "nu", "rad", -2 * math.pi, 2 * math.pi, "both", "phase within the envelope")
 
 
 def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]) -> SinusoidalPulse:
@@ -99,7 +111,9 @@ def ricker_antisymmetric() -> WaveletPulse:
     )
 
 
-def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> SinusoidalPulse:
+def mavroeidis_papageorgiou(
+    cycles: Annotated[float, CYCLES] = 2.0, phase: Annotated[float, PHASE] = 0.0
+) -> SinusoidalPulse:
     """Acceleration of the velocity pulse of Mavroeidis & Papageorgiou (2003), scaled to unit peak.
 
     Parameters
@@ -114,8 +128,7 @@ def mavroeidis_papageorgiou(cycles: float = 2.0, phase: float = 0.0) -> Sinusoid
     -[sin(phi/gamma) cos(phi + nu) + gamma sin(phi + nu) (1 + cos(phi/gamma))] is the sum of three sinusoids
     -[gamma sin B + (gamma + 1)/2 sin(B + A) + (gamma - 1)/2 sin(B - A)], A = phi/gamma, B = phi + nu.
     """
-    cycles = number("cycles", cycles, 1.0, 20.0, closed="right")
-    phase = number("phase", phase, -2 * math.pi, 2 * math.pi, unit="rad")
+    cycles, phase = _checked(CYCLES, cycles), _checked(PHASE, phase)
     shift = phase + math.pi / 2  # -sin x = cos(x + pi/2)
     raw = (
         (cycles, 1.0, shift),
@@ -189,38 +202,109 @@ def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 
 
-def pulse(name: str, **parameters: float) -> AbstractPulse:
+@dataclass(frozen=True)
+class PulseParameter:
+    """A parameter of a named pulse, and its default in the unit of the declaration."""
+
+    declared: Parameter
+    default: float
+
+
+@cache
+def pulse_parameters(name: str) -> Mapping[str, PulseParameter]:
+    """The parameters of a named pulse without its sign, by name; of a registered one there are none."""
+    factory = _FACTORIES.get(name)
+    if factory is None:
+        return {}
+    hints = get_type_hints(factory, include_extras=True)
+    return {
+        key: PulseParameter(hints[key].__metadata__[0], one.default)
+        for key, one in inspect.signature(factory).parameters.items()
+    }
+
+
+def pulse(name: str, **parameters: float | str) -> AbstractPulse:
     """The pulse of that name; `"-sine"` is the mirrored sine.
 
     Parameters
     ----------
     name : str
-        One of `PULSE_NAMES` or of a registered pulse, with an optional leading minus.
+        One of `PULSE_NAMES` or of a registered pulse, with an optional leading minus, and its parameters in brackets,
+        with their units: "mavroeidis_papageorgiou(cycles=3, phase=90 deg)".
     **parameters : float
-        `cycles` and `phase`, for mavroeidis_papageorgiou only.
+        The same as arguments: `cycles` and `phase` [rad], for mavroeidis_papageorgiou only.
+
+    Returns
+    -------
+    AbstractPulse
+        Its name is the text that makes it again.
 
     Raises
     ------
     InvalidArgumentError
         For an unknown name or parameter, or a parameter out of range.
     """
-    if not isinstance(name, str):
+    parts = _parts(name) if type(name) is str else None
+    if parts is None:
         allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
         raise InvalidArgumentError("pulse", name, allowed)
-    registered = _REGISTERED.get(name.removeprefix("-"))
-    if registered is not None and not parameters:
-        return registered.mirrored() if name.startswith("-") else registered
-    units = {"phase": "rad"}
-    given = {key: checked_number(key, value, unit=units.get(key, "-")) for key, value in parameters.items()}
-    return _build_pulse(name, **given)
+    sign, base, written = parts
+    given: dict[str, float | str] = {**written, **parameters}
+    if len(given) < len(written) + len(parameters):
+        raise InvalidArgumentError("pulse", name, "each parameter once")
+    registered = _REGISTERED.get(base)
+    if registered is not None and not given:
+        return registered.mirrored() if sign else registered
+    known = pulse_parameters(one_of("pulse", base, pulse_names()))
+    for key, value in given.items():
+        if key not in known:
+            raise InvalidArgumentError(key, value, f"for {base}: {' and '.join(known) or 'no parameters'}")
+    return _build_pulse(sign, base, **{key: _checked(known[key].declared, value) for key, value in given.items()})
+
+
+def split_pulses(text: str) -> list[str]:
+    """The texts of several pulses, separated by commas."""
+    return [one.strip() for one in re.split(r",(?![^()]*\))", text)]
+
+
+_TEXT = re.compile(r"(-?)([A-Za-z_]\w{0,99})(?:\s*\(([^()]{0,200})\))?")
 
 
 @lru_cache(maxsize=256)
-def _build_pulse(name: str, **parameters: float) -> AbstractPulse:
-    base = one_of("pulse", name.removeprefix("-"), pulse_names())
-    allowed = ("cycles", "phase") if base == "mavroeidis_papageorgiou" else ()
-    for parameter, value in parameters.items():
-        if parameter not in allowed:
-            raise InvalidArgumentError(parameter, value, f"for {base}: {' and '.join(allowed) or 'no parameters'}")
+def _parts(text: str) -> tuple[str, str, Mapping[str, str]] | None:
+    """The sign, the name and the parameters of a pulse; None if the text has another form."""
+    found = _TEXT.fullmatch(text)
+    if found is None:
+        return None
+    parameters: dict[str, str] = {}
+    for part in filter(str.strip, (found[3] or "").split(",")):
+        key, equals, value = (one.strip() for one in part.partition("="))
+        if not equals or key in parameters:
+            raise InvalidArgumentError("pulse", text, "each parameter once, as name=value")
+        parameters[key] = value
+    return found[1], found[2], parameters
+
+
+def _checked(parameter: Parameter, value: float | str) -> float:
+    """A parameter of a pulse in the unit of its declaration; a text has its unit."""
+    given = plain_number(parameter.name, value) if isinstance(value, str) and parameter.unit == "-" else value
+    return number(parameter.name, given, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit)
+
+
+def _digits(value: float) -> str:
+    """The shortest text of a number that reads the same."""
+    short = f"{value:g}"
+    return short if float(short) == value else repr(value)
+
+
+@lru_cache(maxsize=256)
+def _build_pulse(sign: str, base: str, **parameters: float) -> AbstractPulse:
     made = _FACTORIES[base](**parameters)
-    return made.mirrored() if name.startswith("-") else made
+    changed = [
+        f"{key}={_digits(parameters[key])}{one.declared.unit.removeprefix('-')}"
+        for key, one in pulse_parameters(base).items()
+        if parameters.get(key, one.default) != one.default
+    ]
+    if changed:
+        made = replace(made, name=f"{base}({','.join(changed)})")
+    return made.mirrored() if sign else made

@@ -101,7 +101,7 @@ class SampledPulse(AbstractPulse):
             first = int(np.flatnonzero(~(steps > 0.0))[0])
             allowed = f"ascending times, above {times[first]:g}"
             raise InvalidArgumentError("time", float(times[first + 1]), allowed, (first + 1,))
-        if not (math.isfinite(duration) and steps.min() * MAX_RATIO >= duration):
+        if not (math.isfinite(duration) and steps.min() >= duration / MAX_RATIO):
             raise InvalidArgumentError(
                 "time", f"shortest interval {steps.min():g}", f"at least {MAX_RATIO:g} of them fit"
             )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rocking._base.errors import InvalidArgumentError, float_array
@@ -109,7 +110,8 @@ def labelled_response(
     Raises
     ------
     InvalidArgumentError
-        If the indexes of a dimension differ, or a plain argument is an array.
+        If the indexes of a dimension differ, or a plain argument is an array. An error of `solve` names the value
+        without its place, which is that in a chunk, or among dimensions in another order.
     """
     import xarray as xr  # noqa: PLC0415  # loaded by who made the arguments
 
@@ -122,7 +124,8 @@ def labelled_response(
         options["threads"] = 1
 
     def solved(*values: Any) -> tuple[Any, ...]:
-        found = solve(**dict(zip(given, values, strict=True)), **options)
+        with without_place():
+            found = solve(**dict(zip(given, values, strict=True)), **options)
         return tuple(getattr(found, one.name) for one in fields)
 
     try:
@@ -140,5 +143,15 @@ def labelled_response(
     data = xr.Dataset(named)
     for one in fields:
         data[one.name].attrs = {"units": one.unit} | one.attributes
-    free = {name: value for name, value in given.items() if name not in data.dims}
-    return data.assign_coords({name: value for name, value in free.items() if not getattr(value, "chunks", None)})
+    return data.assign_coords({name: value for name, value in given.items() if name not in data.dims})
+
+
+@contextmanager
+def without_place() -> Iterator[None]:
+    """Errors of arguments inside have no index: that of a part is not that of the whole array."""
+    try:
+        yield
+    except InvalidArgumentError as error:
+        if not error.index:
+            raise
+        raise InvalidArgumentError(error.parameter, error.value, error.allowed) from None

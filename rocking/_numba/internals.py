@@ -12,7 +12,7 @@ copies have internal linkage in the module of the entry, and every process runs 
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
@@ -21,41 +21,22 @@ from typing import Any
 import numba
 from numba.core.caching import UserProvidedCacheLocator
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
-from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
 from numba.core.targetconfig import ConfigStack
-from numba.core.typed_passes import InlineOverloads, NativeLowering, NopythonRewrites
 from numba.core.types.functions import BaseFunction
 from numba.core.types.npytypes import Record
-from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll
-from numba.np import linalg
-
-
-def _found() -> None:
-    """In place of `numba.np.linalg.ensure_blas`, which raises ImportError if there is no SciPy."""
-
-
-# numba registers its array functions when it compiles or loads its first function. Then it looks for the BLAS of SciPy,
-# which it needs for products of matrices, by importing it: a quarter of the time in which a process gives its first
-# response. SciPy is a dependency of this package, so that BLAS is there, and numba imports it where a product is
-# compiled; no kernel has one.
-_ensure_blas, linalg.ensure_blas = linalg.ensure_blas, _found
-try:
-    from numba.np import arraymath  # noqa: F401
-finally:
-    linalg.ensure_blas = _ensure_blas
 
 _PACKAGE = Path(__file__).parents[1]
 
 
 def _with_private(options: dict[str, Any], *, arrays: bool) -> dict[str, Any]:
-    """The options with private ones: no wrapper for C, and no reference counts of arrays where none are created.
+    """The options, without reference counts of arrays where none are created.
 
     numba counts the references to an array argument with atomic operations in each function that is not inlined: a
     fifth of the time of a rigid block.
     """
-    return {**options, "no_cfunc_wrapper": True, **({} if arrays else {"_nrt": False})}
+    return options if arrays else options | {"_nrt": False}
 
 
 class _SingleModuleLibrary(JITCodeLibrary):
@@ -68,8 +49,8 @@ class _SingleModuleLibrary(JITCodeLibrary):
     the same everywhere, and the pass that removes pairs of them finds them by name (kernels took 1.7 times the time).
     """
 
-    passes: Mapping[str, int] = {}
-    """Settings of LLVM's passes other than numba's."""
+    opt: int | None = None
+    """LLVM's level of optimisation; None: numba's passes. Another one changes last digits of slender peaks."""
 
     def finalize(self) -> None:
         _link_all_called(self, self._final_module)
@@ -82,44 +63,17 @@ class _SingleModuleLibrary(JITCodeLibrary):
                 function.linkage = "internal"
                 if not function.name.startswith("NRT_"):
                     function.name = f"{self.name}.{function.name}"
-        if any(function.name.startswith("NRT_") for function in self._final_module.functions):
+        if self.opt is None:
             super()._optimize_final_module()
-            return
-        # without the first passes of numba, which prepare the removal of pairs of counts: a twentieth less time
-        manager, builder = self._codegen._module_pass_manager(**self.passes)
-        manager.run(self._final_module, builder)
+        else:
+            manager, builder = self._codegen._module_pass_manager(opt=self.opt)
+            manager.run(self._final_module, builder)
 
 
 class _LightLibrary(_SingleModuleLibrary):
     """The library of an entry that gains nothing where LLVM inlines and unrolls more."""
 
-    passes: Mapping[str, int] = {"opt": 1}
-
-
-class _UseLibrary(LoweringPass):
-    """Selects `library` as the target of code generation."""
-
-    library: type[JITCodeLibrary]
-
-    def __init__(self) -> None:
-        LoweringPass.__init__(self)
-
-    def run_pass(self, state: Any) -> bool:
-        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
-        return False
-
-
-@register_pass(mutates_CFG=False, analysis_only=False)
-class _UseSingleModuleLibrary(_UseLibrary):
-    _name = "rocking_one_module"
-    library = _SingleModuleLibrary
-
-
-@register_pass(mutates_CFG=False, analysis_only=False)
-class _UseLightLibrary(_UseLibrary):
-    _name = "rocking_light"
-    library = _LightLibrary
+    opt = 1
 
 
 class _NoEnvironment:
@@ -178,54 +132,6 @@ def _link_all_called(library: Any, module: Any) -> None:
     link(library)
 
 
-@register_pass(mutates_CFG=False, analysis_only=False)
-class _UseLinkedLibrary(_UseLibrary):
-    _name = "rocking_linked"
-    library = _LinkedLibrary
-
-
-_UNUSED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites)
-"""Passes for what kernels do not have: inner functions, functions that numba inlines, expressions of arrays.
-
-Each looks through the whole function: without them compilation takes a twentieth less.
-"""
-
-
-class _CurrentFlags(Flags):
-    """Flags of the function that is compiled, which do not change meanwhile: the same object for equal flags.
-
-    numba compares them, with all their values, at each call that a kernel contains.
-    """
-
-    __slots__ = ("_hash",)
-
-    def __init__(self, copy_from: Flags) -> None:
-        super().__init__(copy_from)
-        self._hash: int = super().__hash__()
-
-    def __hash__(self) -> int:
-        return self._hash
-
-    def __eq__(self, other: object) -> bool:
-        return self is other or super().__eq__(other)
-
-    def copy(self) -> Flags:
-        return Flags(self)
-
-
-class _Flags(Flags):
-    """Flags of a kernel; their copy becomes the current ones."""
-
-    __slots__ = ()
-
-    def copy(self) -> Flags:
-        current = _CurrentFlags(self)
-        return _CURRENT.setdefault(current, current)
-
-
-_CURRENT: dict[Flags, Flags] = {}
-
-
 @contextmanager
 def _remembering(kind: Any, name: str, key: Callable[..., Any]) -> Iterator[None]:
     """Let numba call a method of `kind` once for each `key` of its arguments, until the block ends."""
@@ -253,29 +159,18 @@ def _itself(record: Any) -> Any:
     return record
 
 
-class _Compiler(CompilerBase):
-    """The compiler of numba with another library, which the pass `select` sets before lowering."""
+class _KernelCompiler(Compiler):
+    """The compiler of numba with another library: here of the kernels inside entries."""
 
-    select: Any
+    library: type[JITCodeLibrary] = _LinkedLibrary
 
-    def __init__(self, *args: Any) -> None:
-        super().__init__(*args)
-        self.state.flags = _Flags(self.state.flags)
-
-    def define_pipelines(self) -> list[Any]:
-        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [one for one in passes.passes if one[0] not in _UNUSED]
-        passes.add_pass_after(self.select, self._before_lowering(passes))
-        passes.finalize()
-        return [passes]
-
-    @staticmethod
-    def _before_lowering(passes: Any) -> Any:
-        classes = [kind for kind, _ in passes.passes]
-        return classes[classes.index(NativeLowering) - 1]
+    def compile_extra(self, func: Any) -> Any:
+        self.state.library = self.library(self.state.targetctx.codegen(), func.__qualname__)
+        self.state.library.enable_object_caching()
+        return super().compile_extra(func)
 
 
-class _EntryCompiler(_Compiler):
+class _EntryCompiler(_KernelCompiler):
     """Compiler of entries.
 
     Garbage is not collected meanwhile: compilation makes millions of objects and keeps most of them. numba looks
@@ -283,7 +178,7 @@ class _EntryCompiler(_Compiler):
     arguments of a kernel at each pass: here once for each combination of types, in a quarter less time.
     """
 
-    select: type[_UseLibrary] = _UseSingleModuleLibrary
+    library = _SingleModuleLibrary
 
     def compile_extra(self, func: Any) -> Any:
         collecting = gc.isenabled()
@@ -299,13 +194,7 @@ class _EntryCompiler(_Compiler):
 class _LightEntryCompiler(_EntryCompiler):
     """Compiler of light entries."""
 
-    select = _UseLightLibrary
-
-
-class _KernelCompiler(_Compiler):
-    """Compiler of the kernels inside entries."""
-
-    select = _UseLinkedLibrary
+    library = _LightLibrary
 
 
 class PackageCacheLocator(UserProvidedCacheLocator):
@@ -317,6 +206,9 @@ class PackageCacheLocator(UserProvidedCacheLocator):
     def get_cache_path(self) -> str:
         """The folder that was set for the entry."""
         return str(Path(self._cache_path))
+
+    def ensure_cache_path(self) -> None:
+        """Nothing: numba would refuse a folder that can only be read."""
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:

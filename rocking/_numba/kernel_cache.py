@@ -1,8 +1,8 @@
 """The cache of machine code on disk: one folder for each state of the sources, in it one for each entry.
 
 The cache of numba tracks the file of the called function, its place and its time, not the files of the kernels that it
-calls. Here the name of the folder contains a digest of the sources of the kernels and of the modules of the package
-that they import: a change in any of them leads to recompilation.
+calls. Here the name of the folder contains a digest of the sources of the kernels, of the modules of this package that
+they import, and of the versions of the other packages: a change in any of them leads to recompilation.
 
 numba loads whatever it finds, and fails where it cannot write. Here the folder of an entry holds a digest of its files,
 which is compared before they are loaded: what is damaged is made again; where the folder cannot be written, the entry
@@ -27,8 +27,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
+import llvmlite  # type: ignore[import-untyped]
 import numba
-from llvmlite import binding  # type: ignore[import-untyped]
+import numpy as np
+from llvmlite import binding
 
 from rocking._base.source_tree import SourceTree, imported_names
 from rocking._numba.way import INTERNALS
@@ -38,6 +40,10 @@ PACKAGE = Path(__file__).parents[1]
 DIGEST = "sha256"
 """File with the digest of the other files of an entry."""
 
+COMPLETE = "complete"
+"""File in the folder of a state that marks it as complete: it serves where it can only be read, as in an installation
+of another user or in a container."""
+
 LATENCY = 1.0
 """How long the files of an entry may differ from their digest [s]: a process writes them first, then the digest."""
 
@@ -46,6 +52,9 @@ COMPILERS = {"numba", "llvmlite"}
 
 DECORATORS = {"kernel", "specialised_kernel", "array_kernel", "jitable", "entry", "light_entry", "array_entry"}
 """and those with a function that one of these names of `rocking._numba.compilation` decorates."""
+
+MADE_WITH = (llvmlite, np, numba)
+"""Packages that modules with compiled code import: their versions count, not their files."""
 
 NOT_KEPT = threading.Event()
 """Set when machine code was compiled that could not be written to the disk."""
@@ -64,25 +73,25 @@ class Make(Protocol):
 def cache_folder() -> str | None:
     """Folder of the compiled kernels: below NUMBA_CACHE_DIR if set, else beside the package, else in the user cache.
 
-    None, with a warning, if none of them is writable.
+    None, with a warning, if none of them is writable or, by the faster way, complete.
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()) / "rocking"
     parents = [Path(given)] if given else [PACKAGE / "__pycache__", user]
-    sources = SourceTree(PACKAGE.parent)
+    sources = SourceTree(PACKAGE.parent, {PACKAGE.name})
     # a file in the folder tells for which state of the whole package it is: imports are followed once for each state
     marker = f"sources-{_digest(sources, sources.package())}"
     known = (found.parent.name for parent in parents for found in parent.glob(f"kernels-*/{marker}"))
     name = next(known, None) or f"kernels-{kernel_digest(sources)}"
     for parent in parents:
-        if _is_writable(parent / name, marker):
+        if _is_writable(parent / name, marker) or _can_be_read(parent / name):
             return str(parent / name)
     _warn_not_kept("no cache folder is writable")
     return None
 
 
 def kernel_digest(sources: SourceTree) -> str:
-    """Digest of what compiled code depends on: processor, Python, numba, and the kernel files with their imports.
+    """Digest of what compiled code depends on: processor, Python, `MADE_WITH`, kernel files with what they import here.
 
     The processor is that of the machine, or the one that NUMBA_CPU_NAME and NUMBA_CPU_FEATURES name: the folder is then
     found on every machine.
@@ -103,7 +112,7 @@ def keep_on_disk(make: Make, function: Callable[..., Any]) -> Any:
     if parent is None:
         return make(cache=False)
     folder = Path(parent, f"{function.__module__}.{function.__qualname__.replace('<locals>.', '')}")
-    if not _is_writable(folder):
+    if not _is_writable(folder) and not _can_be_read(Path(parent)):
         _warn_not_kept(f"{folder} is not writable")
         return make(cache=False)
     config: Any = numba.config  # its attributes are made at run time
@@ -192,8 +201,8 @@ def _digest(sources: SourceTree, files: Iterable[Path]) -> str:
     name = binding.get_host_cpu_name() if config.CPU_NAME is None else config.CPU_NAME
     features = binding.get_host_cpu_features().flatten() if config.CPU_FEATURES is None else config.CPU_FEATURES
     way = "plain" if INTERNALS is None else "faster"
-    made_by = sys.version, numba.__version__, way, name, features, sources.digest_of(files)
-    return hashlib.sha256("\n".join(made_by).encode()).hexdigest()[:16]
+    made_by = sys.version, *(f"{one.__name__} {one.__version__}" for one in MADE_WITH), way, name, features
+    return hashlib.sha256("\n".join([*made_by, sources.digest_of(files)]).encode()).hexdigest()[:16]
 
 
 def _is_writable(folder: Path, marker: str | None = None) -> bool:
@@ -206,6 +215,11 @@ def _is_writable(folder: Path, marker: str | None = None) -> bool:
     except OSError:
         return False
     return True
+
+
+def _can_be_read(folder: Path) -> bool:
+    """Whether it holds all entries; the plain way writes into each."""
+    return INTERNALS is not None and (folder / COMPLETE).exists()
 
 
 def _warn_not_kept(reason: str) -> None:

@@ -4,18 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import xarray as xr
 
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import Scalar
 from rocking._dimensional.equivalent_block import EquivalentBlock
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import AbstractBlock, RectangularBlock
-from rocking._model.labelled import broadcast_by_name, with_index
+from rocking._model.labelled import broadcast_by_name, with_index, without_place
 
-Analyse = Callable[[Sequence[AbstractBlock]], xr.Dataset]
+Analyse = Callable[[Sequence[AbstractBlock] | RigidBody], xr.Dataset]
+
+
+@runtime_checkable
+class HasBody(Protocol):
+    """What has a body for each of its directions, such as `rocking.Object`."""
+
+    restitution: Scalar
+
+    @property
+    def body(self) -> RigidBody:
+        """The bodies, labelled by direction."""
+
 
 OWN_DIMENSIONS = ("intensity", "record", "demand", "model")
 """Dimensions of the results, which the arguments of a body cannot have."""
@@ -27,17 +40,18 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     Parameters
     ----------
     analyse : callable
-        Gives the fragility of a sequence of blocks, over `block`.
+        Gives the fragility, over `block`, of a sequence of blocks; or of bodies (bodies,) if one of all has two
+        different edges.
     body : RigidBody
-        Bodies with two equal edges. Of unlabelled arrays the axes are dim_0, dim_1, ...; the result is lazy, in the
+        Of unlabelled arrays the axes are dim_0, dim_1, ...; the result is lazy, in the
         chunks of the arguments, where one of them is backed by dask.
 
     Raises
     ------
     InvalidArgumentError
-        If a body has two different edges, or a dimension of it is one of the result.
+        If a dimension of the body is one of the result.
     """
-    labels = body.labels
+    labels, equal = body.labels, _has_equal_edges(body)
     plain = {name: value for name, value in body.parameters.items() if name not in labels}
     # a variable of the name of a dimension would become its coordinate
     given = xr.Dataset({f"of body: {name}": value for name, value in broadcast_by_name(labels).items()})
@@ -46,9 +60,12 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
         raise InvalidArgumentError("blocks", taken[0], "dimensions other than " + ", ".join(OWN_DIMENSIONS))
 
     def part(chunk: xr.Dataset) -> xr.Dataset:
-        bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
+        with without_place():
+            bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
         names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
-        found = _over(analyse(_blocks_of(bodies)), names, bodies.shape).assign_coords(chunk.coords)
+        found = _over(analyse(_blocks_of(bodies) if equal else _in_a_row(bodies)), names, bodies.shape).assign_coords(
+            chunk.coords
+        )
         return with_index(found, names[-1], body.index) if names else found
 
     if not given.chunks:
@@ -58,14 +75,23 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     return xr.map_blocks(part, given, template=template.chunk(given.chunksizes))
 
 
+def _has_equal_edges(bodies: RigidBody) -> bool:
+    edge = bodies.right
+    return bool(
+        np.all((bodies.left.alpha == edge.alpha) & (bodies.left.frequency_parameter == edge.frequency_parameter))
+    )
+
+
+def _in_a_row(bodies: RigidBody) -> RigidBody:
+    """The bodies as an array (bodies,), in C order."""
+    return RigidBody(
+        **{name: np.broadcast_to(value, bodies.shape).ravel() for name, value in bodies.parameters.items()}
+    )
+
+
 def _blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
-    """The bodies as blocks, in C order: rectangles where all are, else blocks of the same alpha and p."""
+    """Bodies with equal edges as blocks, in C order: rectangles where all are, else blocks of the same alpha and p."""
     edge, shape = bodies.right, bodies.shape
-    equal = (bodies.left.alpha == edge.alpha) & (bodies.left.frequency_parameter == edge.frequency_parameter)
-    if not np.all(equal):
-        raise InvalidArgumentError(
-            "blocks", bodies, "bodies with two equal edges: one with two different ones has no slenderness angle"
-        )
     uniform = np.hypot(bodies.width, bodies.top_height) / math.sqrt(12.0)
     rectangular = bool(np.all((bodies.top_height == 2.0 * bodies.height) & (bodies.gyration == uniform)))
     columns: tuple[Any, ...] = (bodies.width, 2.0 * bodies.height, bodies.gravity)

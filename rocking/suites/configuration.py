@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
-from rocking._excitation.records.readers.read_record import parse_record, read_content
+from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 from rocking._model.block import RectangularBlock
 from rocking._model.checks import check_number
@@ -40,7 +40,9 @@ DEFAULTS: dict[str, Any] = {
 }
 """Values of keys that a configuration may leave out."""
 
-STATED_BY_FILES: dict[str, Any] = dict.fromkeys(("unit", "time_step", "component", "vertical", "baseline_order"))
+STATED_BY_FILES: dict[str, Any] = dict.fromkeys(
+    ("unit", "time_step", "component", "vertical", "skip", "baseline_order")
+)
 """The same in its section `records`."""
 
 MAX_POINTS = 10_000
@@ -61,6 +63,7 @@ class RecordFiles:
     component: str | None
     vertical: str | None
     baseline_order: int | None
+    skip: int | None = None
 
     def paths(self) -> list[Path]:
         """The files, in the order of their names.
@@ -94,6 +97,7 @@ class RecordFiles:
             time_step=self.time_step,
             component=self.component,
             vertical=self.vertical,
+            skip=self.skip,
         )
         corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
         about = path.stem, corrected.source, corrected.remarks
@@ -230,6 +234,8 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         raise InvalidArgumentError(
             "records.baseline_order", order, f"null, or an integer from 0 to {MAX_BASELINE_ORDER}"
         )
+    if given["skip"] is not None and (type(given["skip"]) is not int or not 0 <= given["skip"] <= MAX_SKIP):
+        raise InvalidArgumentError("records.skip", given["skip"], f"null, or an integer from 0 to {MAX_SKIP}")
     return RecordFiles(
         folder / given["folder"],
         given["pattern"],
@@ -238,6 +244,7 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
         None if given["component"] is None else str(given["component"]),
         None if given["vertical"] is None else str(given["vertical"]),
         order,
+        given["skip"],
     )
 
 

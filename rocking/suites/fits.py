@@ -106,8 +106,8 @@ def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple
 
     Parameters
     ----------
-    count : int array
-        Successes, 0 to `trials`, any shape.
+    count : array
+        Successes, 0 to `trials`, any shape; a fraction where trials succeed in part.
     trials : int
         Trials of each, > 0.
     confidence : float
@@ -120,10 +120,15 @@ def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple
     return low, high
 
 
-def counted(reached: NDArray[np.bool_], confidence: float, event: str) -> dict[str, tuple[NDArray[Any], str]]:
-    """Number and fraction of the records, the last axis, that do something, with interval; each with its meaning."""
+def counted(
+    reached: NDArray[np.bool_], confidence: float, event: str, signs: int = 1
+) -> dict[str, tuple[NDArray[Any], str]]:
+    """Number and fraction of the motions, the last axis, that do something, with interval; each with its meaning.
+
+    `signs` motions after each other are one record; the interval is that of so many fewer independent trials.
+    """
     count, trials = reached.sum(axis=-1), reached.shape[-1]
-    low, high = binomial_interval(count, trials, confidence)
+    low, high = binomial_interval(count / signs, trials // signs, confidence)
     return {
         "exceedances": (count.astype(np.int32), f"number of records that {event}"),
         "fraction": (count / trials, f"fraction of records that {event}"),
@@ -139,6 +144,7 @@ def fit_curve(
     model: str = "lognormal",
     confidence: float = 0.95,
     falling: bool = False,
+    signs: int = 1,
 ) -> CurveFit:
     """Fit a fragility curve to the outcomes of records at levels.
 
@@ -154,11 +160,14 @@ def fit_curve(
         Of the intervals [-], (0, 1).
     falling : bool
         Whether the probability falls with the intensity; the dispersion is then negative.
+    signs : int
+        Outcomes after each other that belong to one record and count as a share of it: 2 with its mirror image [-].
     """
     outcomes = np.asarray(reached, dtype=bool)
+    records = outcomes.shape[1] // signs
     direction = -1.0 if falling else 1.0
     x = direction * np.log(np.asarray(intensity, dtype=np.float64))
-    free = _free_interval(outcomes, np.asarray(intensity, dtype=np.float64), confidence, falling)
+    free = _free_interval(outcomes, np.asarray(intensity, dtype=np.float64), confidence, falling, signs)
     unknown = (math.nan, free, math.nan, (0.0, math.inf), math.nan, math.nan, math.nan)
     if not outcomes.any():
         return CurveFit(FitStatus.NONE_REACHES, *unknown)
@@ -171,13 +180,13 @@ def fit_curve(
         step = curve_probability(model, np.exp(direction * x), median, 0.0)
         # at the level of the step itself any fraction is possible in the limit
         at_step = np.isclose(x, direction * math.log(median), rtol=0.0, atol=1e-12)
-        likelihood = _log_likelihood(fractions, np.where(at_step, fractions, fractions.round()), outcomes.shape[1])
+        likelihood = _log_likelihood(fractions, np.where(at_step, fractions, fractions.round()), records)
         deviation = float(np.abs(step - fractions)[~at_step].max(initial=0.0))
         return CurveFit(FitStatus.SEPARATED, median, free, 0.0, (0.0, math.inf), likelihood, 0.0, deviation)
     parameters = _maximise(LINKS[model], outcomes.mean(axis=1), x)
     if parameters is None:
         return CurveFit(FitStatus.NO_TREND, *unknown)
-    return _described(LINKS[model], outcomes, x, direction, parameters, confidence)
+    return _described(LINKS[model], outcomes, x, direction, parameters, confidence, signs)
 
 
 def _maximise(link: Link, fractions: Array, x: Array) -> tuple[float, float] | None:
@@ -222,18 +231,24 @@ def _described(
     direction: float,
     parameters: tuple[float, float],
     confidence: float,
+    signs: int,
 ) -> CurveFit:
     a, b = parameters
     z = a + b * x
-    fractions, records = outcomes.mean(axis=1), outcomes.shape[1]
+    fractions, records = outcomes.mean(axis=1), outcomes.shape[1] // signs
     up, down = link.slope(z), link.slope(-z)
     design = np.stack([np.ones_like(x), x])
     median, spread = math.exp(-direction * a / b), 1.0 / b
     median_interval, dispersion_interval = (0.0, math.inf), (0.0, math.inf)
     covariance = _covariance(
         design,
-        np.where(outcomes, link.curvature(z, up)[:, None], link.curvature(-z, down)[:, None]),
-        np.where(outcomes, up[:, None], -down[:, None]),
+        *(
+            values.reshape(x.size, records, signs).mean(axis=2)
+            for values in (
+                np.where(outcomes, link.curvature(z, up)[:, None], link.curvature(-z, down)[:, None]),
+                np.where(outcomes, up[:, None], -down[:, None]),
+            )
+        ),
     )
     if covariance is not None:
         quantile = float(student.ppf(0.5 + 0.5 * confidence, records - 1))
@@ -312,11 +327,10 @@ def _log_likelihood(fractions: Array, probabilities: Array, trials: int) -> floa
 
 
 def _free_interval(
-    outcomes: NDArray[np.bool_], intensity: Array, confidence: float, falling: bool
+    outcomes: NDArray[np.bool_], intensity: Array, confidence: float, falling: bool, signs: int
 ) -> tuple[float, float]:
     """Distribution-free interval of the median, from the binomial intervals of the levels."""
-    records = outcomes.shape[1]
-    low, high = binomial_interval(outcomes.sum(axis=1), records, confidence)
+    low, high = binomial_interval(outcomes.sum(axis=1) / signs, outcomes.shape[1] // signs, confidence)
     below, above = intensity[high < 0.5], intensity[low > 0.5]
     if falling:
         below, above = above, below

@@ -9,7 +9,6 @@ state, is given for comparison only: it is the usual result of incremental dynam
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,11 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, offset_doubts
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
-from rocking.suites.body_arrays import over_bodies
+from rocking.suites.body_arrays import HasBody, over_bodies
+from rocking.suites.body_outcomes import SIGNS, body_outcomes
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import CurveFit, FitStatus, counted, fit_curve
@@ -49,7 +49,7 @@ _MODEL_VARIABLES: dict[str, tuple[str, str]] = {
 
 def fragility(
     records: Sequence[Record] | Record,
-    blocks: Sequence[AbstractBlock] | AbstractBlock | RigidBody,
+    blocks: Sequence[AbstractBlock] | AbstractBlock | RigidBody | HasBody,
     *,
     intensity: ArrayLike,
     measure: str = "pga",
@@ -65,18 +65,19 @@ def fragility(
     ----------
     records : sequence of Record
         The suite. Its records count as independent and equally likely.
-    blocks : Block, sequence of Block, or RigidBody
-        Rigid blocks (2.2), also `EquivalentBlock`; a body with two different edges has no slenderness angle, to which
-        measures and limit states refer. One block, not in a sequence, gives a result without the dimension `block`.
-        A `RigidBody` with equal edges gives the dimensions of its arguments in place of `block`; of arguments that are
-        backed by dask the result is lazy, in their chunks.
+    blocks : Block, sequence of Block, RigidBody, or Object
+        Rigid blocks (2.2), also `EquivalentBlock`. One block, not in a sequence, gives a result without the dimension
+        `block`. A `RigidBody` gives the dimensions of its arguments in place of `block`; of arguments that are backed
+        by dask the result is lazy, in their chunks. An `Object`, also of a mesh, gives the dimension `direction`.
+        If one of the bodies has two different edges, each record is followed by its mirror image, "NAME, mirrored",
+        which counts as half of the record; intervals are those of independent records.
     intensity : array_like, (levels,)
         Levels, > 0, ascending, in the unit of the measure; texts such as "0.3 g" and quantities are converted to it.
     measure : str
         "pga" [m/s2], "pgv" [m/s], "pga_ratio" PGA/(g tan alpha), "pgv_ratio" p PGV/(g tan alpha) or "frequency_ratio"
-        omega_p/p: see `rocking.suites.intensity`.
+        omega_p/p: see `rocking.suites.intensity`. The last two are those of blocks with equal edges.
     restitution : "momentum" or float
-        (2.4), 0 where that is negative; or eta [-], [0, 1].
+        (2.4), 0 where that is negative; or eta [-], [0, 1]. An `Object` may have its own, which a number replaces.
     demand : "overturning", "alpha", a number, or a sequence of these
         The limit state: final overturning; passage of alpha at some time; max |theta|/alpha above a threshold [-],
         (0, 1000], or overturning. One, not in a sequence, gives a result without the dimension `demand`.
@@ -97,7 +98,8 @@ def fragility(
         their intervals, `fit_status` and measures of fit (`rocking.suites.fits`); `fitted` also over intensity.
         `survives_above_first` marks the records that do not reach the limit state at some level above the first at
         which they do, and `records_surviving_above_first` names them. `first_exceedances`, `first_median_intensity`,
-        ... are the curve of first exceedance, for comparison.
+        ... are the curve of first exceedance, for comparison. The attribute `warnings`, where there is one, names
+        records that are scaled although their offset is not small beside their shaking.
 
     Raises
     ------
@@ -108,24 +110,36 @@ def fragility(
     """
     limits = check_demands(demand)
     confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")
+    if isinstance(blocks, HasBody):
+        restitution = blocks.restitution if restitution == "momentum" else restitution
+        blocks = blocks.body
+    if isinstance(blocks, RigidBody) and any(getattr(value, "chunks", None) for value in blocks.labels.values()):
+        threads = threads or 1
+
+    def analysed(given: Sequence[AbstractBlock] | AbstractBlock | RigidBody) -> xr.Dataset:
+        if isinstance(given, RigidBody):
+            outcomes, signs = body_outcomes(records, given, intensity, measure, restitution, threads, stop), SIGNS
+        else:
+            suite, signs = check_suite(records, given, intensity, measure, restitution), 1
+            outcomes = suite_outcomes(suite, threads=threads, stop=stop)
+        found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence, signs))
+        found.attrs |= {"confidence": confidence}
+        doubts = offset_doubts(list(records)) if MEASURES[measure].scales_amplitude else []
+        if doubts:
+            found.attrs["warnings"] = "; ".join(doubts)
+        return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found
+
     if isinstance(blocks, RigidBody):
-        one = threads or (1 if any(getattr(value, "chunks", None) for value in blocks.labels.values()) else None)
-        options: dict[str, Any] = {
-            "intensity": intensity, "measure": measure, "restitution": restitution, "demand": demand,
-            "confidence": confidence, "threads": one, "stop": stop,
-        }  # fmt: skip
-        return over_bodies(partial(fragility, records, **options), blocks)
-    suite = check_suite(records, blocks, intensity, measure, restitution)
-    outcomes = suite_outcomes(suite, threads=threads, stop=stop)
-    found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence))
-    found.attrs |= {"confidence": confidence}
-    if isinstance(blocks, AbstractBlock):
-        found = found.isel(block=0)
-    return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found
+        return over_bodies(analysed, blocks)
+    found = analysed(blocks)
+    return found.isel(block=0) if isinstance(blocks, AbstractBlock) else found
 
 
 def fragility_of_outcomes(
-    outcomes: xr.Dataset, demand: Sequence[str | float] = ("overturning",), confidence: float = 0.95
+    outcomes: xr.Dataset,
+    demand: Sequence[str | float] = ("overturning",),
+    confidence: float = 0.95,
+    signs: int = 1,
 ) -> xr.Dataset:
     """Counts, intervals and fitted curves from the outcomes of a suite, as `fragility` describes them.
 
@@ -137,6 +151,8 @@ def fragility_of_outcomes(
         Limit states.
     confidence : float
         Of all intervals [-], (0, 1).
+    signs : int
+        Columns after each other that belong to one record: 2 with its mirror image.
     """
     limits = check_demands(list(demand))
     levels = outcomes["intensity"].values
@@ -170,9 +186,9 @@ def fragility_of_outcomes(
         {"measure": outcomes.attrs["measure"]},
     )
     for prefix, outcome, remark in (("", reached, {}), ("first_", first, {"comment": COMPARISON})):
-        for name, (values, meaning) in counted(outcome, confidence, "reach the limit state").items():
+        for name, (values, meaning) in counted(outcome, confidence, "reach the limit state", signs).items():
             found[prefix + name] = variable(by_level, values, "1", meaning, **remark)
-        fits = _fits(outcome, levels, confidence, falling)
+        fits = _fits(outcome, levels, confidence, falling, signs)
         found[f"{prefix}fit_status"] = (by_model, _each(fits, "status").astype(np.int8), _STATUS_ATTRIBUTES | remark)
         for name, (unit, meaning) in _MODEL_VARIABLES.items():
             known = outcomes["intensity"].attrs["units"] if unit == "intensity" else unit
@@ -212,14 +228,11 @@ def _reached(outcomes: xr.Dataset, limit: str | float) -> NDArray[np.bool_]:
         return overturned | (outcomes["peak_rotation"].values > limit)
 
 
-def _fits(reached: NDArray[np.bool_], levels: Array, confidence: float, falling: bool) -> list[list[list[CurveFit]]]:
-    return [
-        [
-            [fit_curve(own, levels, model=model, confidence=confidence, falling=falling) for model in LINKS]
-            for own in block
-        ]
-        for block in reached
-    ]
+def _fits(
+    reached: NDArray[np.bool_], levels: Array, confidence: float, falling: bool, signs: int
+) -> list[list[list[CurveFit]]]:
+    options: dict[str, Any] = {"confidence": confidence, "falling": falling, "signs": signs}
+    return [[[fit_curve(own, levels, model=model, **options) for model in LINKS] for own in block] for block in reached]
 
 
 def _each(fits: list[list[list[CurveFit]]], name: str) -> Array:

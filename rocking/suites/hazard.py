@@ -13,6 +13,8 @@ Cornell C. A. (1968), Engineering seismic risk analysis, Bulletin of the Seismol
 from __future__ import annotations
 
 import math
+from os import PathLike
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -21,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import InvalidArgumentError
 from rocking.suites.curve import curve_probability
 from rocking.suites.hazard_curve import check_hazard_curve
+from rocking.suites.hazard_files import hazard_arrays
 
 Array = NDArray[np.float64]
 
@@ -30,17 +33,21 @@ STEP = 0.02
 NODES = 4
 
 
-def annual_rate(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, ArrayLike]) -> xr.Dataset:
+Hazard: TypeAlias = "str | PathLike[str] | xr.DataArray | tuple[ArrayLike, ArrayLike]"
+"""A hazard curve: a file, a result of `read_hazard`, or intensities and annual rates."""
+
+
+def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
     """Annual rate at which a limit state is reached.
 
     Parameters
     ----------
     fragility : xarray.Dataset
         Result of `rocking.fragility`; its fitted curves are used.
-    hazard : xarray.DataArray, or pair of arrays
-        Annual rate of exceedance [1/year], > 0 and not increasing, over its coordinate `intensity`; or the intensities
-        and the rates. At least two intensities, > 0, ascending, in the measure and unit of the fragility. From a file:
-        `rocking.suites.read_hazard`.
+    hazard : path, xarray.DataArray, or pair of arrays
+        A file that `rocking.suites.read_hazard` reads; annual rate of exceedance [1/year], > 0 and not increasing, over
+        its coordinate `intensity`; or the intensities and the rates. At least two intensities, > 0, ascending, in the
+        measure and unit of the fragility.
 
     Returns
     -------
@@ -55,7 +62,7 @@ def annual_rate(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, A
     """
     if not {"median_intensity", "dispersion", "model"} <= {*fragility.variables}:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
-    x, rates = check_hazard_curve(_pair(hazard, fragility.attrs.get("measure")))
+    x, rates = check_hazard_curve(hazard_arrays(hazard, fragility.attrs.get("measure")))
     weights, nodes = hazard_quadrature(x, rates)
     found = xr.full_like(fragility["median_intensity"], np.nan)
     at_end = xr.full_like(fragility["median_intensity"], np.nan)
@@ -77,17 +84,6 @@ def annual_rate(fragility: xr.Dataset, hazard: xr.DataArray | tuple[ArrayLike, A
         },
         attrs={"measure": fragility.attrs.get("measure", "")},
     )
-
-
-def _pair(hazard: xr.DataArray | tuple[ArrayLike, ArrayLike], measure: str | None) -> tuple[ArrayLike, ArrayLike]:
-    """Intensities and rates of either form of the argument, of this measure where it says which."""
-    if not isinstance(hazard, xr.DataArray):
-        return hazard
-    if hazard.dims != ("intensity",):
-        raise InvalidArgumentError("hazard", hazard.dims, "the one dimension `intensity`")
-    if hazard.attrs.get("measure", measure) != measure:
-        raise InvalidArgumentError("hazard", hazard.attrs["measure"], f"the measure of the fragility, {measure}")
-    return hazard["intensity"].values, hazard.values
 
 
 def hazard_quadrature(x: Array, rates: Array) -> tuple[Array, Array]:

@@ -16,13 +16,14 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, positive
@@ -82,6 +83,37 @@ def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
     x, annual = check_hazard_curve((levels[kept] * factor, rates[kept]))
     about = {"units": "year-1", "long_name": "annual rate of exceedance", "measure": measure, "source": file.name}
     return xr.DataArray(annual, {"intensity": ("intensity", x, {"units": unit})}, "intensity", "hazard", about)
+
+
+def hazard_arrays(hazard: Any, measure: str | None = None) -> tuple[ArrayLike, ArrayLike]:
+    """Intensities and annual rates of a hazard curve in any form: a file, a result of `read_hazard`, or two arrays.
+
+    Parameters
+    ----------
+    hazard : path, xarray.DataArray or pair of arrays
+        The curve.
+    measure : str, optional
+        That of the fragility, with which a curve that states one has to agree.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If it is nothing of these, of another measure, or a file that `read_hazard` refuses.
+    """
+    curve = read_hazard(hazard) if isinstance(hazard, str | PathLike) else hazard
+    if isinstance(curve, xr.DataArray):
+        if curve.dims != ("intensity",):
+            raise InvalidArgumentError("hazard", curve.dims, "the one dimension `intensity`")
+        if curve.attrs.get("measure", measure) != measure:
+            raise InvalidArgumentError(
+                "hazard",
+                curve.attrs["measure"],
+                f"a hazard curve of {measure}, the measure of the fragility or the site",
+            )
+        return curve["intensity"].values, curve.values
+    if not isinstance(curve, Sequence | np.ndarray) or len(curve) != 2:
+        raise InvalidArgumentError("hazard", hazard, "a file, or intensities and annual rates")
+    return curve[0], curve[1]
 
 
 def _curve(file: Path, rows: list[list[str]], text: str) -> tuple[str, Array, Array]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,6 +79,11 @@ class Suite:
     measure: Measure
     restitution: Array
 
+    @property
+    def gravity(self) -> list[float]:
+        """g of each block [m/s2]."""
+        return [block.gravity for block in self.blocks]
+
 
 def check_suite(
     records: Sequence[Record] | Record,
@@ -95,40 +100,58 @@ def check_suite(
         If there is no record or no block, the levels do not ascend, a value is not allowed, or at a level the vertical
         acceleration of a record reaches -g.
     """
-    chosen = measure_of(measure)
-    motions = (records,) if isinstance(records, Record) else tuple(records)
-    bodies = (blocks,) if isinstance(blocks, AbstractBody) else tuple(blocks)
-    if not motions or not all(isinstance(motion, Record) for motion in motions):
-        raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
+    chosen, motions = measure_of(measure), checked_records(records)
+    bodies: tuple[Any, ...] = (
+        (blocks,) if isinstance(blocks, AbstractBody) or not isinstance(blocks, Iterable) else (*blocks,)
+    )
     if not bodies or not all(isinstance(body, AbstractBlock) for body in bodies):
         raise InvalidArgumentError(
-            "blocks", blocks, "one or more objects of rocking.Block or rocking.EquivalentBlock, with two equal edges"
+            "blocks",
+            blocks,
+            "one or more objects of rocking.Block or rocking.EquivalentBlock, or one of rocking.RigidBody or "
+            "rocking.Object",
         )
-    unit = {"m s-2": "m/s2", "m s-1": "m/s"}.get(chosen.unit, "-")
-    levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=unit))
-    if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):
-        raise InvalidArgumentError("intensity", intensity, "one or more levels, ascending")
+    levels = checked_levels(intensity, chosen)
     for motion in motions:
         if not math.isfinite(chosen.of(motion, bodies[0])):
             raise InvalidArgumentError("records", motion, f"records with a finite {chosen.meaning}")
     eta = np.array([restitution_of(body, restitution) for body in bodies])
     suite = Suite(motions, bodies, levels, chosen, eta)
     for motion in motions:
-        check_levels(suite, motion)
+        check_levels(levels, motion, problems_of(suite, motion)[0], suite.gravity)
     return suite
 
 
-def check_levels(suite: Suite, record: Record) -> None:
-    """Refuse levels at which the vertical acceleration of a record reaches -g.
+def checked_records(records: Any) -> tuple[Record, ...]:
+    """One or more records, or `InvalidArgumentError`."""
+    found = (records,) if isinstance(records, Record) or not isinstance(records, Iterable) else tuple(records)
+    if not found or not all(isinstance(motion, Record) for motion in found):
+        raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
+    return found
+
+
+def checked_levels(intensity: ArrayLike, measure: Measure) -> Array:
+    """Ascending levels in the unit of the measure, or `InvalidArgumentError`."""
+    unit = {"m s-2": "m/s2", "m s-1": "m/s"}.get(measure.unit, "-")
+    levels = np.atleast_1d(in_range("intensity", intensity, 0.0, math.inf, closed="neither", unit=unit))
+    if levels.ndim != 1 or levels.size == 0 or not np.all(np.diff(levels) > 0.0):
+        raise InvalidArgumentError("intensity", intensity, "one or more levels, ascending")
+    return levels
+
+
+def check_levels(levels: Array, record: Record, scales: Array, gravity: Sequence[float]) -> None:
+    """Refuse levels at which the vertical acceleration of a record times `scales` (blocks, levels) reaches -g.
 
     Raises
     ------
     InvalidArgumentError
         For the first of them, with the time.
     """
-    for block, scale in zip(suite.blocks, problems_of(suite, record)[0], strict=True):
-        for level, factor in zip(suite.levels.tolist(), scale.tolist(), strict=True):
-            text = flight_text(record, factor, block.gravity)
+    if record.vertical is None:
+        return
+    for scale, g in zip(scales, gravity, strict=True):
+        for level, factor in zip(levels.tolist(), scale.tolist(), strict=True):
+            text = flight_text(record, factor, g)
             if text is not None:
                 allowed = f"levels at which the factor of {record.name or 'a record'} is {text}"
                 raise InvalidArgumentError("intensity", level, allowed)
@@ -219,28 +242,40 @@ def vertical_scale_of(suite: Suite, record: Record, scale: Array) -> Array | Non
 
 def described_outcomes(suite: Suite, values: dict[str, NDArray[Any]]) -> xr.Dataset:
     """The arrays of `suite_outcomes` as a data set, with coordinates, units and meanings."""
+    about = {
+        name: (np.array([getattr(block, name) for block in suite.blocks]), unit, meaning)
+        for name, (unit, meaning) in BLOCK_COORDINATES.items()
+    }
+    restitution = variable("block", suite.restitution, "1", "coefficient of restitution eta", equation="2.3")
+    found = labelled_outcomes(values, suite.levels, suite.measure, suite.records, about)
+    return found.assign_coords(restitution=restitution)
+
+
+def labelled_outcomes(
+    values: dict[str, NDArray[Any]],
+    levels: Array,
+    measure: Measure,
+    records: Sequence[Record],
+    blocks: Mapping[str, tuple[NDArray[Any], str, str]],
+) -> xr.Dataset:
+    """Arrays (block, intensity, record) as a data set; of the blocks values (blocks,), unit and meaning by name."""
     attributes = {field.name: {"units": field.unit, **field.attributes} for field in FIELDS}
     attributes["scale"] = {"units": "1", "long_name": "factor by which the record is multiplied"}
-    measure = suite.measure
-    names = different_names([record.name for record in suite.records])
+    names = different_names([record.name for record in records])
     coordinates: dict[str, Any] = {
-        "intensity": variable("intensity", suite.levels, measure.unit, measure.meaning),
+        "intensity": variable("intensity", levels, measure.unit, measure.meaning),
         "record": variable("record", np.array(names), "", "name of the record"),
-        "restitution": variable("block", suite.restitution, "1", "coefficient of restitution eta", equation="2.3"),
         "digest": variable(
             "record",
-            np.array([record.digest for record in suite.records]),
+            np.array([record.digest for record in records]),
             "",
             "sha256 of the time step and the samples in m/s2",
         ),
     }
-    for dimension, items, properties in (
-        ("block", suite.blocks, BLOCK_COORDINATES),
-        ("record", suite.records, RECORD_COORDINATES),
-    ):
-        for name, (unit, meaning) in properties.items():
-            column = np.array([getattr(item, name) for item in items])
-            coordinates[name] = variable(dimension, column, unit, meaning)
+    coordinates |= {name: variable("block", *about) for name, about in blocks.items()}
+    for name, (unit, meaning) in RECORD_COORDINATES.items():
+        column = np.array([getattr(record, name) for record in records])
+        coordinates[name] = variable("record", column, unit, meaning)
     return xr.Dataset(
         {name: (DIMENSIONS, array, attributes[name]) for name, array in values.items()},
         coordinates,

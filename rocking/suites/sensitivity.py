@@ -120,7 +120,7 @@ def sensitivity_outcomes(
     for k, record in enumerate(suite.records):
         scale, frequency = problems_of(suite, record)
         resampled = record.resampled(record.time_step / REFINEMENT)
-        check_levels(suite, resampled)
+        check_levels(suite.levels, resampled, problems_of(suite, resampled)[0], suite.gravity)
         kinds = (record, suite.restitution), (record, low), (record, high), (resampled, suite.restitution)
         as_given, *others = (
             responses_to(suite, motion, scale, frequency, eta, threads=threads, stop=stop) for motion, eta in kinds

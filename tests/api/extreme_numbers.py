@@ -283,10 +283,16 @@ class Walk:
         return [*chain(*kinds)] if self.draw is None else [self.draw.choice(kind) for kind in kinds]
 
     def replaced(self, given: Any) -> Iterator[Any]:
-        """The given values with one number replaced, for each number and each replacement; of many samples a few."""
+        """The given values with one number replaced, for each number and each replacement; of many samples a few.
+
+        Also all numbers of a list times a factor.
+        """
         if isinstance(given, dict):
             yield from ({**given, name: other} for name, value in given.items() for other in self.replaced(value))
         elif isinstance(given, (list, tuple)):
+            if len(given) > 1 and all(isinstance(one, float) for one in given):  # all of them, as in a wrong unit
+                for factor in self.values(1.0):
+                    yield type(given)(one * factor for one in given)
             for place in range(0, len(given), max(len(given) // 4, 1)):
                 others = self.replaced(given[place])
                 yield from (type(given)([*given[:place], other, *given[place + 1 :]]) for other in others)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES
+from rocking_api.routers.identify import EXAMPLE
 
 import rocking
 from benchmarks.accuracy.free_rocking import free_rocking
@@ -35,6 +36,8 @@ def test_the_block_is_that_of_a_direct_call(client, trace):
     for name in EDGE_COLUMNS:
         assert answer[name] == expected[name].values.tolist()
     assert answer["restitution"] == pytest.approx([ETA], abs=0.01)
+    assert answer["drift"] == expected["drift"].item()
+    assert answer["warnings"] == []
     assert answer["impact_time"] == expected["impact_time"].values.tolist()
     assert answer["rotation"] == trace["rotation"]
     nan = np.isnan(expected["fitted"].values)
@@ -58,8 +61,6 @@ def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
 @pytest.mark.parametrize(
     ("body", "name"),
     [
-        ("", "body"),
-        ("[1, 2", "body"),
         ("{}", "time"),
         ('{"time": [0, 1], "rotation": [0, 1], "extra": 1}', "extra"),
         ('{"time": [0, 1], "rotation": [0]}', "rotation"),
@@ -72,6 +73,12 @@ def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
 def test_json_that_is_no_trace_is_refused_by_name(client, body, name):
     assert_problem(client.post(URL, content=body), 422, name)
     assert client.get("/health").status_code == 200
+
+
+@pytest.mark.parametrize("factor", [1e-300, 1e-200, 1e-100, 1e-30, 1e6])
+def test_times_that_are_no_seconds_are_refused(client, factor):
+    trace = EXAMPLE | {"time": [factor * time for time in EXAMPLE["time"]]}
+    assert "0.001 to 100000 s" in assert_problem(client.post(URL, json=trace), 422, "time")["allowed"]
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,6 @@ import asyncio
 import http.client
 import os
 import shutil
-import sys
 import threading
 import time
 from contextlib import closing
@@ -78,14 +77,14 @@ def test_health_responds_while_the_kernels_are_compiled_and_loaded(installed, tm
     """
     precompile.main()
     compiled = Path(cache_folder())
-    missing = shutil.ignore_patterns(precompile.COMPLETE_MARKER, SOLVE_BATCH)
-    copied = shutil.copytree(compiled, installed / "rocking/__pycache__" / compiled.name, ignore=missing)
+    missing = shutil.ignore_patterns(precompile.COMPLETE, SOLVE_BATCH)
+    copied = shutil.copytree(compiled, tmp_path / "kernels" / compiled.name, ignore=missing)
     program = "import rocking, sys; print(rocking.__file__); from rocking._cli.app import app; app()"
-    command, path = (sys.executable, "-c", program), {"PYTHONPATH": str(installed), "NUMBA_CACHE_DIR": ""}
+    command, path = (installed.python, "-c", program), {"PYTHONPATH": "", "NUMBA_CACHE_DIR": str(copied.parent)}
     for granted, log in [(600, "compiled.log"), (60, "loaded.log")]:
         path["ROCKING_MAX_SECONDS"] = str(granted)
         with serving(tmp_path, tmp_path / log, command, cwd=tmp_path, **path) as server, connect(server) as connection:
-            assert str(installed) in server.log.read_text()
+            assert str(installed.packages) in server.log.read_text()
             for page in ("/", "/docs", "/openapi.json", "/metrics", "/static/docs.js"):
                 assert get(connection, page) == 200, page
             if log == "loaded.log":

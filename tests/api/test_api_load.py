@@ -6,6 +6,7 @@ import re
 import sys
 import threading
 import time
+from types import SimpleNamespace
 
 import httpx2
 import pytest
@@ -18,7 +19,7 @@ from starlette.requests import ClientDisconnect
 import rocking
 from rocking._base.equality import equal_values
 from rocking._base.errors import StoppedError
-from rocking._numba.cancellation import StopFlag, run_with_timeout
+from rocking._numba.cancellation import run_with_timeout
 from tests.api.conftest import assert_problem, client_of
 from tests.api.test_request_log import metrics_of
 
@@ -52,6 +53,74 @@ def test_work_beyond_the_queue_limit_is_refused():
         assert (executor.running, executor.waiting) == (0, 0)
 
     asyncio.run(scenario())
+
+
+def of_client(host):
+    """A request of a client that stays."""
+    return SimpleNamespace(client=SimpleNamespace(host=host), receive=asyncio.Event().wait)
+
+
+def test_clients_take_turns_and_the_cheapest_of_each_is_first():
+    async def scenario():
+        executor, gate, order = BoundedExecutor(workers=1, queue=6, seconds=30), Gate(), []
+
+        def work(name):
+            return lambda _: (time.sleep(0.01), order.append(name))
+
+        async def later(client, name, cost):
+            await executor.run(work(name), of_client(client), cost)
+
+        tasks = [asyncio.create_task(executor.run(gate.work, of_client("a")))]
+        await asyncio.to_thread(gate.begun.acquire)
+        asked = [("a", "a dear", 9), ("a", "a cheap", 1), ("a", "a middling", 5), ("b", "b", 99), ("c", "c", 99)]
+        tasks += [asyncio.create_task(later(*one)) for one in asked]
+        await asyncio.sleep(0.01)
+        gate.open.set()
+        await asyncio.gather(*tasks)
+        return order
+
+    assert asyncio.run(scenario()) == ["b", "c", "a cheap", "a middling", "a dear"]
+
+
+def test_one_client_does_not_fill_the_queue():
+    async def scenario():
+        executor, gate = BoundedExecutor(workers=1, queue=3, seconds=30), Gate()
+        tasks = [asyncio.create_task(executor.run(gate.work, of_client("a"), cost)) for cost in range(4)]
+        await asyncio.to_thread(gate.begun.acquire)
+        with pytest.raises(BusyError):
+            await executor.run(gate.work, of_client("a"))
+        other = asyncio.create_task(executor.run(gate.work, of_client("b"), 100))
+        with pytest.raises(BusyError):  # the dearest of the client with the most
+            await tasks[-1]
+        gate.open.set()
+        return await asyncio.gather(*tasks[:-1], other)
+
+    assert asyncio.run(scenario()) == ["done"] * 4
+
+
+def test_short_work_does_not_wait_for_long_work(monkeypatch):
+    monkeypatch.setattr("rocking_api.execution.executor.TRIAL_SECONDS", 0.05)
+
+    def long(stop):
+        starts.append(time.monotonic())
+        while not release.is_set():
+            stop.check()
+            time.sleep(0.001)
+        return "long"
+
+    async def scenario():
+        executor = BoundedExecutor(workers=1, queue=9, seconds=30, trials=True)
+        tasks = [asyncio.create_task(executor.run(long, of_client("a"))) for _ in range(3)]
+        await asyncio.sleep(0.01)
+        short = await executor.run(lambda _: "short", of_client("a"), cost=10**9)
+        assert len(starts) == 3  # each has had its trial, or runs
+        assert (executor.running, executor.waiting) == (1, 2)
+        release.set()
+        return short, await asyncio.gather(*tasks)
+
+    starts, release = [], threading.Event()
+    assert asyncio.run(scenario()) == ("short", ["long"] * 3)
+    assert len(starts) == 5  # two of them anew
 
 
 def test_work_that_ignores_the_stop_flag_keeps_its_worker():
@@ -145,25 +214,18 @@ WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ra
 @pytest.mark.parametrize("path", HEAVY)
 def test_an_invalid_request_is_refused_before_queueing(results, path):
     """With a full queue a valid request is refused with 503, an invalid one with 422."""
-    with client_of(results, max_workers=1, max_queue=0) as client:
+    with client_of(results) as client:
         schema = client.get("/openapi.json").json()["paths"][path]["get"]["parameters"]
-        gate = Gate()
-        held = client.app.state.service.executor._pool.submit(gate.work)
-        client.app.state.service.executor._jobs[held] = StopFlag()
-        try:
-            assert_problem(client.get(path, params=HEAVY[path]), 503)
-            for name in {parameter["name"] for parameter in schema} & set(WRONG):
-                assert_problem(client.get(path, params=HEAVY[path] | {name: WRONG[name]}), 422, name)
-        finally:
-            gate.open.set()
+        client.app.state.service.executor._capacity = 0
+        assert_problem(client.get(path, params=HEAVY[path]), 503)
+        for name in {parameter["name"] for parameter in schema} & set(WRONG):
+            assert_problem(client.get(path, params=HEAVY[path] | {name: WRONG[name]}), 422, name)
 
 
 @pytest.mark.parametrize("form", ["json", "csv"])
 def test_an_invalid_batch_is_refused_before_queueing(results, form):
-    with client_of(results, max_workers=1, max_queue=0) as client:
-        gate = Gate()
-        held = client.app.state.service.executor._pool.submit(gate.work)
-        client.app.state.service.executor._jobs[held] = StopFlag()
+    with client_of(results) as client:
+        client.app.state.service.executor._capacity = 0
 
         def post(**wrong):
             if form == "json":
@@ -172,12 +234,9 @@ def test_an_invalid_batch_is_refused_before_queueing(results, form):
             body = f"slenderness\n{wrong.get('slenderness', 0.6)}\n"
             return client.post("/v1/response", params=tasks, content=body, headers={"content-type": "text/csv"})
 
-        try:
-            assert_problem(post(), 503)
-            for name in ("pulse", "alpha_deg", "absolute_tolerance", "restitution", "frequency_ratio", "slenderness"):
-                assert_problem(post(**{name: WRONG[name]}), 422, name)
-        finally:
-            gate.open.set()
+        assert_problem(post(), 503)
+        for name in ("pulse", "alpha_deg", "absolute_tolerance", "restitution", "frequency_ratio", "slenderness"):
+            assert_problem(post(**{name: WRONG[name]}), 422, name)
 
 
 def test_timeout_is_504(results, monkeypatch):

@@ -1,10 +1,13 @@
 """GET /v1/pulses: the catalogue of excitations."""
 
+import json
+
 import numpy as np
 import pytest
 
 import rocking
 from rocking import precompile
+from rocking._cli.app import app
 from rocking._excitation import pulses
 from rocking._excitation.pulses import PULSE_NAMES
 from tests.api.conftest import assert_problem, client_of
@@ -25,6 +28,20 @@ def test_pulses_are_those_of_the_package(client):
     assert durations["half_sine"] == durations["rectangular"] == 0.5
     last = next(one for one in found if one["name"] == "mavroeidis_papageorgiou")
     assert {one["name"]: one["default"] for one in last["parameters"]} == {"cycles": 2.0, "phase": 0.0}
+    assert {one["name"]: one["range"] for one in last["parameters"]}["cycles"] == "(1, 20]"
+
+
+def test_a_pulse_takes_its_parameters_in_its_text(client, capsys):
+    text = "mavroeidis_papageorgiou(cycles=3, phase=90deg)"
+    groups = {"slenderness": 0.5, "frequency_ratio": 4.0, "restitution": 0.9}
+    expected = rocking.peak_response(rocking.pulse("mavroeidis_papageorgiou", cycles=3, phase=np.pi / 2), **groups)
+    answer = client.get("/v1/response", params={"pulse": text, **groups}).json()
+    assert answer["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-12)
+    options = [f"--{name.replace('_', '-')}={value}" for name, value in groups.items()]
+    with pytest.raises(SystemExit, match="0"):
+        app(["response", f"--pulse={text}", *options, "--format=json"])
+    assert json.loads(capsys.readouterr().out)["peak_rotation"] == pytest.approx(answer["peak_rotation"], rel=1e-12)
+    assert_problem(client.get("/v1/response", params={"pulse": "sine(cycles=2)", **groups}), 422, "cycles")
 
 
 def test_samples_are_limited(client):

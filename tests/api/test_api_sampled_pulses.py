@@ -171,7 +171,7 @@ def test_hostile_bodies_are_refused_soon(client):
         '{"pulse": {' + ",".join(f'"k{k}": 1' for k in range(40_000)) + "}}",
         '{"a": "' + "\\u0000" * 60_000 + '"}',
     ):
-        assert client.post("/v1/map", content=body).status_code == 422
+        assert client.post("/v1/map", content=body).status_code in (400, 422)
         assert client.get("/health").status_code == 200
     assert client.post("/v1/map", content=numbers).status_code == 200
     assert time.process_time() - began < 10.0

@@ -294,3 +294,24 @@ def test_settings_come_from_the_environment(monkeypatch, tmp_path):
     monkeypatch.setenv("ROCKING_CORS_ORIGINS", '["https://a.org"]')
     found = Settings()
     assert (found.results, found.max_points, found.cors_origins) == (tmp_path, 7, ("https://a.org",))
+
+
+def test_the_type_of_an_error_is_explained(client):
+    page = client.get("/problems").text
+    found = {
+        client.get("/v1/response?pulse=sine").json()["type"],
+        client.post("/v1/response", content="{").json()["type"],
+        client.post("/v1/response", content="a", headers={"content-type": "text/html"}).json()["type"],
+        client.get("/v1/datasets/no/such").json()["type"],
+        client.get("/nowhere").json()["type"],
+        client.delete("/v1/response").json()["type"],
+        client.get("/v1/datasets/spectra/sine/eta-0.85.nc", headers={"range": "bytes=999999999-"}).json()["type"],
+    }
+    assert len(found) == 7
+    for one in found:
+        address, _, anchor = one.partition("#")
+        assert address == "/problems"
+        assert f'id="{anchor}"' in page
+    assert_problem(client.get("/v1/datasets?page=2"), 422, "page")
+    assert_problem(client.get("/v1/datasets.zip?page=2"), 422, "page")
+    assert_problem(client.get("/v1/datasets/spectra/sine/eta-0.85?page=2"), 422, "page")

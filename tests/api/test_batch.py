@@ -88,13 +88,14 @@ def post(client, body):
 )
 def test_entries_that_are_no_numbers_are_refused(client, entries):
     body = f'{{"pulse": "sine", "slenderness": [{entries}], "frequency_ratio": 1, "restitution": 1}}'
-    assert len(assert_problem(post(client, body), 422)["detail"]) < 1000
+    status = 422 if entries in ("1,null", '1,"2x"') else 400
+    assert len(assert_problem(post(client, body), status)["detail"]) < 1000
 
 
-def test_the_last_of_two_equal_keys_counts_as_in_any_json(client):
+def test_a_key_given_twice_is_refused(client):
     body = '{"pulse": "sine", "slenderness": [0.1, 0.2], "slenderness": %s, "frequency_ratio": 1, "restitution": 1}'
     for last in ("[0.3]", "0.4"):
-        assert post(client, body % last).json()["query"]["points"] == 1
+        assert assert_problem(post(client, body % last), 422, "slenderness")["allowed"] == "one value"
 
 
 def test_a_large_body_is_sent_as_csv_or_netcdf(client):

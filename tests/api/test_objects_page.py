@@ -15,6 +15,7 @@ import rocking
 from rocking._assessment.columns import VERDICTS
 from rocking._assessment.tables import SCHEMA, objects_of_csv
 from rocking._dimensional.table_reader import rows_of_csv
+from rocking._numba.cancellation import StopFlag
 from tests.api.conftest import assert_problem
 from tests.sheets import xlsx_bytes
 
@@ -89,14 +90,14 @@ def test_fields_of_the_form_are_limited(client):
 def test_escapes_of_a_form_take_little_memory(monkeypatch):
     body = b"table=" + b"%0A" * 2**18
     tracemalloc.start()
-    assert objects_page._fields(body)["table"] == "\n" * 2**18
+    assert objects_page._fields(body, StopFlag())["table"] == "\n" * 2**18
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 10 * len(body)  # 80 by urllib
     text = "100 %; 1+1 & =\u20ac\r\n" * 5
     for part in (3, 4, 5):
         monkeypatch.setattr(objects_page, "PART", part)
-        assert objects_page._fields(urlencode({"table": text}).encode())["table"] == text
+        assert objects_page._fields(urlencode({"table": text}).encode(), StopFlag())["table"] == text
 
 
 def test_report_and_csv_are_those_of_the_package(client, found):
@@ -148,7 +149,7 @@ def test_a_sheet_whose_cells_are_far_apart_ends_its_own_process_only(client):
     content = xlsx_bytes([["object"]], last="XFD1048576")
     problem = assert_problem(client.post("/objects/text?name=far.xlsx", content=content), 422, "table")
     assert problem["value"] == "far.xlsx"
-    assert problem["allowed"] == "a table that is read within 20 s and 1024 MiB"
+    assert problem["allowed"] == "a table that is read within 10 s and 1024 MiB"
     assert client.get("/health").status_code == 200
 
 

@@ -48,6 +48,27 @@ def test_every_schema_that_is_referred_to_exists(description):
     assert names <= set(description["components"]["schemas"])
 
 
+def test_every_list_of_a_request_has_a_limit(description):
+    schemas, seen = description["components"]["schemas"], set()
+
+    def lists(schema, place):
+        if (name := schema.get("$ref", "").rpartition("/")[2]) and name not in seen:
+            seen.add(name)
+            yield from lists(schemas[name], name)
+        if schema.get("type") == "array":
+            yield place, schema.get("maxItems")
+        for part in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("prefixItems", ())):
+            yield from lists(part, place)
+        for key, part in (("items", schema.get("items")), *schema.get("properties", {}).items()):
+            if isinstance(part, dict):
+                yield from lists(part, f"{place}.{key}")
+
+    bodies = [one["requestBody"]["content"] for *_, one in operations(description) if "requestBody" in one]
+    found = [one for content in bodies for media in content.values() for one in lists(media["schema"], "body")]
+    assert len(found) > 10
+    assert [place for place, most in found if most is None] == []
+
+
 def test_the_service_names_its_license_contact_and_server(description):
     info = description["info"]
     assert info["license"] == {"name": "BSD-3-Clause", "identifier": "BSD-3-Clause"}

@@ -12,9 +12,7 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
-from numba.core.codegen import CPUCodeLibrary
 from numba.core.types.functions import BaseFunction
-from numpy.testing import assert_array_equal
 
 import rocking
 from rocking import precompile
@@ -29,7 +27,7 @@ from rocking._interpolation import stencils as interpolation
 from rocking._interpolation import windows
 from rocking._lookup.cube import open_cube
 from rocking._numba import kernel_cache
-from rocking._numba.compilation import array_entry, contiguous_array, entry, kernel, specialised_kernel
+from rocking._numba.compilation import contiguous_array, entry, kernel, specialised_kernel
 from rocking._numba.way import INTERNALS
 from rocking._solver.kernels import batch as rock_many
 from rocking._solver.kernels.intervals import half_width
@@ -221,35 +219,6 @@ def test_pairs_of_reference_counts_are_removed_from_entries(monkeypatch):
     assert both(np.ones(3), np.ones(4)) == 7.0
     (code,) = both.inspect_llvm().values()
     assert re.findall(r"call .*NRT_incref", code) == []  # the wrapper for Python keeps decrements
-
-
-@pytest.mark.skipif(INTERNALS is None, reason="of the faster way alone")
-def test_only_entries_that_count_references_are_prepared_for_the_removal_of_pairs(monkeypatch, tmp_path):
-    """The others are optimised once, which takes a twentieth less time."""
-    # what is cached is not optimised again
-    monkeypatch.setattr("rocking._numba.kernel_cache.cache_folder", lambda: str(tmp_path))
-    prepared = []
-    optimise = CPUCodeLibrary._optimize_final_module
-
-    def recorded(library):
-        prepared.append(library.name)
-        optimise(library)
-
-    monkeypatch.setattr(CPUCodeLibrary, "_optimize_final_module", recorded)
-
-    @entry
-    def total(values):
-        return values[0] + values[1]
-
-    @array_entry
-    def doubled(values):
-        return np.array([2.0 * values[0], 2.0 * values[1]])
-
-    assert total(np.array([1.0, 2.0])) == 3.0
-    assert_array_equal(doubled(np.array([1.0, 2.0])), [2.0, 4.0])
-    names = {name.rpartition(".")[2] for name in prepared}
-    assert "doubled" in names
-    assert "total" not in names
 
 
 def test_kernels_release_the_interpreter_and_do_not_reorder_sums():

@@ -12,7 +12,7 @@ import pytest
 
 import rocking
 from rocking import precompile
-from rocking._base.source_tree import SourceTree
+from rocking._base.source_tree import SourceTree, imported_names
 from rocking._numba import kernel_cache
 from rocking._numba.compilation import entry
 from rocking._numba.way import INTERNALS
@@ -88,7 +88,7 @@ def run(empty, fork, tmp_path):
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    forked.kept, forked.started = kept, started
+    forked.kept, forked.started, forked.plain = kept, started, bool(way["ROCKING_PLAIN_NUMBA"])
     return forked
 
 
@@ -220,6 +220,17 @@ sys.stdout.write(" ".join(map(str, [*hits_and_misses(compiled), len(said), *said
     assert "NUMBA_CACHE_DIR" in text
 
 
+@pytest.mark.parametrize(("complete", "expected"), [(True, ["1", "0", "0"]), (False, ["0", "1", "1"])])
+def test_a_complete_folder_that_can_only_be_read_is_used(run, complete, expected):
+    """The other tells why it is not: `precompile` marks what is complete."""
+    run()
+    if complete:
+        (next(run.kept.glob("kernels-*")) / kernel_cache.COMPLETE).touch()
+    if run.plain:
+        expected = ["0", "1", "1"]  # numba's own cache writes into the folder
+    assert run("kernel_cache._is_writable = lambda *_: False\n" + CALL).split()[:3] == expected
+
+
 LIMITED = """
 import resource
 resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
@@ -292,7 +303,7 @@ def package(tmp_path):
 
 
 def digest_of(package):
-    return kernel_cache.kernel_digest(SourceTree(package.parent))
+    return kernel_cache.kernel_digest(SourceTree(package.parent, {"rocking"}))
 
 
 @pytest.mark.parametrize(
@@ -335,6 +346,23 @@ def test_text_in_a_string_is_no_import(package):
     first = digest_of(package)
     (package / "other.py").write_text("X = 2\n")
     assert digest_of(package) == first
+
+
+def test_modules_with_compiled_code_import_only_what_the_digest_states():
+    """Their versions are part of it, and their files are not read."""
+    sources = SourceTree(ROOT, {"rocking"})
+    compiled = [path for path in sources.package() if kernel_cache._is_compiled(sources, path)]
+    names = {
+        (base or name).split(".")[0] for path in compiled for name, base, _ in imported_names(sources.syntax(path))
+    }
+    assert names - sys.stdlib_module_names - {"rocking"} == {one.__name__ for one in kernel_cache.MADE_WITH}
+
+
+@pytest.mark.parametrize("name", [one.__name__ for one in kernel_cache.MADE_WITH])
+def test_the_digest_depends_on_the_versions_of_what_is_imported(package, name, monkeypatch):
+    first = digest_of(package)
+    monkeypatch.setattr(sys.modules[name], "__version__", "0.0")
+    assert digest_of(package) != first
 
 
 @pytest.fixture

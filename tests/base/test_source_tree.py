@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking._base.source_tree import SourceTree, imported_names
+from rocking._base.source_tree import PROJECT, SourceTree, imported_names
 
 TREE = {
     "rocking/__init__.py": "import lazy_loader",
@@ -55,6 +55,15 @@ def test_imports_are_followed(tree: Path, script: str, expected: set[str]) -> No
     assert {path.relative_to(tree).as_posix() for path in found} == expected
 
 
+def test_imports_are_followed_to_the_packages_of_the_tree_alone(tree: Path) -> None:
+    (tree / "numba").mkdir()
+    (tree / "numba/__init__.py").write_text("import rocking.c")
+    (tree / "rocking/b.py").write_text("import numba\nfrom numba import njit\nimport numba.np.linalg")
+    everything = SourceTree(tree).files(tree / "rocking/a.py")
+    assert {tree / "numba/__init__.py", tree / "rocking/c.py"} < {*everything}
+    assert SourceTree(tree, {"rocking"}).files(tree / "rocking/a.py") == [tree / "rocking/a.py", tree / "rocking/b.py"]
+
+
 def test_digest_depends_on_imported_files_and_the_lock_only(tree: Path) -> None:
     first = SourceTree(tree).digest(tree / "script.py")
     (tree / "rocking/c.py").write_text("unrelated = 1")
@@ -84,8 +93,8 @@ def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
 
 
 def test_package_digest_covers_every_module() -> None:
-    assert len(SourceTree().digest()) == 64
-    assert SourceTree().digest() == SourceTree().digest()
+    assert len(SourceTree(PROJECT).digest()) == 64
+    assert SourceTree(PROJECT).digest() == SourceTree(PROJECT).digest()
 
 
 @pytest.mark.parametrize(

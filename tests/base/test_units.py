@@ -19,7 +19,8 @@ REGISTRY = pint.UnitRegistry()
 QUANTITY = REGISTRY.Quantity
 GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
 PINT_NAMES = {"m/s2": "m/s**2", "cm/s2": "cm/s**2", "mm/s2": "mm/s**2", "in/s2": "in/s**2", "ft/s2": "ft/s**2",
-              "g": "standard_gravity", "gal": "cm/s**2", "%": "percent",
+              "g": "standard_gravity", "mg": "millistandard_gravity", "%g": "centistandard_gravity",
+              "g/10": "decistandard_gravity", "gal": "cm/s**2", "%": "percent",
               "-": "", "N": "N/standard_gravity", "kN": "kN/standard_gravity"}  # fmt: skip
 
 HOSTILE = [
@@ -43,7 +44,9 @@ def test_values_of_units_are_those_of_another_library(unit, name):
      ("m/s**2", "m/s2"), ("m s-2", "m/s2"), ("m s^-2", "m/s2"), ("(m/s²)", "m/s2"),
      ("m/s/s", "m/s2"), ("cm/sec2", "cm/s2"), ("CM/SEC/SEC", "cm/s2"),
      ("cm/sec^2", "cm/s2"), ("Gal", "gal"), ("gals", "gal"), ("G", "g"),
-     ("m * s-2", "m/s2"), ("mgal", None), ("m*s2", None), ("kg", None), ("m", None), ("", None)],
+     ("m * s-2", "m/s2"), ("m·s⁻²", "m/s2"), ("m/sec²", "m/s2"), ("cm/sec/sec", "cm/s2"), ("G/10", "g/10"),
+     ("% g", "%g"), ("(%g)", "%g"), ("milli-g", "mg"), ("g s-1", None),
+     ("mgal", None), ("m*s2", None), ("kg", None), ("m", None), ("", None)],
 )  # fmt: skip
 def test_readers_of_records_and_people_write_the_same_units(text, name):
     assert unit_name(text, "m/s2") == parse_unit(text) == name

@@ -52,6 +52,15 @@ def test_confidence(file):
     assert "--confidence" in refused("identify", str(file), "--confidence", "1")
 
 
+def test_a_drift_is_warned_of(file):
+    time, rotation = trace()
+    np.savetxt(file, np.column_stack([time, rotation + 1e-3 * time]), delimiter=",")
+    assert "warning: " in run("identify", str(file))
+    found = json.loads(run("identify", str(file), "--format=json"))
+    assert found["drift"] == pytest.approx(1e-3, rel=0.05)
+    assert any("the sensor drifts" in text for text in found["warnings"])
+
+
 def test_errors_name_the_file(file):
     assert "No such file" in refused("identify", str(file.with_name("none.csv")))
     file.write_text("1\n2\n3\n")

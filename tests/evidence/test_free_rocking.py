@@ -1,11 +1,13 @@
 """Blocks from traces of free rocking that an independent integration makes."""
 
+import math
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
 
 import rocking
 from benchmarks.accuracy.free_rocking import NAMES, errors, free_rocking
@@ -112,6 +114,69 @@ def test_wider_confidence_widens_the_intervals():
 def test_refusals(change, message):
     with pytest.raises(InvalidArgumentError, match=message):
         identify_free_rocking(*change(*trace()))
+
+
+def holds(found, alpha=ALPHA, p=P, eta=ETA):
+    return all(
+        found[name + "_lower"].item() <= true <= found[name + "_upper"].item()
+        for name, true in (("alpha", alpha), ("frequency_parameter", p), ("restitution", eta))
+    )
+
+
+def coloured(rng, size):
+    """Errors that follow each other over some 20 samples."""
+    return 1e-3 * math.sqrt(1.0 - 0.9**2) * lfilter([1.0], [1.0, -0.9], rng.normal(size=size + 500))[500:]
+
+
+@pytest.mark.parametrize("drift", [1e-4, -1e-3, 1e-2])
+def test_a_sensor_that_drifts_is_fitted_with_its_drift(drift):
+    time, rotation = trace()
+    rng = np.random.default_rng(8)
+    noisy = rotation + drift * time + 2e-4 * rng.normal(size=(4, time.size))
+    found = [identify_free_rocking(time, one) for one in noisy]
+    assert sum(map(holds, found)) >= 3
+    assert all(one["drift_lower"] < drift < one["drift_upper"] for one in found)
+    assert "the sensor drifts by" in found[0].attrs["warnings"]
+
+
+def test_errors_that_follow_each_other_widen_the_intervals():
+    time, rotation = trace()
+    rng = np.random.default_rng(9)
+    found = [identify_free_rocking(time, rotation + coloured(rng, time.size)) for _ in range(6)]
+    assert sum(map(holds, found)) >= 5
+    assert all("errors follow each other" in one.attrs["warnings"] for one in found)
+    assert all(one["noise"] > 2.0 * one["sample_noise"] for one in found)
+    independent = identify_free_rocking(time, rotation + 1e-3 * rng.normal(size=time.size))
+    assert independent.attrs["warnings"] == ""
+    assert independent["alpha_upper"] - independent["alpha_lower"] < found[0]["alpha_upper"] - found[0]["alpha_lower"]
+
+
+@pytest.mark.parametrize("hertz", [0.7, 1.9, 4.1])
+@pytest.mark.parametrize("share", [0.01, 0.05, 0.3])  # of the acceleration of uplift
+def test_rocking_on_moving_ground_is_refused_or_has_wider_intervals(share, hertz):
+    block = rocking.Block(0.5, 2.0)
+    t = np.arange(0.0, 8.0, 0.005)
+    pulse = np.where(t < 0.6, 1.6 * np.sin(2.0 * np.pi * t / 0.6), share * np.sin(2.0 * np.pi * hertz * t))
+    ground = rocking.Record(block.uplift_acceleration * pulse, 0.005, "m/s2")
+    motion = block.history(ground, restitution=0.9, samples=801, duration=8.0)
+    free = motion.isel(time=motion["time"] > 0.6)
+    assert motion.attrs["outcome"] == "SAFE"
+    noise = 1e-4 * np.random.default_rng(1).normal(size=free.sizes["time"])
+    try:
+        found = identify_free_rocking(free["time"], free["rotation"] + noise)
+    except InvalidArgumentError as error:
+        assert "ground at rest" in str(error) or "free rocking" in str(error)  # noqa: PT017
+        return
+    assert "wider" in found.attrs["warnings"]
+    assert holds(found, block.alpha, block.frequency_parameter, 0.9)
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 0.3])
+def test_an_oscillation_is_called_one(amplitude):
+    time = np.arange(0.0, 6.0, 0.01)
+    rotation = amplitude * np.exp(-0.4 * time) * np.cos(8.0 * time)
+    with pytest.raises(InvalidArgumentError, match=r"an oscillation of 1.2[78] Hz"):
+        identify_free_rocking(time, rotation + 1e-4 * np.random.default_rng(1).normal(size=time.size))
 
 
 def test_a_vibration_that_is_no_rocking_is_refused():

@@ -27,6 +27,27 @@ def test_a_rock_that_falls_above_an_intensity_worked_by_hand():
     assert survival(STEP, xr.DataArray(rate, {"intensity": x}), years=0.0)["survival"].item() == 1.0
 
 
+def test_hazard_files_are_branches(tmp_path):
+    x, rate = np.array([1.0, 2.0, 5.0, 20.0]), 1e-3 * (2.0 / np.array([1.0, 2.0, 5.0, 20.0])) ** 2
+    files = []
+    for name, factor in (("mild", 0.1), ("strong", 1.0)):
+        rows = "".join(f"{a!r},{factor * r!r}\n" for a, r in zip(x.tolist(), rate.tolist(), strict=True))
+        files.append(tmp_path / f"{name}.csv")
+        files[-1].write_text("pga [m/s2],annual rate [1/year]\n" + rows)
+    curve = STEP.assign_attrs(measure="pga")
+    expected = survival(curve, (x, [0.1 * rate, rate]), years=1e4)
+    xr.testing.assert_allclose(survival(curve, files, years=1e4), expected)
+    xr.testing.assert_allclose(survival(curve, str(files[1]), years=1e4), expected.isel(branch=1))
+    xr.testing.assert_allclose(rocking.suites.annual_rate(curve, files[1])["annual_rate"], expected.annual_rate[1])
+    site = rocking.Site(records=[noise(0)], hazard=files[1])
+    np.testing.assert_allclose(site.hazard, (x, rate))
+    with pytest.raises(InvalidArgumentError, match=r"none\.csv"):
+        survival(curve, "none.csv", years=1.0)
+    for wrong in (5, None, {"a": 1}, [1.0, 2.0, 3.0]):
+        with pytest.raises(InvalidArgumentError, match="hazard"):
+            survival(curve, wrong, years=1.0)
+
+
 def test_pairs_that_overturn_are_those_of_the_thresholds():
     block = rocking.Block(0.4, 1.6)
     motions = [noise(k) for k in range(5)]

@@ -70,7 +70,7 @@ KNET_HEADER = (
     "Last Correction   1990/05/05 12:00:00\nMemo.\n"
 )
 KNET_ROWS = "\n".join("".join(f"{int(v):9d}" for v in COUNTS[k : k + 8]) for k in range(0, COUNT, 8)) + "\n"
-KNET_VALUES = COUNTS * 2000 / 8388608
+KNET_VALUES = (COUNTS - COUNTS.mean()) * 2000 / 8388608
 
 
 def pairs(separator: str = ",", header: str = "time_s,acceleration_g\n", step: float = STEP, digits: int = 3) -> str:
@@ -142,7 +142,7 @@ ODD = {
     "esm without data type": File(esm({"DATA_TYPE": None}), unit="cm/s2"),
     "esm without unit": File(esm({"UNITS": ""}), {"unit": "gal"}, unit="gal"),
     "knet with a scale of 3920": File(
-        KNET_HEADER.replace("2000(gal)", "3920(gal)") + KNET_ROWS, unit="gal", samples=COUNTS * 3920 / 8388608
+        KNET_HEADER.replace("2000(gal)", "3920(gal)") + KNET_ROWS, unit="gal", samples=KNET_VALUES * 3920 / 2000
     ),
     "csv with semicolons and decimal commas": File(pairs(";", "Zeit (s);a (g)\n").replace(".", ",")),
     "csv with a trailing comma": File(pairs().replace("\n", ",\n").replace("acceleration_g,", "acceleration_g")),
@@ -164,8 +164,8 @@ ODD = {
     "tabs and decimal commas": File(pairs("\t", "Zeit\ta (g)\n").replace(".", ",")),
     "UTF-16": File(pairs("\t").encode("utf-16")),
     "UTF-16 of the other order": File(b"\xfe\xff" + at2().encode("utf-16-be")),
-    "csv with a title of one word and integers": File(
-        "Record\n0,1\n1,-2\n", {"unit": "g"}, samples=np.array([1.0, -2.0]), step=1.0
+    "csv with whole numbers without a name": File(
+        "Record\n0,1\n1,-2\n", {"unit": "g", "time_step": 0.5}, samples=np.array([1.0, -2.0]), step=0.5
     ),
     "csv named like AT2 values": File(pairs(header="time (sec),acceleration (G)\n")),
 }
@@ -228,6 +228,9 @@ DAMAGED = {
         KNET_HEADER.replace("0.24", "0.25") + KNET_ROWS, error="line 12: found 25 stated, 24 values"
     ),
     "csv without unit": File(pairs(header="time,acceleration\n"), error="no unit of acceleration"),
+    "csv with whole numbers for times without a name": File(
+        "Record\n0,1\n1,-2\n", {"unit": "g"}, error="column 1, a counter or times .*time_step"
+    ),
     "csv of another unit than given": File(pairs(), {"unit": "m/s2"}, error="the unit g; expected m/s2"),
     "csv with two units": File("unit: gal\n" + pairs(), error="the unit g in a column name; expected gal"),
     "csv of velocity": File(pairs(header="time (s),velocity (m/s)\n"), {"unit": "g"}, error="velocity"),
@@ -256,9 +259,11 @@ DAMAGED = {
     "csv of one row": File("time_s,a_g\n0,1\n", error="one row"),
     "csv of times only": File("time_s\n0.00\n0.01\n", {"unit": "g"}, error="a column of times only"),
     "one column without step": File(single("unit: g\n"), error="no time step"),
-    "one column with a step of zero": File(single("unit: g\ndt: 0\n"), error="line 2: found 0; expected a time step"),
+    "one column with a step of zero": File(
+        single("unit: g\ndt: 0\n"), error="line 2: found dt: 0; expected a time step"
+    ),
     "one column with an unknown unit": File(
-        single("unit: stones\n"), {"time_step": 0.01}, error="line 1: found stones"
+        single("unit: stones\n"), {"time_step": 0.01}, error="line 1: found unit: stones"
     ),
     "one column with a blank line": File(
         replaced(single("acceleration_g\n"), "0.122560\n", "\n"), {"time_step": 0.01}, error="line 3"

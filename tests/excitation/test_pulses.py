@@ -186,6 +186,38 @@ def test_unknown_pulses_are_rejected(name):
         rocking.pulse(name)
 
 
+@pytest.mark.parametrize(
+    ("text", "given", "name"),
+    [
+        ("mavroeidis_papageorgiou(cycles=3, phase=90deg)", {"cycles": 3, "phase": np.pi / 2}, "(cycles=3,phase=1.57"),
+        ("-mavroeidis_papageorgiou ( phase = -0.5 rad )", {"phase": -0.5}, "(phase=-0.5rad)"),
+        ("mavroeidis_papageorgiou(cycles=2)", {}, ""),
+    ],
+)
+def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(text, given, name):
+    pulse = rocking.pulse(text)
+    sign = "-" if "-m" in text else ""
+    assert pulse == rocking.pulse(f"{sign}mavroeidis_papageorgiou", **given) == rocking.pulse(pulse.name)
+    assert pulse.name.startswith(f"{sign}mavroeidis_papageorgiou{name}")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("sine(cycles=2)", "`cycles` = '2' .* for sine: no parameters"),
+        ("mavroeidis_papageorgiou(cycles=21)", r"`cycles` = 21.0 .* \(1, 20\]"),
+        ("mavroeidis_papageorgiou(phase=1)", "`phase` = '1': missing unit"),
+        ("mavroeidis_papageorgiou(cycles=2, cycles=3)", "each parameter once"),
+        ("mavroeidis_papageorgiou(3)", "name=value"),
+        ("mavroeidis_papageorgiou(cycles=3", "one of sine"),
+        ("sine" + "(" * 10_000, "one of sine"),
+    ],
+)
+def test_a_text_of_a_pulse_that_is_not_understood_is_refused(text, message):
+    with pytest.raises(InvalidArgumentError, match=message):
+        rocking.pulse(text)
+
+
 def test_parameters_belong_to_one_pulse():
     with pytest.raises(InvalidArgumentError, match=r"`cycles` = 2\.0 .* for sine: no parameters"):
         rocking.pulse("sine", cycles=2.0)

@@ -1,6 +1,7 @@
 """Properties of the tree: one version, no paths of a machine, light imports, valid links, short files."""
 
 import ast
+import importlib.util
 import json
 import re
 import subprocess
@@ -14,6 +15,7 @@ import pytest
 import rocking
 
 ROOT = Path(__file__).parents[2]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 FOLDERS = (
@@ -101,7 +103,7 @@ def test_a_response_loads_the_solver_only(command: str) -> None:
         "progress.DELAY = 1e6  # no command is long\n"
         f"app({command.split()}, standalone_mode=False)\n"
         "heavy = ('scipy.', 'pint', 'xarray', 'pandas', 'netCDF4', 'matplotlib', 'rich', 'tomllib')\n"
-        "light = ('scipy._', 'scipy.version')  # of scipy itself, which numba imports\n"
+        "light = ('scipy._', 'scipy.version', 'scipy.linalg')  # which numba imports\n"
         "print(*(one for one in sys.modules if one.startswith(heavy) and not one.startswith(light)), file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
@@ -152,3 +154,9 @@ def test_citation_names_the_paper_and_the_licence() -> None:
 def test_ci_runs_make_test_only() -> None:
     commands = [line for line in TEXTS[".ci/run"].splitlines() if line and not line.startswith("#")]
     assert commands == ['cd "$(dirname "$0")/.." && exec make --no-print-directory test']
+
+
+def test_settings_are_for_files_that_exist() -> None:
+    modules = [name for one in SETTINGS["mypy"]["overrides"] for name in one["module"]]
+    assert [name for name in modules if importlib.util.find_spec(name) is None] == []
+    assert [one for one in SETTINGS["ruff"]["lint"]["per-file-ignores"] if next(ROOT.glob(one), None) is None] == []

@@ -42,7 +42,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     compiled = kernel_cache.cache_folder()
     assert compiled is not None
     # under another name: the digest is of all files that kernels import, among them the list of the pulses
-    own_name = f"kernels-{kernel_cache.kernel_digest(SourceTree(folder))}"
+    own_name = f"kernels-{kernel_cache.kernel_digest(SourceTree(folder, {'rocking'}))}"
     shutil.copytree(compiled, folder / "rocking" / "__pycache__" / own_name)
     return folder
 

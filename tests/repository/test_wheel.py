@@ -1,5 +1,5 @@
 """The wheel: it holds `rocking` and `rocking_api` and nothing else, requires no service or plotting package without an
-extra. `tests/api/test_api_kernels.py` asks the service of an installed wheel.
+extra. Its installation is the subject of `test_installation.py` and of `tests/api/test_api_kernels.py`.
 """
 
 import re
@@ -13,7 +13,9 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
-from tests.wheel_fixtures import PACKAGES, ROOT
+from benchmarks.installation import PACKAGES
+
+ROOT = Path(__file__).parents[2]
 
 REQUIRED = {
     "lazy-loader",

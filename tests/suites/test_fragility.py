@@ -12,7 +12,7 @@ from rocking._base.equality import equal_values
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._numba.cancellation import StopFlag
-from rocking.suites.fits import FitStatus
+from rocking.suites.fits import FitStatus, binomial_interval
 from rocking.suites.fragility import fragility_of_outcomes
 from tests.suites.motions import BLOCK, noise, sampled
 
@@ -292,14 +292,63 @@ def test_bodies_of_another_inertia_are_blocks_of_the_same_alpha_and_p():
         np.testing.assert_allclose(found.peak_rotation.isel(dim_0=k), one.peak_rotation, rtol=1e-9)
 
 
+def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image():
+    motions, levels = [noise(seed) for seed in range(3)], np.geomspace(1.0, 40.0, 6)
+    body = rocking.RigidBody([0.2, 0.3], [0.3, 0.2], 1.0)  # mirror images of each other
+    found = rocking.fragility(motions, body, intensity=levels, restitution=0.9)
+    assert found.record.values.tolist()[:2] == [motions[0].name, f"{motions[0].name}, mirrored"]
+    for k in range(2):
+        one = rocking.RigidBody(*((0.2, 0.3), (0.3, 0.2))[k], 1.0)
+        for n, motion in enumerate(motions):
+            scale = levels / motion.peak_acceleration
+            for sign in (0, 1):
+                given = motion if sign == 0 else rocking.Record(-motion.acceleration, motion.time_step, "m/s2")
+                outcome = one.response(given, scale=scale, restitution=0.9).outcome
+                np.testing.assert_array_equal(found.outcome.isel(dim_0=k, record=2 * n + sign), outcome)
+    # the mirror image of a body under that of a record
+    np.testing.assert_array_equal(found.overturned[0, :, ::2], found.overturned[1, :, 1::2])
+    np.testing.assert_allclose(found.fraction, found.overturned.mean("record"))
+    low, high = binomial_interval(0.5 * found.exceedances.values, 3, 0.95)  # of three independent records
+    np.testing.assert_array_equal((found.fraction_lower, found.fraction_upper), (low, high))
+    assert found.uplift_acceleration.values.tolist() == body.uplift_acceleration.tolist()
+
+
+def test_two_nearly_equal_edges_give_the_curve_of_equal_ones():
+    motions, levels = [noise(seed) for seed in range(6)], np.geomspace(1.0, 60.0, 12)
+    demand = ["overturning", "alpha", 0.3]
+    equal = rocking.fragility(motions, rocking.RigidBody(0.25, 0.25, 1.0), intensity=levels, demand=demand)
+    nearly = rocking.fragility(motions, rocking.RigidBody(0.25, 0.25 + 1e-12, 1.0), intensity=levels, demand=demand)
+    np.testing.assert_array_equal(nearly.overturned[:, ::2], equal.overturned)
+    for name in ("fraction", "fraction_lower", "median_intensity", "median_intensity_lower", "dispersion_upper"):
+        np.testing.assert_allclose(nearly[name], equal[name], rtol=1e-6, atol=1e-9, err_msg=name)
+
+
+def test_an_object_has_the_fragility_of_each_of_its_directions():
+    motions, levels = [noise(seed) for seed in range(3)], [2.0, 6.0, 18.0]
+    box = rocking.Object("box", width=0.4, depth=0.6, height=1.6, restitution=0.8)
+    found = rocking.fragility(motions, box, intensity=levels)
+    assert found.direction.values.tolist() == ["width", "depth"]
+    for direction, width in (("width", 0.4), ("depth", 0.6)):
+        block = rocking.fragility(motions, rocking.Block(width, 1.6), intensity=levels, restitution=0.8)
+        np.testing.assert_array_equal(found.overturned.sel(direction=direction), block.overturned)
+    leaning = rocking.Object("box", width=0.4, height=1.6, offset_width=0.05)
+    assert rocking.fragility(motions, leaning, intensity=levels).sizes["record"] == 6
+
+
 @pytest.mark.parametrize(
     ("body", "allowed"),
     [
-        (rocking.RigidBody(0.1, [0.1, 0.2], 0.8), "two equal edges"),
-        (rocking.RigidBody(0.1, 0.1, 0.8, inclination=0.01), "two equal edges"),
+        (5, "rocking.Object"),
+        ([rocking.RigidBody(0.1, 0.1, 0.8)], "rocking.Object"),
         (rocking.RigidBody.from_size(WIDTH.rename(w="record"), 1.6), "dimensions other than intensity, record"),
     ],
 )
 def test_bodies_without_a_fragility_are_refused(body, allowed):
     with pytest.raises(InvalidArgumentError, match=allowed):
         rocking.fragility([noise(0)], body, intensity=[1.0, 2.0])
+
+
+@pytest.mark.parametrize("measure", ["pgv_ratio", "frequency_ratio"])
+def test_measures_of_one_slenderness_angle_are_refused_for_two_edges(measure):
+    with pytest.raises(InvalidArgumentError, match="two different edges"):
+        rocking.fragility([noise(0)], rocking.RigidBody(0.1, 0.2, 0.8), intensity=[1.0], measure=measure)

@@ -81,7 +81,7 @@ def test_invalid_hazard_curve_is_refused(hazard):
 
 def test_a_hazard_curve_of_another_measure_is_refused():
     hazard = xr.DataArray(1e-3 / X, {"intensity": X}, dims="intensity", attrs={"measure": "pgv"})
-    with pytest.raises(InvalidArgumentError, match="measure of the fragility, pga"):
+    with pytest.raises(InvalidArgumentError, match="a hazard curve of pga"):
         annual_rate(curves(3.0, 0.5), hazard)
 
 

@@ -362,6 +362,20 @@ def test_approximate_time_has_no_value_at_low_frequencies() -> None:
     assert claim.numbers["largest"] > 1
 
 
+def test_bands_of_the_approximate_curve_reach_its_end() -> None:
+    on_curve = impact_times.case_1_1_curve([0.8, 0.85, 0.96])
+    claim = by_key(impact_times.smallest_solutions(on_curve))["minima-coincide"]
+    worst = np.nanmax(np.abs(on_curve.semi_analytical / on_curve.amplitude - 1))
+    assert worst == pytest.approx(0.082, abs=0.001)  # between omega = 4 and 5
+    assert max(value for name, value in claim.numbers.items() if name.startswith("omega")) == worst
+    assert percent(worst) in claim.found
+
+
+def test_a_range_that_begins_somewhere_has_no_failure_beyond() -> None:
+    late = curve(impact_time=np.where(np.abs(np.linspace(1, 5, 41) - 4.0) < 0.05, 3.0, 1.0) * np.ones((2, 1)))
+    assert by_key(impact_times.impact_about_one(late))["impact-at-1/p"].numbers["omega_from"] == pytest.approx(4.1)
+
+
 # The table
 
 

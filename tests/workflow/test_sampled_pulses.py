@@ -114,6 +114,12 @@ def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) 
     assert "of the ramp pulse" not in planned.stdout
 
 
+def test_a_pulse_of_the_catalogue_has_its_parameters_in_its_text(tmp_path):
+    name = "mavroeidis_papageorgiou(cycles=3,phase=0.5rad)"
+    assert configured_pulse("mavroeidis_papageorgiou(phase=0.5 rad, cycles=3)", tmp_path) == name
+    assert rocking.pulse(name) == rocking.pulse("mavroeidis_papageorgiou", cycles=3, phase=0.5)
+
+
 def _check_cube(results: Path, pulse: rocking.SampledPulse) -> None:
     """The nodes of a cube are those of the solver, and another process asks the solver by the stored samples."""
     path = results / f"spectra/{pulse.name}/eta-0.85.nc"

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -226,8 +227,16 @@ def test_a_scheduler_with_another_method_is_left_as_it_is_and_the_run_goes_on(tm
 def test_a_scheduler_without_the_method_gets_none(monkeypatch: pytest.MonkeyPatch) -> None:
     for scheduler in (None, type("JobScheduler", (), {})):
         monkeypatch.setattr(workflow.run, "JobScheduler", scheduler)
-        workflow.run.limit_passes_of_the_scheduler()
-        assert not hasattr(scheduler, workflow.run.METHOD)
+        with workflow.run.limited_passes_of_the_scheduler():
+            assert not hasattr(scheduler, workflow.run.METHOD)
+
+
+def test_the_method_of_the_scheduler_is_its_own_again_after_the_run() -> None:
+    own = getattr(workflow.run.JobScheduler, workflow.run.METHOD)
+    with suppress(SystemExit), workflow.run.limited_passes_of_the_scheduler():
+        assert getattr(workflow.run.JobScheduler, workflow.run.METHOD) is not own
+        sys.exit()  # as Snakemake ends
+    assert getattr(workflow.run.JobScheduler, workflow.run.METHOD) is own
 
 
 def test_a_scheduler_that_counts_its_jobs_elsewhere_keeps_its_passes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -238,8 +247,8 @@ def test_a_scheduler_that_counts_its_jobs_elsewhere_keeps_its_passes(monkeypatch
             asked.append(delay)
 
     monkeypatch.setattr(workflow.run, "JobScheduler", Scheduler)
-    workflow.run.limit_passes_of_the_scheduler()
-    Scheduler()._schedule_reevalutation(2)
+    with workflow.run.limited_passes_of_the_scheduler():
+        Scheduler()._schedule_reevalutation(2)
     assert asked == [2]
 
 

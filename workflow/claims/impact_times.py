@@ -121,6 +121,12 @@ class Curve(NamedTuple):
         """Where case 1.1 overturns."""
         return np.isfinite(self.amplitude)
 
+    def holds_from(self, good: Flags) -> float:
+        """The frequency ratio from which on all known points are good, nan if the last is not."""
+        failing = (self.known & ~good).any(axis=0)
+        kept = self.known.any(axis=0) & ~np.logical_or.accumulate(failing[::-1])[::-1]
+        return float(self.frequency_ratio[kept].min()) if kept.any() else np.nan
+
 
 def case_1_1_curve(restitution: Sequence[float]) -> Curve:
     """The curve for omega from 1, by both conditions, with both times of impact."""
@@ -151,8 +157,7 @@ def impact_about_one(curve: Curve) -> Iterator[Claim]:
     """(3.23): the impact comes at tau = 1."""
     near = curve.known & (np.abs(curve.impact_time - 1) <= ABOUT)
     share = float(near.sum() / curve.known.sum())
-    all_near = np.all(~curve.known | near, axis=0) & curve.known.any(axis=0)
-    from_omega = float(curve.frequency_ratio[all_near].min()) if all_near.any() else np.nan
+    from_omega = curve.holds_from(near)
     yield Claim(
         key="impact-at-1/p",
         place="section 3c, (3.23)",
@@ -218,7 +223,7 @@ def approximate_time(curve: Curve) -> Iterator[Claim]:
         f"it has no real value below omega = {first.min():.2f} to {first.max():.2f}, depending on eta, and just above"
     )
     worst = float(np.nanmax(np.abs(curve.approximate_time - curve.impact_time)))
-    from_omega = float(omega[np.all(~known | good, axis=0) & known.any(axis=0)].min(initial=np.inf))
+    from_omega = curve.holds_from(good)
     yield Claim(
         key="ad-hoc-time",
         place="section 3c, (3.29)",
@@ -245,12 +250,14 @@ def smallest_solutions(curve: Curve) -> Iterator[Claim]:
     good = known & (np.nan_to_num(difference, nan=np.inf) <= CLOSE)
     share = float(good.sum() / known.sum())
     missing = known & ~np.isfinite(curve.semi_analytical)
-    lost = float(omega[missing.any(axis=0)].min(initial=np.inf))
-    without = f"; close to the ends of the curves, from omega = {lost:.2f} on, (3.30) has no solution inside the pulse"
-    known_difference = np.where(known, difference, np.nan)
+    lost = np.array([omega[row].min() for row in missing if row.any()])
+    end = float(omega[known.any(axis=0)].max())
+    known_difference = np.where(known, difference, -np.inf)
     bands = {
-        f"{low:g} to {high:g}": float(np.nanmax(known_difference[:, (omega >= low) & (omega <= high)]))
-        for low, high in ((1, 2), (2, 3), (3, 4))
+        f"{low:g} to {min(low + 1.0, end):g}": float(
+            np.nanmax(known_difference[:, (omega >= low) & (omega <= low + 1.0)])
+        )
+        for low in np.arange(1.0, end)
     }
     yield Claim(
         key="minima-coincide",
@@ -259,9 +266,15 @@ def smallest_solutions(curve: Curve) -> Iterator[Claim]:
         criterion=f"within {percent(CLOSE)} in a; {_on_curve(curve)}",
         found=f"on {percent(share)}; largest difference "
         + ", ".join(f"{percent(value)} for omega {band}" for band, value in bands.items())
-        + (without if missing.any() else ""),
+        + (
+            f"; close to the ends of the curves, from omega = {lost.min():.2f} to {lost.max():.2f} on, depending on "
+            "eta, (3.30) has no solution inside the pulse"
+            if missing.any()
+            else ""
+        ),
         verdict=verdict_of(share),
-        numbers={"share": share} | {f"omega {band}": value for band, value in bands.items()},
+        numbers={"share": share, "largest": max(bands.values())}
+        | {f"omega {band}": value for band, value in bands.items()},
     )
 
 

@@ -11,7 +11,7 @@ SAMPLED = {pulse.name: entry for pulse, entry in ENTRIES if not isinstance(pulse
 
 
 wildcard_constraints:
-    pulse="[a-z0-9_]+",
+    pulse=r"[a-z0-9_]+(\([^/()]+\))?",
     eta="|".join(map(re.escape, ETAS)),
     tenth="|".join(TENTHS),
     digest="[0-9a-f]{16}",

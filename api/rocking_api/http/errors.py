@@ -1,12 +1,13 @@
 """Errors as problem+json (RFC 9457): which parameter, its value, and what is allowed.
 
-`STATUS` is the one table from exception to status code.
+`KINDS` is the one table from exception to status code and type.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
 from http import HTTPMethod, HTTPStatus
 from typing import Any
 
@@ -26,6 +27,10 @@ MEDIA_TYPE = "application/problem+json"
 
 class TooLargeError(InvalidArgumentError):
     """The request exceeds a limit of the service."""
+
+
+class MalformedBodyError(InvalidArgumentError):
+    """The body is not JSON; the value is what is wrong, and where."""
 
 
 class UnsupportedBodyError(InvalidArgumentError):
@@ -50,18 +55,80 @@ class DamagedDatasetsError(DatasetError):
         self.damaged = dict(sorted(damaged.items()))
 
 
-STATUS: dict[type[Exception], int] = {
-    InvalidArgumentError: HTTPStatus.UNPROCESSABLE_ENTITY,  # OutsideCubeError is one
-    TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-    TooManyRowsError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-    UnsupportedBodyError: HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-    UnknownDatasetError: HTTPStatus.NOT_FOUND,
-    SlowBodyError: HTTPStatus.REQUEST_TIMEOUT,
-    DatasetError: HTTPStatus.SERVICE_UNAVAILABLE,
-    BusyError: HTTPStatus.SERVICE_UNAVAILABLE,
-    NotReadyError: HTTPStatus.SERVICE_UNAVAILABLE,
-    TimeLimitError: HTTPStatus.GATEWAY_TIMEOUT,
+@dataclass(frozen=True)
+class Kind:
+    """A kind of error.
+
+    Attributes
+    ----------
+    name : str
+        The anchor of its `type` on the page of kinds.
+    status : HTTPStatus
+        Of the response.
+    meaning : str
+        When it occurs and what to do, in one sentence.
+    """
+
+    name: str
+    status: HTTPStatus
+    meaning: str
+
+    @property
+    def type(self) -> str:
+        """The `type` of RFC 9457: a reference relative to the service."""
+        return f"{PROBLEMS}#{self.name}"
+
+
+PROBLEMS = "/problems"
+"""The page that explains the kinds of errors."""
+
+KINDS: dict[type[Exception], Kind] = {
+    InvalidArgumentError: Kind(  # OutsideCubeError is one
+        "invalid-parameter",
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        "A parameter is missing, unknown, given twice, not of its type or out of range; `errors` lists all of them.",
+    ),
+    MalformedBodyError: Kind(
+        "malformed-json", HTTPStatus.BAD_REQUEST, "The body is not JSON; `value` says what is wrong in which place."
+    ),
+    TooLargeError: Kind(
+        "too-large", HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "The request exceeds a limit of the service: divide it."
+    ),
+    TooManyRowsError: Kind(
+        "too-many-rows", HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "The table has too many rows: divide it."
+    ),
+    UnsupportedBodyError: Kind(
+        "unsupported-body",
+        HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+        "The body has a media type that the route does not read, or is compressed.",
+    ),
+    UnknownDatasetError: Kind(
+        "unknown-data-set", HTTPStatus.NOT_FOUND, "No data set has this name; /v1/datasets lists them."
+    ),
+    SlowBodyError: Kind("slow-body", HTTPStatus.REQUEST_TIMEOUT, "The body did not arrive in time."),
+    DatasetError: Kind(
+        "damaged-data-set", HTTPStatus.SERVICE_UNAVAILABLE, "A data set exists and cannot be used; it was logged."
+    ),
+    BusyError: Kind(
+        "busy", HTTPStatus.SERVICE_UNAVAILABLE, "Queue or memory are full: repeat the request after `Retry-After`."
+    ),
+    NotReadyError: Kind(
+        "not-ready", HTTPStatus.SERVICE_UNAVAILABLE, "The solver is being loaded: repeat after `Retry-After`."
+    ),
+    TimeLimitError: Kind(
+        "time-limit", HTTPStatus.GATEWAY_TIMEOUT, "The work exceeds the time limit of a request: reduce it."
+    ),
 }
+"""Kinds of errors by exception."""
+
+OTHERS = (
+    Kind("bad-request", HTTPStatus.BAD_REQUEST, "A header is missing, given twice or malformed: Host, Range."),
+    Kind("not-found", HTTPStatus.NOT_FOUND, "There is nothing at this address, or no longer this version of it."),
+    Kind("method-not-allowed", HTTPStatus.METHOD_NOT_ALLOWED, "The route has other methods, which `Allow` lists."),
+    Kind("range", HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE, "The Range is outside the file."),
+    Kind("internal", HTTPStatus.INTERNAL_SERVER_ERROR, "A fault of the service, not of the request; it was logged."),
+)
+"""Those without an exception, by their status codes."""
 
 NOSNIFF = (b"x-content-type-options", b"nosniff")
 """Of every response: no content sniffing by browsers."""
@@ -94,7 +161,7 @@ class InvalidParameter(BaseModel):
 class Problem(BaseModel):
     """RFC 9457, with the three parts of every error message."""
 
-    type: str = Field("about:blank", description="always about:blank: the title says what the status means")
+    type: str = Field(description="kind of the error: address and anchor of its explanation, relative to the service")
     title: str = Field(description="what the status code means")
     status: int = Field(description="HTTP status code")
     detail: str = Field(description="what is wrong, in one sentence")
@@ -111,17 +178,20 @@ class Problem(BaseModel):
 RESPONSES: dict[int | str, dict[str, Any]] = {
     int(status): {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": schema}}}
     for schema in [{"$ref": "#/components/schemas/Problem"}]
-    for status in (400, 404, 405, 408, 413, 415, 422, 500, 503, 504)
+    for status in sorted({kind.status for kind in (*KINDS.values(), *OTHERS)} - {416})
 }
 """For the OpenAPI description: error responses of any route."""
 
 
-def problem_response(status: int, detail: str, headers: Mapping[str, str] | None = None, **parts: Any) -> Response:
-    """An error response; `parts` are other fields of `Problem`."""
+def problem_response(kind: Kind | int, detail: str, headers: Mapping[str, str] | None = None, **parts: Any) -> Response:
+    """An error response of a kind, or of one of `OTHERS` by its status; `parts` are other fields of `Problem`."""
+    if not isinstance(kind, Kind):
+        status = kind
+        kind = next((one for one in OTHERS if one.status == status), Kind("other", HTTPStatus(status), ""))
     parts = {name: _text(part) if isinstance(part, str) else part for name, part in parts.items()}
     parts["value"] = plain(parts.get("value"))
-    content = Problem(title=HTTPStatus(status).phrase, status=status, detail=_text(detail), **parts)
-    return Response(content.model_dump_json(exclude_none=True), status, headers, MEDIA_TYPE)
+    content = Problem(type=kind.type, title=kind.status.phrase, status=kind.status, detail=_text(detail), **parts)
+    return Response(content.model_dump_json(exclude_none=True), kind.status, headers, MEDIA_TYPE)
 
 
 def internal_error() -> Response:
@@ -133,30 +203,30 @@ def internal_error() -> Response:
 
 def add_handlers(app: FastAPI) -> None:
     """Register a handler for each exception of the table; others are logged by `RequestLog`."""
-    for kind in STATUS:
+    for kind in KINDS:
         app.add_exception_handler(kind, error_response)
     app.add_exception_handler(HTTPException, _handle_http)
 
 
 async def error_response(_: Request, error: Exception) -> Response:
     """The response to an exception of the table."""
-    status = next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
+    kind = next(KINDS[one] for one in type(error).__mro__ if one in KINDS)
     headers = HEADERS.get(type(error))
     found = _named(error)
     if not found:
-        return problem_response(status, str(error), headers)
+        return problem_response(kind, str(error), headers)
     errors = [
         InvalidParameter(name=_text(one.parameter), value=plain(one.value), allowed=_text(one.allowed))
         for one in found[:MAX_ERRORS]
     ]
     if isinstance(error, DamagedDatasetsError):
         detail = f"{len(found)} data sets are damaged: " + "; ".join(one.parameter for one in found)
-        return problem_response(status, detail, headers, errors=errors)
+        return problem_response(kind, detail, headers, errors=errors)
     first = {"parameter": found[0].parameter, "value": found[0].value, "allowed": found[0].allowed}
     if len(found) == 1:
-        return problem_response(status, str(found[0]), headers, **first)
+        return problem_response(kind, str(found[0]), headers, **first)
     detail = f"{len(found)} parameters are missing or wrong: " + "; ".join(map(str, found[:MAX_ERRORS]))
-    return problem_response(status, detail, headers, **first, errors=errors)
+    return problem_response(kind, detail, headers, **first, errors=errors)
 
 
 def _named(error: Exception) -> list[InvalidArgumentError]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Collection, Coroutine, Mapping
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 from urllib.parse import parse_qsl
@@ -16,18 +16,22 @@ from urllib.parse import parse_qsl
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 from pydantic import TypeAdapter, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic_core import ErrorDetails, from_json
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._numba.cancellation import StopFlag
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import json_response
-from rocking_api.http.errors import plain, refusal
+from rocking_api.http.errors import MalformedBodyError, plain, refusal
 from rocking_api.models.answer import Answer
 from rocking_api.models.params import Params
 
 P = TypeVar("P", bound=Params)
 
 _OBJECT = TypeAdapter(dict[str, Any])
+
+_TOKEN = re.compile(rb'[^"{}]*+(?:("[^"\\]*+(?:\\.[^"\\]*+)*+")\s*+(:)?|([{}])|\Z)', re.DOTALL)
+"""The next text of JSON, with the colon after a key, or end of an object; what is before it is passed over at once."""
 
 
 class ParamsRoute(APIRoute):
@@ -45,6 +49,8 @@ class ParamsRoute(APIRoute):
             arguments = dict(request.path_params)
             if "params" in wanted:
                 arguments["params"] = read_query(wanted["params"], query_parameters(request))
+            elif shared and request.scope["query_string"]:
+                read_query(Params, query_parameters(request))  # refuses all
             if "request" in wanted:
                 arguments["request"] = request
             if "service" in wanted:
@@ -99,25 +105,78 @@ def _number(text: str) -> float | str:
         return text
 
 
-def read_json(kind: type[P], body: bytes, query: Mapping[str, str], options: type[Params]) -> P:
-    """The parameters in a JSON body, and those of `options` that are in the query.
+def check_json(body: bytes, stop: StopFlag) -> None:
+    """Refuse a body that is not JSON, or whose objects have a key twice.
+
+    Raises
+    ------
+    MalformedBodyError
+        With line and column.
+    InvalidArgumentError
+        As `reject_repeated_keys`.
+    """
+    try:
+        from_json(body, cache_strings="none")
+    except ValueError as error:
+        raise MalformedBodyError("body", str(error), "JSON (RFC 8259)") from None
+    reject_repeated_keys(body, stop)
+
+
+def reject_repeated_keys(body: bytes, stop: StopFlag) -> None:
+    """Refuse JSON with an object that has two values of one key, of which parsers take the last one in silence.
 
     Raises
     ------
     InvalidArgumentError
-        If they do not fit `kind`, or the query has others, or other values than the body.
+        Of the key.
+    StoppedError
+        If `stop` was set.
+    """
+    objects: list[set[bytes]] = []
+    for token in _TOKEN.finditer(body):
+        text, colon, end = token.groups()
+        if end == b"{":
+            stop.check()
+            objects.append(set())
+        elif end:
+            objects.pop()
+        elif colon:
+            key = from_json(text).encode() if b"\\" in text else text[1:-1]
+            if key in objects[-1]:
+                line = body.count(b"\n", 0, token.start(1)) + 1
+                raise InvalidArgumentError(key.decode(), f"two values, the second in line {line}", "one value")
+            objects[-1].add(key)
+
+
+def read_json(kind: type[P], body: bytes, query: Mapping[str, str], options: type[Params], stop: StopFlag) -> P:
+    """The parameters in a JSON body, and those of `options` that are in the query.
+
+    Raises
+    ------
+    MalformedBodyError
+        If it is not JSON, with line and column.
+    InvalidArgumentError
+        If they do not fit `kind`, one is given twice, or the query has others, or other values than the body.
+    StoppedError
+        If `stop` was set.
     """
     for name, value in query.items():
         if name not in options.model_fields:
             raise InvalidArgumentError(name, value, f"one of {', '.join(options.model_fields)}, in the query")
+    given: dict[str, Any] = {}
     try:
-        if not query:
-            return kind.model_validate_json(body)
-        given = _OBJECT.validate_json(body)
-        found = kind.model_validate({**query, **given})  # pydantic takes texts for numbers
-        twice = kind.model_validate({**given, **query}) if given.keys() & query.keys() else found
+        if query:
+            given = _OBJECT.validate_json(body)
+            found = kind.model_validate({**query, **given})  # pydantic takes texts for numbers
+            twice = kind.model_validate({**given, **query}) if given.keys() & query.keys() else found
+        else:
+            found = twice = kind.model_validate_json(body)
     except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        if first["type"] == "json_invalid":
+            raise MalformedBodyError("body", first["ctx"]["error"], "JSON (RFC 8259)") from None
         raise SeveralArgumentsError(_named(error, "body", kind)) from None
+    reject_repeated_keys(body, stop)
     for name in [name for name in query if name in given]:
         if getattr(found, name) != getattr(twice, name):
             raise InvalidArgumentError(name, f"{query[name]} in the query and {given[name]} in the body", "one value")
@@ -129,7 +188,7 @@ def _named(error: ValidationError, source: str, kind: type[Params]) -> list[Inva
     return [_of_validation(one, source, kind.model_fields) for one in error.errors(include_url=False)]
 
 
-def _of_validation(error: ErrorDetails, source: str, names: Iterable[str]) -> InvalidArgumentError:
+def _of_validation(error: ErrorDetails, source: str, names: Collection[str]) -> InvalidArgumentError:
     """An error of pydantic; `names` are the parameters that are expected in `source`."""
     kind, context = str(error["type"]), error.get("ctx", {})
     place = error["loc"]
@@ -146,7 +205,7 @@ def _of_validation(error: ErrorDetails, source: str, names: Iterable[str]) -> In
     if kind == "missing":
         return refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
     if kind == "extra_forbidden":
-        known = "one of " + ", ".join(names) if len(place) == 1 else "see /docs"
+        known = ("one of " + ", ".join(names) if names else "none") if len(place) == 1 else "see /docs"
         known += f", in the {source}"
         detail = f"there is no parameter `{name}` in the {source}; allowed: {known}"
         return refusal(detail, name, plain(error["input"]), known)

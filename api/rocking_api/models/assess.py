@@ -9,12 +9,13 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
 from rocking._base.column import Column
-from rocking._base.errors import plain_numbers
-from rocking._excitation.pulses import as_pulse
+from rocking._base.errors import InvalidArgumentError, plain_numbers
+from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
+from rocking_api.models.records import BaselineOrder
 from rocking_api.models.responses import BY_SOLVER
 
 MAX_OBJECTS = 2000
@@ -25,6 +26,21 @@ MAX_RECORDS = 100
 
 MAX_SAMPLES = 20_000
 """Most variants of an object [-]."""
+
+MAX_MODES = 20
+"""Most modes of a building [-]."""
+
+MAX_SHAPES = 50
+"""Most pulse shapes of a site [-]."""
+
+MAX_LEVELS = 1000
+"""Most levels of a hazard curve [-]."""
+
+MAX_RECORD = 1_000_000
+"""Most samples of a component of a record [-]."""
+
+Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
+Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
 
 _STRENGTH: dict[str, Any] = {"minimum": STRENGTHS[0], "maximum": STRENGTHS[1]}
 _LENGTH: dict[str, Any] = {"minimum": LENGTH[0], "maximum": LENGTH[1]}
@@ -53,7 +69,7 @@ class AssessParams(Params):
     )
     shapes: str | None = Field(
         None,
-        description="pulses by name, separated by commas; absent: all that leave the ground at rest",
+        description="pulses, separated by commas; absent: all that leave the ground at rest",
         examples=["sine,ricker"],
     )
     moving_ground: bool = Field(False, description="also half sine and rectangular, which leave the ground moving")
@@ -64,6 +80,7 @@ class AssessParams(Params):
     floor_participation: str = Field(
         "1", description="participation factors times mode shapes at the floor [-], one or one for each"
     )
+    baseline_order: BaselineOrder = None
     samples: int = Field(
         0,
         description="variants of each object within its tolerance and 0.05 of the restitution that are tried [-]",
@@ -77,9 +94,9 @@ class AssessParams(Params):
     def check_field(cls, name: str, value: Any) -> None:
         super().check_field(name, value)
         if name.startswith("floor_") and value is not None:
-            plain_numbers(name, str(value))  # a query with an error elsewhere has its numbers read
+            modes_of(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
-            for shape in str(value).split(","):
+            for shape in _parts(name, value, MAX_SHAPES, "shapes"):
                 as_pulse(shape)
 
     def site(self, given: AssessBody | None) -> Site:
@@ -97,14 +114,36 @@ class AssessParams(Params):
             self.pga,
             self.pgv,
             periods,
-            [] if given is None else [one.motion(k) for k, one in enumerate(given.records, start=1)],
+            []
+            if given is None
+            else [one.motion(k, self.baseline_order) for k, one in enumerate(given.records, start=1)],
             None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
-            None if self.shapes is None else self.shapes.split(","),
+            None if self.shapes is None else split_pulses(self.shapes),
             self.moving_ground,
-            None if self.floor_periods is None else plain_numbers("floor_periods", self.floor_periods),
-            plain_numbers("floor_damping", self.floor_damping),
-            plain_numbers("floor_participation", self.floor_participation),
+            None if self.floor_periods is None else modes_of("floor_periods", self.floor_periods),
+            modes_of("floor_damping", self.floor_damping),
+            modes_of("floor_participation", self.floor_participation),
         )
+
+
+def modes_of(name: str, text: str) -> list[float]:
+    """The numbers of the modes of a building, separated by commas.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the text holds anything else, or more than `MAX_MODES`.
+    """
+    _parts(name, text, MAX_MODES, "modes")
+    return plain_numbers(name, text)
+
+
+def _parts(name: str, text: str, most: int, what: str) -> list[str]:
+    """The parts of a text that commas separate, at most so many; those within brackets separate none."""
+    parts = split_pulses(text)
+    if len(parts) > most:
+        raise InvalidArgumentError(name, f"{len(parts)} {what}", f"at most {most} {what}")
+    return parts
 
 
 class SuiteRecordBody(BaseModel):
@@ -112,20 +151,25 @@ class SuiteRecordBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    acceleration: list[float] = Field(description="horizontal acceleration at uniform steps, in `unit`")
-    second: list[float] | None = Field(
+    acceleration: Samples = Field(description="horizontal acceleration at uniform steps, in `unit`")
+    second: Samples | None = Field(
         None, description="other horizontal component: the pair is assessed at all angles and counts as one record"
     )
-    vertical: list[float] | None = Field(None, description="vertical acceleration, upwards")
+    vertical: Samples | None = Field(None, description="vertical acceleration, upwards")
     time_step: float = Field(description="time between samples [s]")
     unit: str = Field("m/s2", description="unit of the samples")
     name: str = Field("", description="name for the answer", max_length=40)
 
-    def motion(self, number: int) -> Record | tuple[Record, Record]:
-        """The record, or the pair."""
+    def motion(self, number: int, order: int | None) -> Record | tuple[Record, Record]:
+        """The record, or the pair, without a baseline of a degree."""
         name = self.name or f"record {number}"
-        first = Record(self.acceleration, self.time_step, self.unit, name, vertical=self.vertical)
-        return first if self.second is None else (first, Record(self.second, self.time_step, self.unit, name))
+
+        def record(samples: list[float], vertical: list[float] | None = None) -> Record:
+            found = Record(samples, self.time_step, self.unit, name, vertical=vertical)
+            return found if order is None else found.baseline_corrected(order=order)
+
+        first = record(self.acceleration, self.vertical)
+        return first if self.second is None else (first, record(self.second))
 
 
 class HazardBody(BaseModel):
@@ -133,8 +177,8 @@ class HazardBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    intensity: list[float] = Field(description="peak ground accelerations, ascending [m/s2]")
-    annual_rate: list[float] = Field(description="annual rates of exceedance [1/year]")
+    intensity: Levels = Field(description="peak ground accelerations, ascending [m/s2]")
+    annual_rate: Levels = Field(description="annual rates of exceedance [1/year]")
 
 
 class AssessBody(AssessParams):

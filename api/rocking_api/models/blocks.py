@@ -14,6 +14,9 @@ from rocking_api.models.params import AbsoluteTolerance, Method, Params, PulseNa
 from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import BY_SOLVER, PointResponse
 
+MAX_BLOCKS = 10_000
+"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
+
 RANGES = {
     "width": (1e-4, 1e4, "m"),
     "height": (1e-4, 1e4, "m"),
@@ -101,7 +104,9 @@ class BlockRow(Params):
 class BlockRows(BlocksParams):
     """Many blocks in a JSON body, and what they have in common."""
 
-    blocks: list[BlockRow] = Field(description="blocks, in the order of the response")
+    blocks: list[BlockRow] = Field(
+        description="blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS}
+    )
     pulse: GivenPulse | None = Field(  # type: ignore[assignment]
         None, description="a pulse by its name, or by samples; absent: that of the query"
     )

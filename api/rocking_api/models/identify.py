@@ -6,6 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from rocking._excitation.records.record import TIME_STEP
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params, TableFormat
@@ -26,6 +27,11 @@ class IdentifyParams(Params):
     )
     degrees: bool = Field(
         False, description="the rotations are in degrees, not in radians, where the header of CSV states no unit"
+    )
+    time_step: float | None = Field(
+        None,
+        description="time between the rows where CSV counts them in place of times [s]",
+        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
     )
     confidence: float = Field(
         0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
@@ -55,13 +61,21 @@ class IdentifyResponse(Answer):
     frequency_parameter_lower: list[float] = Field(description="lower end of its interval [rad/s]")
     frequency_parameter_upper: list[float] = Field(description="upper end of its interval [rad/s]")
     impact_time: list[float] = Field(description="times of the impacts of the fit [s]")
-    offset: float = Field(description="rotation at rest [rad]")
+    offset: float = Field(description="rotation at rest, at the first impact [rad]")
+    drift: float = Field(description="drift of the sensor [rad/s]")
+    drift_lower: float = Field(description="lower end of its interval [rad/s]")
+    drift_upper: float = Field(description="upper end of its interval [rad/s]")
     noise: float = Field(description="standard deviation of the residual [rad]")
+    sample_noise: float = Field(description="standard deviation of independent errors of the samples [rad]")
     time: list[float] = Field(description="times of the samples [s]")
     rotation: list[float] = Field(description="rotation as given [rad]")
     fitted: list[float | None] = Field(description="rotation of the block [rad]; null where nothing is fitted")
+    warnings: list[str] = Field(description="why the intervals are wider than the samples alone would have them")
     metadata_url: str = METADATA_URL_FIELD
 
+
+TRACE_NUMBERS = ("offset", "drift", "drift_lower", "drift_upper", "noise", "sample_noise")
+"""Fields with one value for the trace."""
 
 EDGE_COLUMNS = [name for name in IdentifyResponse.model_fields if name.startswith(("edge", "rest", "alpha", "freq"))]
 """Fields with one value for each edge."""

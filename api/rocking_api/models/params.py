@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
-from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names
+from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
 from rocking._model import parameters
 from rocking._model.checks import check
 from rocking._model.parameters import RESTITUTION, Parameter
@@ -24,7 +24,10 @@ ALPHA_DEG = parameters.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
-_FAIL_FAST = Field(fail_fast=True)  # one error for an array, not one for each entry
+MAX_NUMBERS = 1_000_000
+"""Most numbers of a list in JSON [-]; the points of a batch have a limit of their own, see `Settings`."""
+
+_FAIL_FAST = Field(fail_fast=True, max_length=MAX_NUMBERS)  # one error for an array, not one for each entry
 
 _KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
 """Names that need no look at the registered pulses."""
@@ -46,11 +49,20 @@ def limits(parameter: Parameter) -> dict[str, Any]:
 def _list_pulses(schema: dict[str, Any]) -> None:
     """Add the names of all pulses, those that were registered until the schema is made among them."""
     names = pulse_names()
-    schema["enum"] = [*names, *(f"-{name}" for name in names)]
+    varied = "|".join(name for name in names if pulse_parameters(name))
+    schema["anyOf"] = [
+        {"enum": [*names, *(f"-{name}" for name in names)]},
+        {"pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
+    ]
 
 
 PulseName = Annotated[
-    str, Field(description="pulse; a leading minus mirrors it", examples=["sine"], json_schema_extra=_list_pulses)
+    str,
+    Field(
+        description="pulse, with its parameters in brackets if it has any; a leading minus mirrors it",
+        examples=["sine", "mavroeidis_papageorgiou(cycles=3, phase=90deg)"],
+        json_schema_extra=_list_pulses,
+    ),
 ]
 Slenderness = Annotated[
     float,

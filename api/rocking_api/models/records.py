@@ -9,6 +9,7 @@ from pydantic import BaseModel, Field, create_model
 
 from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
+from rocking._excitation.records.readers.read_record import MAX_SKIP
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.blocks import OVERTURNS_ABOVE, BlockSummary, BodySummary, MassHeight, Offset, SizeParams
@@ -40,6 +41,24 @@ Unit = Annotated[
 ]
 
 
+Skip = Annotated[
+    int | None,
+    Field(
+        description="rows of numbers above the samples of a file of columns, such as a count or a factor [-]",
+        json_schema_extra={"minimum": 0, "maximum": MAX_SKIP},
+    ),
+]
+
+BaselineOrder = Annotated[
+    int | None,
+    Field(
+        description="degree of the baseline that is removed from the acceleration [-]; absent: none, "
+        "but for the mean of K-NET counts",
+        json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
+    ),
+]
+
+
 class RecordFileParams(SizeParams):
     """A block in SI units, and what the file of the record does not state."""
 
@@ -54,11 +73,8 @@ class RecordFileParams(SizeParams):
     vertical: str | None = Field(
         None, description="column or trace of the vertical component, upwards, in the same file", max_length=200
     )
-    baseline_order: int | None = Field(
-        None,
-        description="degree of the baseline that is removed from the acceleration [-]; absent: none",
-        json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
-    )
+    skip: Skip = None
+    baseline_order: BaselineOrder = None
 
 
 class RecordParams(RecordFileParams):

@@ -59,20 +59,16 @@ async def post_assess(request: Request, service: ServiceDep) -> Response:
     """
     given = body_form(request, _FORMS)
     params, body = await service.read(request, AssessParams, given, AssessBody, MAX_BODY)
-    table, site = await service.run_parser(lambda _: _read(body, given, params), request, large=True)
+    table, site = await service.run_parser(lambda stop: _read(body, given, params, stop), request, large=True)
     form = negotiated_form(request, params.format, _FORMS, default=given)
     return await service.run_heavy(params, lambda stop: _assess(params, request, site, table, form, stop), request)
 
 
-def _read(body: AssessBody | bytes, form: Form, params: AssessParams) -> tuple[ObjectTable, Site]:
+def _read(body: AssessBody | bytes, form: Form, params: AssessParams, stop: StopFlag) -> tuple[ObjectTable, Site]:
     given, raw = (None, body) if isinstance(body, bytes) else (body, json.dumps(body.objects).encode())
-    table = objects_of_text(raw, json=form == "json", most=MAX_OBJECTS)
+    table = objects_of_text(raw, json=form == "json", most=MAX_OBJECTS, stop=stop)
     check_table(table, "objects")
-    site = params.site(given)
-    size = sum(len(one.planes) for one in table.objects) * len(site.motions)
-    if size > MAX_PAIRS:
-        raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
-    return table, site
+    return table, params.site(given)
 
 
 def check_table(table: ObjectTable, name: str) -> None:
@@ -91,6 +87,9 @@ def check_table(table: ObjectTable, name: str) -> None:
 def _assess(
     params: AssessParams, request: Request, site: Site, table: ObjectTable, form: Form, stop: StopFlag
 ) -> Response:
+    size = sum(len(one.planes) for one in table.objects) * len(site.find_motions(stop))
+    if size > MAX_PAIRS:
+        raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
     kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed")}
     found = assess(table.objects, site, **kept, stop=stop)
     if form == "csv":

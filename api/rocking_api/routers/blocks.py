@@ -23,6 +23,7 @@ from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_resp
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.blocks import (
+    MAX_BLOCKS,
     BlockParams,
     BlockResponse,
     BlockRow,
@@ -41,9 +42,6 @@ from rocking_api.models.responses import PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
-
-MAX_BLOCKS = 10_000
-"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
 
 MAX_BODY = 4 * 1024 * 1024
 """Largest body with blocks [bytes]."""
@@ -96,17 +94,17 @@ async def post_blocks(request: Request, service: ServiceDep) -> Response:
     given = body_form(request, _FORMS)
     params, body = await service.read(request, BlocksParams, given, BlockRows, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
-    table = await service.run_parser(lambda _: _read_table(body, params), request, large=True)
+    table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
     return await service.run_heavy(params, lambda stop: _blocks(service, params, request, table, form, stop), request)
 
 
-def _read_table(body: BlockRows | bytes, params: BlocksParams) -> BlockTable:
+def _read_table(body: BlockRows | bytes, params: BlocksParams, stop: StopFlag) -> BlockTable:
     """The blocks of a body, each checked."""
     if params.pulse is None:
         raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
-        table = read_table(text, params.pulse, params.restitution, most=MAX_BLOCKS)
+        table = read_table(text, params.pulse, params.restitution, most=MAX_BLOCKS, stop=stop)
         table.check()
     else:
         if len(body.blocks) > MAX_BLOCKS:

@@ -30,7 +30,10 @@ class GuideFiles(PageFiles):
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         if not Path(str(self.directory), "index.html").is_file():
-            raise HTTPException(HTTPStatus.NOT_FOUND, "the guide is not built: make docs")
+            raise HTTPException(
+                HTTPStatus.NOT_FOUND,
+                f"no guide in {self.directory}: make docs in a checkout builds it, ROCKING_GUIDE names its folder",
+            )
         return await super().get_response(path, scope)
 
     def file_response(

@@ -17,7 +17,14 @@ from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES, IdentifyParams, IdentifyResponse, Trace
+from rocking_api.models.identify import (
+    EDGE_COLUMNS,
+    MAX_SAMPLES,
+    TRACE_NUMBERS,
+    IdentifyParams,
+    IdentifyResponse,
+    Trace,
+)
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -86,7 +93,7 @@ def _read(
     if isinstance(body, Trace):
         return np.array(body.time), (math.pi / 180.0 if params.degrees else 1.0) * np.array(body.rotation)
     stated = params.degrees if "degrees" in params.model_fields_set else None
-    return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated)
+    return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated, params.time_step)
 
 
 def _identified(
@@ -106,7 +113,6 @@ def _identified(
         return csv_response(edges, "identified")
     columns: dict[str, Any] = {name: found[name].values.tolist() for name in ("time", "rotation", "impact_time")}
     columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
-    noise, offset = found["noise"].item(), found["offset"].item()
-    return json_response(
-        IdentifyResponse.model_construct(query=params, noise=noise, offset=offset, **edges, **columns), request
-    )
+    columns |= {name: found[name].item() for name in TRACE_NUMBERS}
+    columns["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
+    return json_response(IdentifyResponse.model_construct(query=params, **edges, **columns), request)

@@ -16,7 +16,7 @@ from rocking._assessment.directions import factors_by_direction
 from rocking._assessment.objects import Object, Plane
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
-from rocking._base.errors import InvalidArgumentError, plain_numbers
+from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Scalar
 from rocking._model.checks import check_number
 from rocking._model.parameters import RESTITUTION
@@ -24,6 +24,7 @@ from rocking_api.dial import dial_of, worst_directions
 from rocking_api.http.caching import revalidated
 from rocking_api.http.parameters import query_parameters
 from rocking_api.mesh_reader import ENDINGS, MAX_MESH, can_read_meshes, read_mesh
+from rocking_api.models.assess import modes_of
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
 
@@ -73,9 +74,6 @@ MAX_TEXT = 10_000
 MAX_VERTICES = 200
 """Most vertices of an outline [-]."""
 
-MAX_MODES_TEXT = 200
-"""Longest list of periods or of participations of a building [characters]."""
-
 router = APIRouter(prefix=PATH, include_in_schema=False)
 
 
@@ -100,7 +98,7 @@ async def post_mesh(request: Request, service: ServiceDep, file: str = "") -> Re
     given = fields_of(query_parameters(request) | {"shape": "mesh"})
     raw = await service.read_body(request, MAX_MESH)
     site, restitution = site_of(given), _restitution(given)
-    mesh = await service.run_parser(lambda stop: read_mesh(raw, file, given["unit"], stop), request, large=True)
+    mesh = await service.run_parser(lambda stop: read_mesh(raw, file, given["unit"], stop), request, in_process=True)
     found = await _assessed(mesh.planes, restitution, site, request, service)
     notes = [f"The mesh {remark}." for remark in mesh.remarks]
     return page_of(given | {"name": file}, found=found, footprint=np.array(mesh.footprint), notes=notes)
@@ -111,7 +109,7 @@ async def _assessed(
 ) -> xr.Dataset:
     await service.kernels.wait()
     return await service.executor.run(
-        lambda stop: factors_by_direction(planes, restitution, site.motions, stop), request
+        lambda stop: factors_by_direction(planes, restitution, site.find_motions(stop), stop), request
     )
 
 
@@ -126,9 +124,7 @@ def site_of(given: dict[str, str]) -> Site:
     modes: dict[str, Any] = {}
     if given["floor_periods"].strip():
         for name in ("floor_periods", "floor_participation"):
-            if len(given[name]) > MAX_MODES_TEXT:
-                raise InvalidArgumentError(name, f"{len(given[name])} characters", f"at most {MAX_MODES_TEXT}")
-            modes[name] = plain_numbers(name, given[name])
+            modes[name] = modes_of(name, given[name])
     return Site(quantity_of(given, "pga"), quantity_of(given, "pgv"), **modes)
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import re
 import shlex
 import zipfile
 from datetime import UTC, datetime
 from importlib.util import find_spec
+from itertools import islice
 from pathlib import PurePath
 from urllib.parse import unquote_to_bytes
 
@@ -19,7 +21,7 @@ from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
 from rocking._assessment.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError, plain_numbers
-from rocking._dimensional.table_reader import SHEETS, rows_of_csv, text_of
+from rocking._dimensional.table_reader import MARK, SHEETS, rows_of_csv, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
@@ -96,12 +98,17 @@ async def post_csv(request: Request, service: ServiceDep) -> Response:
 async def post_text(request: Request, service: ServiceDep, name: str = "") -> Response:
     """The text of a file, of a sheet as CSV."""
     body = await service.read_body(request, MAX_BODY)
-    text = await service.run_parser(lambda stop: _text(body, name, stop), request, large=True)
+    in_process = _ending(name) in SHEETS
+    text = await service.run_parser(lambda stop: _text(body, name, stop), request, True, in_process=in_process)
     return PlainTextResponse(text)
 
 
+def _ending(name: str) -> str:
+    return PurePath(name).suffix.lower()
+
+
 def _text(raw: bytes, name: str, stop: StopFlag) -> str:
-    ending = PurePath(name).suffix.lower()
+    ending = _ending(name)
     if ending not in SHEETS:
         return text_of(raw)
     if find_spec("python_calamine") is None:
@@ -118,31 +125,34 @@ def _text(raw: bytes, name: str, stop: StopFlag) -> str:
 
 async def _form(request: Request, service: Service) -> dict[str, str]:
     body = await service.read_body(request, 3 * MAX_BODY)  # with signs that are escaped
-    return await service.run_parser(lambda _: _fields(body), request)
+    return await service.run_parser(lambda stop: _fields(body, stop), request, large=True)
 
 
-def _fields(body: bytes) -> dict[str, str]:
+def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
     """The fields of the form; fields `line-N` take the place of rows of the table."""
     count = body.count(b"&") + 1
     if count > MAX_FIELDS:
         raise TooLargeError("form", f"{count} fields", f"at most {MAX_FIELDS}")
     parts = (part.partition(b"=") for part in body.split(b"&"))
-    fields = DEFAULTS | {_unescaped(name): _unescaped(value) for name, _, value in parts}
+    fields = DEFAULTS | {_unescaped(name, stop): _unescaped(value, stop) for name, _, value in parts}
     if len(fields["table"]) > MAX_BODY:
         raise TooLargeError("table", f"{len(fields['table'])} characters", f"at most {MAX_BODY}")
-    if any(name.startswith("line-") for name in fields):
-        rows = list(rows_of_csv(fields["table"], SCHEMA))
-        for number, row in enumerate(rows, start=1):
-            text = row.rstrip("\r\n")
-            rows[number - 1] = fields.get(f"line-{number}", text) + row[len(text) :]
-        fields["table"] = "".join(rows)
+    lines = [int(name[5:]) for name in fields if re.fullmatch("line-[0-9]{1,9}", name)]
+    if lines:
+        rows = list(islice(rows_of_csv(fields["table"], SCHEMA, stop), max(lines)))
+        rest = fields["table"].removeprefix(MARK)[sum(map(len, rows)) :]
+        for number in (one for one in lines if 0 < one <= len(rows)):
+            row = rows[number - 1]
+            rows[number - 1] = fields[f"line-{number}"] + row[len(row.rstrip("\r\n")) :]
+        fields["table"] = "".join([*rows, rest])
     return fields
 
 
-def _unescaped(raw: bytes) -> str:
+def _unescaped(raw: bytes, stop: StopFlag) -> str:
     """A text of a form; by parts, because `unquote_to_bytes` keeps 80 bytes of memory for each byte of escapes."""
     found, start = bytearray(), 0
     while start < len(raw):
+        stop.check()
         end = start + PART
         cut = raw.rfind(b"%", end - 2, end)  # an escape that the end would divide
         end = end if cut < 0 else cut
@@ -153,7 +163,9 @@ def _unescaped(raw: bytes) -> str:
 
 async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
     site = site_of(given)
-    table = await service.run_parser(lambda _: objects_of_csv(given["table"], MAX_OBJECTS), request, large=True)
+    table = await service.run_parser(
+        lambda stop: objects_of_csv(given["table"], MAX_OBJECTS, stop), request, large=True
+    )
     check_table(table, "table")
 
     def run(stop: StopFlag) -> Assessment:
@@ -166,7 +178,7 @@ async def _assessed(given: dict[str, str], request: Request, service: Service) -
 def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
     bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
     shown = {one.row for one in bad_rows}
-    rows = enumerate(rows_of_csv(given["table"], SCHEMA), start=1) if shown else ()
+    rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
     text = html(
         "objects.html",
         "Which objects overturn?",

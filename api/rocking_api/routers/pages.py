@@ -16,6 +16,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
 from rocking_api.http.caching import revalidated
+from rocking_api.http.errors import KINDS, OTHERS, PROBLEMS
 from rocking_api.http.files import without_range
 
 STATIC = Path(__file__).parents[1] / "static"
@@ -76,6 +77,14 @@ def _add(page: Page) -> None:
         return revalidated(request, HTMLResponse(html(page.template, page.title, page.path), headers=headers))
 
     router.add_api_route(page.path, get_page, methods=["GET"], summary=page.title)
+
+
+@router.get(PROBLEMS)
+async def get_problems(request: Request) -> Response:
+    """The kinds of errors, which their `type` refers to."""
+    kinds = sorted((*KINDS.values(), *OTHERS), key=lambda kind: (kind.status, kind.name))
+    headers = {"Content-Security-Policy": POLICY, **_REVALIDATE}
+    return revalidated(request, HTMLResponse(html("problems.html", "Kinds of errors", kinds=kinds), headers=headers))
 
 
 for _page in PAGES:

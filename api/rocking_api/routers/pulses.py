@@ -34,10 +34,14 @@ class PulsesParams(Params):
 
 
 class PulseParameter(BaseModel):
-    """A parameter of a pulse in Python; the service takes its default."""
+    """A parameter of a pulse, which follows its name: name(parameter=value, ...)."""
 
     name: str = Field(description="name of the parameter")
-    default: float = Field(description="value that the service takes [-]; a phase is in radians")
+    symbol: str = Field(description="as in the definition")
+    unit: str = Field(description="unit of the default and the range; a text states its unit")
+    range: str = Field(description="values that are allowed")
+    default: float = Field(description="value unless another is stated [-]; with a unit, that of `unit`")
+    description: str = Field(description="meaning")
 
 
 class PulseDescription(BaseModel):
@@ -94,7 +98,14 @@ def _definition(name: str) -> str:
 
 
 def _parameters(name: str) -> list[PulseParameter]:
-    if name not in pulses.PULSE_NAMES:
-        return []
-    declared = inspect.signature(getattr(pulses, name)).parameters.values()
-    return [PulseParameter(name=one.name, default=one.default) for one in declared]
+    return [
+        PulseParameter(
+            name=key,
+            symbol=one.declared.symbol,
+            unit=one.declared.unit,
+            range=one.declared.interval,
+            default=one.default,
+            description=one.declared.description,
+        )
+        for key, one in pulses.pulse_parameters(name).items()
+    ]

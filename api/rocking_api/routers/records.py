@@ -71,7 +71,9 @@ def _about(kind: type[RecordFileParams]) -> dict[str, Any]:
     files = {
         name: text_content(name, _EXAMPLE)[name] for name in ("text/plain", "text/csv", "application/octet-stream")
     }
-    description = "file of the record: PEER AT2, ESM ASCII, K-NET or columns of numbers, known by its content"
+    description = (
+        "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC or columns of numbers, by its content"
+    )
     return body_of({**files, **json_content(with_record(kind), example)}, kind, description)
 
 
@@ -139,6 +141,7 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
             time_step=params.time_step,
             component=params.component,
             vertical=params.vertical,
+            skip=params.skip,
             stop=stop,
         )
         return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, one_of
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import TIME_STEP, Record
+
+if TYPE_CHECKING:
+    from rocking._numba.cancellation import StopFlag
 
 Array = NDArray[np.float64]
 
@@ -36,6 +39,7 @@ def floor_motion(
     vertical: Literal["pass", "filter"] = "pass",
     relative_tolerance: Scalar = 1e-3,
     tail: Scalar | None = None,
+    stop: StopFlag | None = None,
 ) -> Record:
     """Absolute acceleration of a floor of a linear structure, which starts at rest.
 
@@ -65,6 +69,8 @@ def floor_motion(
     tail : float, optional
         Time appended, in which the structure vibrates freely above a ground at rest [s], [0, 1e4]; by default ten times
         the longest period. The result is zero after it.
+    stop : StopFlag, optional
+        Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
     Returns
     -------
@@ -75,6 +81,8 @@ def floor_motion(
     ------
     InvalidArgumentError
         If an argument is not as described, or the result would have more than 2 million samples or a step below 1 us.
+    StoppedError
+        If `stop` was set.
 
     References
     ----------
@@ -103,7 +111,7 @@ def floor_motion(
                 allowed,
                 f"more: a step of {step:g} s over {record.duration + after:g} s is not fine enough",
             )
-        exact = _floor(_refined(record.acceleration, 2 * parts), step / 2.0, 2 * extra, *modes)
+        exact = _floor(_refined(record.acceleration, 2 * parts), step / 2.0, 2 * extra, *modes, stop)
         horizontal = exact[::2]
         errors = np.abs(exact[1::2] - 0.5 * (horizontal[:-1] + horizontal[1:]))
         errors[(record.samples - 1) * parts :][:1] = 0.0  # there the ground stops at once
@@ -113,7 +121,7 @@ def floor_motion(
         parts *= 2
     upwards = None if record.vertical is None else _refined(record.vertical, parts)
     if upwards is not None:
-        upwards = _floor(upwards, step, extra, *modes) if vertical == "filter" else np.pad(upwards, (0, extra))
+        upwards = _floor(upwards, step, extra, *modes, stop) if vertical == "filter" else np.pad(upwards, (0, extra))
     what = f"floor motion of periods {', '.join(f'{one:g}' for one in period)} s, step {step:g} s"
     source = f"{record.source}; {what}, linear between samples to {error:.2g} m/s2".removeprefix("; ")
     return Record(horizontal, step, "m/s2", record.name, source, record.remarks, vertical=upwards)
@@ -155,12 +163,14 @@ def _refined(a: Array, parts: int) -> Array:
     return np.interp(np.arange((a.size - 1) * parts + 1) / parts, np.arange(a.size), a)
 
 
-def _floor(a: Array, h: float, extra: int, omega: Array, zeta: Array, gamma: Array) -> Array:
+def _floor(a: Array, h: float, extra: int, omega: Array, zeta: Array, gamma: Array, stop: StopFlag | None) -> Array:
     """Acceleration of the floor at the samples of `a`, of step h [s], and at `extra` ones of free vibration."""
     from scipy.signal import lfilter  # noqa: PLC0415  # takes longer to load than the package
 
     found = np.pad((1.0 - gamma.sum()) * a, (0, extra))
     for frequency, ratio, factor in zip(omega, zeta, gamma, strict=True):
+        if stop is not None:
+            stop.check()
         damped = frequency * math.sqrt(1.0 - ratio * ratio)
         root = complex(-ratio * frequency, damped)
         w = root * h

@@ -31,6 +31,35 @@ ZEROS = 10
 STOP_BAND = 8.0
 """Parameter of the Kaiser window of the interpolation filter [-]: about 80 dB of attenuation in the stop band."""
 
+OFFSET_SHARE = 0.02
+"""Offset over the shaking about it from which the PGA is not that of the shaking [-]: 50 processed records have means
+up to 0.0012 and levels before the shaking up to 0.012."""
+
+QUIET = 50, 0.05
+"""Fewest samples before the shaking that have a level [-]; their largest departure from the first, as a share of the
+shaking [-]."""
+
+
+def offset_remark(a: Array) -> str | None:
+    """What is to be said before `a` (samples,) [m/s2] is scaled by its PGA; None if its offset is small.
+
+    The offset is the mean, or the level before the shaking, whichever is larger beside the largest acceleration about
+    it.
+    """
+    levels = {"mean": float(a.mean())}
+    quiet = np.abs(a - a[0]) > QUIET[1] * np.abs(a - levels["mean"]).max()
+    count = int(quiet.argmax()) if quiet.any() else 0
+    if count >= QUIET[0]:
+        levels["level before the shaking"] = float(a[:count].mean())
+    name = max(levels, key=lambda one: abs(levels[one]))
+    shaking = float(np.abs(a - levels[name]).max())
+    if abs(levels[name]) <= OFFSET_SHARE * shaking:
+        return None
+    return (
+        f"its {name} of {levels[name]:.4g} m/s2 is part of its PGA of {np.abs(a).max():.4g} m/s2, which is "
+        f"{shaking:.4g} m/s2 about it: remove the baseline (`baseline_order`) before it is scaled"
+    )
+
 
 def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
     """The acceleration `a` (samples,) less the derivative of a polynomial fitted to the velocity `v` (samples,).

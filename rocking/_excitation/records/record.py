@@ -19,7 +19,7 @@ from rocking._base.errors import InvalidArgumentError, in_range, number, one_of
 from rocking._base.units import UNITS as QUANTITIES
 from rocking._base.units import Scalar
 from rocking._excitation.records import measures
-from rocking._excitation.records.processing import baseline, resample
+from rocking._excitation.records.processing import baseline, offset_remark, resample
 
 UNITS = QUANTITIES["m/s2"]
 """Units of acceleration, each with its value in m/s2."""
@@ -270,3 +270,14 @@ class Record:
         vertical = None if self.vertical is None else process(self.vertical)
         about = self.name, source, self.remarks
         return Record(process(self.acceleration), time_step, "m/s2", *about, vertical=vertical)
+
+
+def offset_doubts(records: Sequence[Record], most: int = 5) -> list[str]:
+    """What is to be said of records before they are scaled by their PGA or PGV: those whose offset is not small."""
+    found = []
+    for record in records:
+        text = offset_remark(record.acceleration)
+        if text is not None:
+            found.append(f"{record.name or 'a record'}: {text}")
+    more = [f"{len(found) - most} more records have offsets that are not small"] if len(found) > most else []
+    return [*found[:most], *more]

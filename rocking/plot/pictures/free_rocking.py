@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -33,11 +32,11 @@ def free_rocking(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes
     if not {"rotation", "fitted", "residual", "impact_time"} <= data.keys():
         raise InvalidArgumentError("data", sorted(map(str, data)), "a result of rocking.identify_free_rocking")
     ax = axes_of(ax)
-    time, offset = data["time"], float(data["offset"])
-    impacts = data["impact_time"].values
+    time, impacts = data["time"], data["impact_time"].values
+    at_rest = np.degrees(float(data["offset"]) + float(data["drift"]) * (impacts - impacts[0]))
     ax.plot(time, np.degrees(data["rotation"]), ".", color=GREY, markersize=3, label="measured")
     ax.plot(time, np.degrees(data["fitted"]), **({"color": BLUE} | style), label="fitted")
-    ax.plot(impacts, np.full(impacts.size, math.degrees(offset)), "o", color=VERMILION, markersize=2.5, label="impact")
+    ax.plot(impacts, at_rest, "o", color=VERMILION, markersize=2.5, label="impact")
     ax.plot(time, np.degrees(data["residual"]), color=VERMILION, linewidth=0.6, label="residual")
     ax.set(xlabel=label_of(time), ylabel=r"rotation $\theta$ [deg]", xlim=(float(time[0]), float(time[-1])))
     ax.legend()

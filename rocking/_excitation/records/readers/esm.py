@@ -35,7 +35,7 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     step = agreed_step(file, line, file.positive(line, text, "the sampling interval [s]"), time_step)
     unit_line, unit_text = header.get("UNITS", (line, ""))
     stated = parse_unit(unit_text)
-    if unit_text and stated is None:
+    if unit_text and stated is None and unit is None:
         raise file.error(unit_line, unit_text, "a unit of acceleration, such as cm/s^2")
     agreed = agreed_unit(file, unit_line, stated, unit)
     count_line, count_text = entry("NDATA")

@@ -1,6 +1,7 @@
 """K-NET and KiK-net ASCII files: 17 header lines, then counts, eight on a line, with a scale such as 2000(gal)/8388608.
 
-The counts include the offset of the instrument; it is not removed (`Record.baseline_corrected`).
+The counts include the offset of the instrument, in real files 1.3 to 665 times the largest acceleration about it: their
+mean is removed, as in the `Max. Acc.` of the header, and the record says so.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import re
 
 import numpy as np
 
+from rocking._excitation.records.processing import OFFSET_SHARE
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, joined, parse_unit
 from rocking._excitation.records.record import Record
 
@@ -41,7 +43,7 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     if scale is None:
         raise file.error(line, text, "a scale such as 2000(gal)/8388608")
     stated = parse_unit(scale[2])
-    if stated is None:
+    if stated is None and unit is None:
         raise file.error(line, scale[2], "a unit of acceleration, such as gal")
     agreed = agreed_unit(file, line, stated, unit)
     scale_line, scale_text = line, text
@@ -61,5 +63,11 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     station, direction = entry("Station Code")[1], entry("Dir.")[1]
     name = " ".join(part for part in (station, direction) if part) or file.name
     event = entry("Origin Time")[1]
-    source = joined([f"{file.name} (K-NET)", event])
-    return Record(accelerations, step, agreed, name=name, source=source, remarks=remarks)
+    offset = float(accelerations.mean())
+    shaking = accelerations - offset
+    largest = float(np.abs(shaking).max())
+    removed = f"the offset of the counts, their mean of {offset:.5g} {agreed}, is removed"
+    if abs(offset) > OFFSET_SHARE * largest:
+        remarks += (f"{removed}; the largest acceleration about it is {largest:.5g} {agreed}",)
+    source = joined([f"{file.name} (K-NET)", event, removed])
+    return Record(shaking, step, agreed, name=name, source=source, remarks=remarks)

@@ -39,6 +39,11 @@ CHUNK = 65536
 MAX_SAMPLES = 10_000_000
 """Largest number of values that is read from one file [-]."""
 
+MAX_CLOSING = 200
+"""Most bytes of a comment behind the last number, such as *** End data ***."""
+
+_CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%][^\r\n]*\s*\Z")
+
 COUNT_DIFFERENCE = 0.01
 """Largest difference between the number of values and the number that the header states, as a share of it [-]: headers
 are often off by a few. A larger one is a damaged file."""
@@ -57,12 +62,16 @@ class TextFile:
     stop: StopFlag | None = None
 
     def __post_init__(self) -> None:
-        """Convert UTF-16 to UTF-8, as numbers are read from bytes."""
+        """Convert UTF-16 to UTF-8, as numbers are read from bytes, and CR CR LF to LF; leave out a last comment."""
         if self.content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             try:
                 object.__setattr__(self, "content", self.content.decode("utf-16").encode())
             except UnicodeDecodeError as error:
                 raise self.error(None, f"UTF-16 with {error.reason}", "text") from None
+        if b"\r\r\n" in self.content:  # a line end written twice by a system that adds a carriage return
+            object.__setattr__(self, "content", self.content.replace(b"\r\r\n", b"\n"))
+        if end := _CLOSING.search(self.content, max(1, len(self.content) - MAX_CLOSING)):
+            object.__setattr__(self, "content", self.content[: end.start()])
 
     @cached_property
     def head(self) -> list[str]:
@@ -150,18 +159,18 @@ class TextFile:
                 found.extend(to_floats(b" ".join(lines).split()))
             except ValueError:
                 for j, line in enumerate(lines, k):
-                    found.extend(self._numbers(j, line))
+                    found.extend(self.numbers(j, decoded(line)))
             if len(found) > MAX_SAMPLES:
                 raise self.error(k, f"more than {MAX_SAMPLES} values", "a record of one component")
         values = np.frombuffer(found)
         self.check_values(values)
         return values
 
-    def _numbers(self, index: int, line: bytes) -> list[float]:
+    def numbers(self, index: int, line: str) -> list[float]:
         """The numbers of a line."""
         found: list[float] = []
-        for field in decoded(line).split():
-            parts = [field] if NUMBER.fullmatch(field) else _TOUCHING.split(field)
+        for field in line.split():
+            parts = [field] if NUMBER.fullmatch(field) else TOUCHING.split(field)
             if not all(NUMBER.fullmatch(part) for part in parts):
                 raise self.error(index, field, "a number")
             found += map(to_float, parts)
@@ -209,7 +218,7 @@ def decoded(text: bytes) -> str:
         return text.decode("latin-1")
 
 
-_TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")
+TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")
 """Where two numbers touch; not after an exponent's letter."""
 
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import re
 
+from rocking._excitation.records.readers.columns import names_below
+from rocking._excitation.records.readers.header import Statement, read_header
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
 from rocking._excitation.records.record import Record
 
@@ -26,6 +28,12 @@ def header_line(file: TextFile) -> int | None:
     return None
 
 
+def is_at2(file: TextFile) -> bool:
+    """Whether it is an AT2 file: it has a line with NPTS and DT, and below it no names of columns."""
+    place = header_line(file)
+    return place is not None and not names_below(file, place)
+
+
 def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     """Read an AT2 file; arguments and errors as for `read_record`."""
     place = header_line(file)
@@ -34,25 +42,24 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     count_text, step_text = _count_and_step(file, place)
     stated_count = file.count(place, count_text, "the number of points NPTS")
     stated_step = file.positive(place, step_text, "the time step DT [s]")
-    title, unit_line, stated_unit = "", None, None
     for k, line in enumerate(file.head[:place]):
         if re.search(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", line, re.I):
             raise file.error(k, line.strip(), "an acceleration time history")
-        named = re.search(r"UNITS?(?:\s+OF|\s*[:=])?\s+(\S+)", line, re.I) or re.search(
-            r"[(\[]([^()\[\]]+)[)\]]$", line.rstrip()
-        )
-        if named and parse_unit(named[1].rstrip(".,;")):
-            unit_line, stated_unit = k, parse_unit(named[1].rstrip(".,;"))
-        elif named and re.search(r"\bUNITS?\b", line, re.I):
-            raise file.error(k, named[1], "a unit of acceleration, such as G")
-        if k == 1:
-            title = line.strip()
-    agreed = agreed_unit(file, unit_line if unit_line is not None else place, stated_unit, unit)
+    title = file.head[1].strip() if place > 1 else ""
+    header = read_header(file, file.head[:place])
+    for k, line in enumerate(file.head[:place]):
+        last = re.search(r"[(\[]([^()\[\]]+)[)\]]$", line.rstrip())
+        if not header.found.get("unit") and last and parse_unit(last[1]):
+            header.found["unit"] = [Statement(k, last[1], parse_unit(last[1]))]
+    said = header.unit(unit, "a unit of acceleration, such as G")
+    line_of_unit = place if said.line is None else said.line
+    agreed = agreed_unit(file, line_of_unit, None if said.value is None else str(said.value), unit)
     step = agreed_step(file, place, stated_step, time_step)
     values = file.values(place + 1)
     remarks = file.checked_count(values, stated_count, place)
     source = f"{file.name} (PEER AT2)"
-    return Record(values, step, agreed, name=title or file.name, source=source, remarks=remarks)
+    about = title or file.name, source, remarks + header.remarks()
+    return Record(values, step, agreed, *about)
 
 
 def _count_and_step(file: TextFile, place: int) -> tuple[str, str]:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, RecordFileError, number, one_of
+from rocking._base.errors import InvalidArgumentError, RecordFileError, integer, number, one_of
 from rocking._base.units import Scalar
-from rocking._excitation.records.readers import columns, esm, knet, peer_at2, seismic
+from rocking._excitation.records.readers import columns, esm, knet, peer_at2, seismic, volumes
 from rocking._excitation.records.readers.lines import MAX_LINE, TextFile
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:  # loads the compiler
 
 MAX_BYTES = 200_000_000
 """Largest file that is read [bytes]."""
+
+MAX_SKIP = 100
+"""Most rows of numbers above the samples [-]."""
 
 MAX_SHIFT = 0.02
 """Largest distance in time of the last samples of two components whose steps differ by rounding, in steps [-]."""
@@ -34,27 +37,33 @@ def read_record(
     time_step: Scalar | None = None,
     component: str | None = None,
     vertical: str | PathLike[str] | None = None,
+    skip: int | None = None,
 ) -> Record:
     """Read a recorded ground acceleration from a file, or from two where the vertical component has its own.
 
-    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, columns of times and accelerations or of
-    accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is corrected or resampled.
+    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, COSMOS, CSMIP, GeoNet, SMC, columns of times
+    and accelerations or of accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is
+    corrected or resampled, but for the offset of K-NET counts: their mean is removed.
 
     Parameters
     ----------
     path : str or path
         The file.
     unit : str, optional
-        Unit of the samples: "m/s2", "cm/s2", "gal", "mm/s2", "g", "in/s2" or "ft/s2". Required where the file states
-        none; refused where it states another.
+        Unit of the samples: "m/s2", "cm/s2", "gal", "mm/s2", "g", "mg", "%g", "g/10", "in/s2" or "ft/s2". Required
+        where the file states none, or one that is not understood; refused where it states another.
     time_step : float, optional
         Time step [s], [1e-6, 10]; likewise.
     component : str, optional
-        Name of the column or trace, where the file has several.
+        Name of the column or trace, where the file has several; "rows" for one series that is wrapped over several
+        columns, where the file does not show it.
     vertical : str or path, optional
         File of the vertical component, upwards positive, with one component that starts at the same time; or, where
         there is no file of this name, its column or trace in the first file. `unit` and `time_step` count for both. A
         vertical component of another length, by a tenth at most, is cut or continued by zeros, with a remark.
+    skip : int, optional
+        Rows of numbers above the samples of a file of columns, such as a count, a step or a factor, [0, 100]. A column
+        whose first numbers look like these is refused unless this is given.
 
     Raises
     ------
@@ -64,7 +73,7 @@ def read_record(
         If a file cannot be read, an argument is out of range, or the components differ in step or length.
     """
     content, name = read_content("path", path), Path(path).name
-    stated: _Stated = {"unit": unit, "time_step": time_step}
+    stated: _Stated = {"unit": unit, "time_step": time_step, "skip": skip}
     found = parse_record(content, name, **stated, component=component)
     if vertical is None:
         return found
@@ -80,6 +89,7 @@ class _Stated(TypedDict):
 
     unit: str | None
     time_step: Scalar | None
+    skip: int | None
 
 
 def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
@@ -122,6 +132,7 @@ def parse_record(
     time_step: Scalar | None = None,
     component: str | None = None,
     vertical: str | None = None,
+    skip: int | None = None,
     stop: StopFlag | None = None,
 ) -> Record:
     """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
@@ -129,10 +140,11 @@ def parse_record(
     `vertical` is a column or trace of this file. `stop` cancels the work, which then raises `StoppedError`. Other
     parameters and errors as for `read_record`.
     """
-    found = _parsed(content, name, unit, time_step, component, stop)
+    found = _parsed(content, name, unit, time_step, component, skip, stop)
     if vertical is None:
         return found
-    return _with_vertical(found, _vertical(content, name, vertical, f"a component of {name}", unit, time_step, stop))
+    allowed = f"a component of {name}"
+    return _with_vertical(found, _vertical(content, name, vertical, allowed, unit, time_step, skip, stop))
 
 
 def _vertical(
@@ -142,11 +154,12 @@ def _vertical(
     allowed: str,
     unit: str | None,
     time_step: Scalar | None,
+    skip: int | None,
     stop: StopFlag | None = None,
 ) -> Record:
     """The vertical component in the file of the horizontal one; `allowed` is what an error says of its name."""
     try:
-        return _parsed(content, name, unit, time_step, vertical, stop)
+        return _parsed(content, name, unit, time_step, vertical, skip, stop)
     except RecordFileError as error:
         raise InvalidArgumentError("vertical", vertical, f"{allowed} ({error})") from None
 
@@ -157,12 +170,14 @@ def _parsed(
     unit: str | None,
     time_step: Scalar | None,
     component: str | None,
+    skip: int | None,
     stop: StopFlag | None,
 ) -> Record:
     """One component."""
     if unit is not None:
         one_of("unit", unit, UNITS)
     step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
+    passed = None if skip is None else integer("skip", skip, 0, MAX_SKIP)
     if len(content) > MAX_BYTES:
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
     if seismic.is_seismic(content):
@@ -170,25 +185,33 @@ def _parsed(
     file = TextFile(name, content, stop)
     _check_text(file.content, name)
     try:
-        return _read_text(file, unit, step, component)
+        return _read_text(file, unit, step, component, passed)
     except RecordFileError:
         raise
     except InvalidArgumentError as error:  # samples that make no record, such as zeros only
         raise file.error(None, f"{error.parameter} {error.value}", error.allowed) from None
 
 
-def _read_text(file: TextFile, unit: str | None, time_step: float | None, component: str | None) -> Record:
+def _read_text(
+    file: TextFile, unit: str | None, time_step: float | None, component: str | None, skip: int | None
+) -> Record:
+    kind = None
     if esm.is_esm(file):
-        found = esm.read(file, unit, time_step)
+        reader = esm.read
     elif knet.is_knet(file):
-        found = knet.read(file, unit, time_step)
-    elif peer_at2.header_line(file) is not None:
-        found = peer_at2.read(file, unit, time_step)
+        reader = knet.read
+    elif kind := volumes.format_of(file):
+        if skip is None:
+            return volumes.read(file, kind, unit, time_step, component)
+    elif peer_at2.is_at2(file):
+        reader = peer_at2.read
     else:
-        return columns.read(file, unit, time_step, component)
+        return columns.read(file, unit, time_step, component, skip)
+    if skip is not None:
+        raise file.error(None, f"`skip` = {skip}", "no rows to skip in a file of a known format")
     if component is not None:
         raise file.error(None, "a file with one component", "no name of a component")
-    return found
+    return reader(file, unit, time_step)
 
 
 def _check_text(content: bytes, name: str) -> None:

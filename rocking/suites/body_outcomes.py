@@ -1,0 +1,106 @@
+"""Outcomes of bodies with two different edges under the records of a suite and their mirror images.
+
+A record and its mirror image, both signs of its acceleration, overturn such a body at different intensities, and the
+side from which the ground moves first is a matter of chance. Both count, each with half the weight of the record.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import Scalar
+from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.body_response import respond_bodies
+from rocking._dimensional.rigid_body import RigidBody
+from rocking._excitation.records.record import Record
+from rocking._model.checks import check_number
+from rocking._model.parameters import RESTITUTION
+from rocking._numba.cancellation import StopFlag
+from rocking.suites.intensity import measure_of
+from rocking.suites.outcomes import FIELDS, check_levels, checked_levels, checked_records, labelled_outcomes
+
+SIGNS = 2
+"""Motions of one record: as recorded and mirrored [-]."""
+
+BODY_MEASURES = "pga", "pgv", "pga_ratio"
+"""Measures that two different edges leave defined; uplift is that of the weaker edge."""
+
+
+def body_outcomes(
+    records: Any,
+    body: RigidBody,
+    intensity: ArrayLike,
+    measure: str,
+    restitution: Scalar,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """The response of bodies (bodies,) to every record and its mirror image at every level.
+
+    The arguments are those of `rocking.fragility`. The result is that of `rocking.suites.outcomes.suite_outcomes`, with
+    the mirror image of each record after it, and with other properties of the bodies.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an argument that is not as described, and for a measure that refers to one slenderness angle.
+    """
+    chosen = measure_of(measure)
+    if measure not in BODY_MEASURES:
+        raise InvalidArgumentError(
+            "measure", measure, f"{', '.join(BODY_MEASURES)} for a body with two different edges"
+        )
+    motions = [one for record in checked_records(records) for one in (record, mirrored(record))]
+    levels = checked_levels(intensity, chosen)
+    eta = None if restitution == "momentum" else np.array(check_number(RESTITUTION, restitution))
+    column = RigidBody(
+        **{name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
+    )
+    shape = (*body.shape, levels.size, len(motions))
+    fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in FIELDS} | {"scale": np.empty(shape)}
+    for k, motion in enumerate(motions):
+        own = (
+            motion.peak_acceleration / column.uplift_acceleration
+            if measure == "pga_ratio"
+            else getattr(motion, {"pga": "peak_acceleration", "pgv": "peak_velocity"}[measure])
+        )
+        scale = np.broadcast_to(levels / own, shape[:2])
+        check_levels(levels, motion, scale, np.broadcast_to(body.gravity, body.shape).tolist())
+        problem = BodyProblem(column, motion, scale * motion.peak_acceleration, np.ones(()), eta)
+        found = respond_bodies(problem, threads=threads, stop=stop)
+        for name, values in fields.items():
+            values[:, :, k] = scale if name == "scale" else getattr(found, name)
+    return labelled_outcomes(fields, levels, chosen, motions, _properties(body, eta))
+
+
+def mirrored(record: Record) -> Record:
+    """A record with the other sign of its horizontal acceleration."""
+    name = f"{record.name}, mirrored" if record.name else ""
+    return Record(-record.acceleration, record.time_step, "m/s2", name, record.source, record.remarks, record.vertical)
+
+
+def _properties(body: RigidBody, eta: NDArray[np.float64] | None) -> dict[str, tuple[NDArray[Any], str, str]]:
+    """Coordinates of the bodies: values (bodies,), unit and meaning."""
+    found: dict[str, tuple[Any, str, str]] = {
+        "width": (body.width, "m", "distance of the edges"),
+        "height": (body.top_height, "m", "height of the body"),
+        "uplift_acceleration": (body.uplift_acceleration, "m s-2", "ground acceleration of uplift, of the weaker edge"),
+        "gravity": (body.gravity, "m s-2", "acceleration of gravity"),
+    }
+    for side, edge in (("right", body.right), ("left", body.left)):
+        own = np.maximum(edge.restitution, 0.0) if eta is None else eta
+        found |= {
+            f"alpha_{side}": (edge.alpha, "rad", f"slenderness angle of the {side} edge"),
+            f"frequency_parameter_{side}": (
+                edge.frequency_parameter,
+                "rad s-1",
+                f"frequency parameter p of the {side} edge",
+            ),
+            f"restitution_{side}": (own, "1", f"coefficient of restitution of impacts that leave the {side} edge"),
+        }
+    return {name: (np.broadcast_to(values, body.shape), unit, text) for name, (values, unit, text) in found.items()}

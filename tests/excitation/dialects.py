@@ -1,0 +1,340 @@
+"""Random dialects of files of records and of traces: a known motion in a layout that people use.
+
+`python -m tests.excitation.dialects --count 10000` reads as many: what is read is the motion, or it is refused.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import UNITS
+from rocking._excitation.records.readers.columns import read_rotations
+from rocking._excitation.records.readers.lines import TextFile
+from rocking._excitation.records.readers.read_record import parse_record
+
+TIMES = [
+    "time",
+    "Time",
+    "t",
+    "Zeit",
+    "temps",
+    "tempo",
+    "tiempo",
+    "Elapsed time",
+    "TIME",
+    "rel. time",
+    "Time since trigger",
+]
+SAMPLES = [
+    "acc",
+    "a",
+    "acceleration",
+    "Accel",
+    "Beschleunigung",
+    "aceleración",
+    "accélération",
+    "acc_NS",
+    "ag",
+    "Acc. X",
+]
+OTHERS = ["NS", "EW", "UD", "N-S", "E-W", "U-D", "H1", "H2", "V", "acc EW", "Chan 2", "x", "y"]
+COUNTERS = [
+    "frame",
+    "index",
+    "sample #",
+    "Frame no",
+    "no",
+    "n",
+    "Sample",
+    "i",
+    "#",
+    "Point",
+    "Messwert Nr",
+    "idx",
+    "Bild",
+]
+ROTATIONS = ["rotation", "theta", "angle", "Winkel", "rotazione", "θ"]
+TITLES = [
+    "Made-up shock, scaled to 0.4 g", "The (XX) shock of May 3, 2001", "Station 12; north, 45 deg", "Run 7\tblock B",
+    "Shaking table, sensor A3 (MEMS)", "El Centro 1940", "filtered 0.2, 25 Hz", "Versuch 3, 2 Blöcke", "g", "Test (g)",
+    "PGA 0.35 g, PGV 20 cm/s", "corner frequencies 0.1 - 30 Hz, order 4", "Acc, scaled", "M 6.9, R 10 km", "max 0.3 g",
+    "Kobe, JMA", "35.1, 139.2", "channel 1; range 2 g", "2001-02-03 04:05:06", "time to failure, 3 runs", "Sensor, in g",
+]  # fmt: skip
+DECOYS = [
+    "Frequency high-pass: 0.2 Hz", "Frequency range: 0.2-25.0 Hz", "original dt = 0.02 s", "velocity unit: cm/s",
+    "time unit: s", "PGA: 0.35 g", "Sampling rate of the digitizer: 500 Hz", "number of channels: 3", "Natural period = 0.5 s",
+    "frequency: 5 Hz", "Pre-event time: 10 s", "sensitivity unit: V/g", "Filter step: 3", "Duration = 12.5 s", "Date: 1.2.2003",
+    "start time: 12:30:05.25", "raw sampling rate: 1000 Hz", "Corner frequency, low = 0.05 Hz", "units of distance: km",
+    "dt of the filter = 0.5 s", "time step of output files: 0.1 s", "site: rock, unit B",
+]  # fmt: skip
+STEPS = [
+    "dt = {s:g} s", "dt: {s:g}", "time step: {ms:g} ms", "Sampling rate: {hz:g} Hz", "SAMPLING INTERVAL (sec) : {s:g}",
+    "# fs = {hz:g}", "Abtastrate: {hz:g} Hz", "sample_rate_hz: {hz:g}", "DT={s:g}, station = X1", "frequency range: 1-2 Hz, dt = {s:g}",
+    "time_step_ms = {ms:g}", "NO. OF POINTS: {n}  EQUALLY SPACED INTERVALS OF: {s:g} SEC", "{n} points at equal spacing of {s:g} sec",
+]  # fmt: skip
+UNIT_LINES = [
+    "unit: {u}", "Units = {u}", "UNCORRECTED ACCELERATION   UNIT: {u}", "The units are ({u})", "Acceleration in {u}",
+    "ACCELERATION TIME HISTORY IN UNITS OF {u}", "unit: {u}, station: B2", "units: s, {u}", "Einheit: {u}",
+]  # fmt: skip
+SPELLINGS = {
+    "g": ["g", "G"], "gal": ["gal", "Gal", "gal(cm/s/s)"], "cm/s2": ["cm/s2", "cm/s^2", "cm/sec/sec", "cm/s²"],
+    "m/s2": ["m/s2", "m/s^2", "m s-2", "m/s²", "m/sec2"], "mg": ["mg"], "%g": ["%g"],
+}  # fmt: skip
+LONGEST = 60
+
+
+@dataclass(frozen=True)
+class Case:
+    """A file, what it holds in SI units, and the arguments that a person who knows the file may state."""
+
+    content: bytes
+    samples: np.ndarray
+    step: float
+    stated: dict[str, Any]
+    needed: dict[str, Any]
+    trace: bool = False
+    traits: tuple[str, ...] = ()
+
+
+def make(dice: random.Random) -> Case:
+    """A random file."""
+    trace = dice.random() < 0.25
+    n = dice.randint(24, LONGEST)
+    step = dice.choice([0.005, 0.01, 0.02, 0.004, 0.0078125])
+    rng = np.random.default_rng(dice.randrange(2**32))
+    unit = dice.choice(["deg", "rad", "mrad"]) if trace else dice.choice(list(SPELLINGS))
+    size = {
+        "g": 0.3,
+        "gal": 200.0,
+        "cm/s2": 200.0,
+        "m/s2": 3.0,
+        "mg": 300.0,
+        "%g": 30.0,
+        "deg": 6.0,
+        "rad": 0.1,
+        "mrad": 90.0,
+    }
+    k = np.arange(n)
+
+    def motion() -> np.ndarray:
+        wave = np.sin(0.4 * k * rng.uniform(0.5, 1.2) + rng.uniform(0.3, 6.0)) * np.exp(-k / n)
+        return (
+            size[unit] * rng.uniform(0.5, 1.2) * (wave + 0.05 * rng.standard_normal(n)) * np.minimum(1.0, 0.1 + k / 8.0)
+        )
+
+    comma = dice.random() < 0.2
+    separator = dice.choice([";", "\t", "  "]) if comma else dice.choice([",", ", ", ";", "\t", " ", "   "])
+    form = dice.choice(["{:.6f}", "{:.5e}", "{:12.5f}", "{:.7g}", "{:.8f}"])
+    written = [form.format(value) for value in motion()]
+    truth = np.array([float(text) for text in written])
+    traits = []
+
+    shape = dice.choice(["one", "pair", "pair", "counter", "both", "components", "no time", "each", "wrapped", "more"])
+    if trace:
+        shape = dice.choice(["pair", "pair", "counter", "both"])
+    columns: list[tuple[str, str, list[str]]] = []  # name, unit of its own, texts
+    time_unit = dice.choice(["s", "s", "s", "" if trace else "ms", ""])
+    scale = 1000.0 if time_unit == "ms" else 1.0
+    times = [f"{dice.choice([0.0]) + scale * step * j:.{2 if scale > 1 else 7}f}" for j in k]
+    start = dice.choice([0, 1])
+    name = dice.choice(ROTATIONS if trace else SAMPLES)
+    own = name, unit, written
+    spare = dice.sample(OTHERS, 2)
+    others = [(one, unit, [form.format(value) for value in motion()]) for one in spare]
+    time = dice.choice(TIMES), time_unit, times
+    counter = dice.choice(COUNTERS), "", [str(start + j) for j in k]
+    if shape == "one":
+        columns = [own]
+    elif shape == "pair":
+        columns = [time, own]
+    elif shape == "counter":
+        columns = [counter, own]
+    elif shape == "both":
+        columns = [counter, time, own]
+    elif shape == "components":
+        columns = [time, own, *others]
+    elif shape == "no time":
+        columns = [own, *others]
+    elif shape == "each":
+        columns = [time, own, time, others[0]]
+    elif shape == "more":
+        columns = [time, own, ("vel", "cm/s" if unit != "m/s2" else "m/s", [form.format(v / 9.0) for v in motion()])]
+    traits.append(shape)
+
+    named = shape != "wrapped" and dice.random() < (0.9 if shape in ("both", "each", "more", "counter") else 0.7)
+    where = dice.choice(["name", "name", "row", "line", "none"]) if named else dice.choice(["line", "none"])
+    if trace:
+        where = (
+            "name" if named and unit != "rad" else dice.choice(["name", "none"]) if unit == "rad" and named else "none"
+        )
+        unit = unit if where == "name" else dice.choice(["rad", "deg"])
+    spelt = dice.choice(SPELLINGS.get(unit, [unit]))
+    has_time = any(one is time for one in columns)
+    step_line = dice.choice(STEPS) if dice.random() < (0.1 if has_time else 0.5) and not trace else None
+    if shape == "components" and not named:
+        where = "line" if where == "row" else where
+    if not named and time_unit == "ms":  # times whose unit is nowhere
+        times[:] = [f"{step * j:.7f}" for j in k]
+        time_unit = ""
+
+    header: list[str] = []
+    for _ in range(dice.choice([0, 1, 1, 2, 4])):
+        header.append(dice.choice(TITLES if dice.random() < 0.5 else DECOYS))
+    about = {"u": spelt, "s": step, "ms": 1000.0 * step, "hz": 1.0 / step, "n": n}
+    if where == "line" and not trace:
+        header.insert(dice.randint(0, len(header)), dice.choice(UNIT_LINES).format(**about))
+    if step_line:
+        header.insert(dice.randint(0, len(header)), step_line.format(**about))
+    prefix = dice.choice(["", "", "# ", "% "])
+    header = [line if line.startswith("#") else prefix + line for line in header]
+    blank = dice.random() < 0.15
+    mark = dice.choice([separator, separator, separator, "   "]) if named else separator
+    if named:
+        names = [_named(dice, one, where, spelt if one is not time else one[1], mark) for one in columns]
+        header.append(dice.choice(["", prefix]) + mark.join(names))
+        if where == "row":
+            units = [
+                f"[{spelt if one is not time else one[1] or 's'}]" if one[1] or one is time else "[-]"
+                for one in columns
+            ]
+            units = [f"[{one[1]}]" if one[0] == "vel" else text for one, text in zip(columns, units, strict=True)]
+            header.append(mark.join(units))
+    if dice.random() < 0.1:
+        header.append("-" * 30)
+    leading: list[str] = []
+    if shape in ("one", "wrapped") and dice.random() < 0.3:
+        leading = dice.choice(
+            [["1", f"{step:g}"], [str(n)], [f"{step:g}"], [str(n), f"{step:g}"], [f"{n} {step:g}"], ["9.81"]]
+        )
+        traits.append("leading")
+    if shape == "wrapped":
+        width = dice.choice([4, 5, 8])
+        columns = []
+        body = [separator.join(written[j : j + width]) for j in range(0, n, width)]
+    else:
+        body = [separator.join(texts) for texts in zip(*(one[2] for one in columns), strict=True)]
+    if comma:
+        body = [line.replace(".", ",") for line in body]
+        traits.append("decimal comma")
+    lines = [*header, *([""] if blank else []), *leading, *body, *([""] * dice.choice([0, 0, 1, 3]))]
+    if dice.random() < 0.05:
+        lines.append("*** End of data ***")
+    end = dice.choice(["\n", "\n", "\r\n", "\r\r\n"])
+    content = (end.join(lines) + end).encode(dice.choice(["utf-8", "utf-8", "utf-8-sig", "utf-16"]))
+
+    needed: dict[str, Any] = {}
+    stated: dict[str, Any] = {}
+    if trace:
+        stated = {"degrees": unit == "deg"} if where == "none" else {}
+        needed = stated if unit == "deg" else {}
+        if not has_time or not named:
+            stated = {**stated, "time_step": step}
+    else:
+        stated = {"unit": unit}
+        if not has_time or not named:
+            stated["time_step"] = step
+        if time_unit == "ms" and where not in ("name", "row"):
+            stated["time_step"] = step
+        if len(columns) > 1:
+            stated["component"] = name if named else f"column {columns.index(own) + 1}"
+        if shape == "wrapped":
+            stated["component"] = "rows"
+        numbers = sum(line.strip() == "35.1, 139.2" for line in header)
+        if leading or numbers:
+            stated["skip"] = len(leading) + numbers
+    return Case(content, truth * UNITS["rad" if trace else "m/s2"][unit], step, stated, needed, trace, tuple(traits))
+
+
+def _named(dice: random.Random, column: tuple[str, str, list[str]], where: str, spelt: str, mark: str) -> str:
+    """The name of a column, with its unit."""
+    name, unit, _ = column
+    joined = name.replace(" ", "_") if not mark.strip() and "\t" not in mark else name
+    if where != "name" or not unit:
+        return (
+            f"{joined} [{unit}]"
+            if unit and name == "vel"
+            else joined
+            if name in COUNTERS or not unit
+            else f"{joined}"
+            if where != "row" and unit != "ms"
+            else joined
+        )
+    text = unit if name == "vel" else spelt
+    return dice.choice(
+        [f"{joined} [{text}]", f"{joined} ({text})", f"{joined}[{text}]", f"{joined}_{text.replace(' ', '')}"]
+    )
+
+
+def outcome(case: Case, arguments: dict[str, Any]) -> str:
+    """Read a case: "read", or the reason of its refusal.
+
+    Raises
+    ------
+    AssertionError
+        If another motion is read than that of the case.
+    """
+    try:
+        if case.trace:
+            file = TextFile("x", case.content)
+            time, samples = read_rotations(file, 10_000, arguments.get("degrees"), arguments.get("time_step"))
+            step = float(time[1] - time[0])
+        else:
+            found = parse_record(case.content, "x", **arguments)
+            step, samples = found.time_step, found.acceleration
+    except InvalidArgumentError as error:
+        return str(error)
+    right = samples.shape == case.samples.shape and np.allclose(samples, case.samples, rtol=1e-9, atol=0.0)
+    if not right or abs(step / case.step - 1.0) > 1e-3:
+        shown = case.content.decode("utf-16" if case.content[:2] == b"\xff\xfe" else "utf-8-sig")
+        raise AssertionError(
+            f"{arguments}, step {step} for {case.step}, {samples.size} samples of {case.samples.size}\n{shown[:900]}"
+        )
+    return "read"
+
+
+def try_case(case: Case, dice: random.Random) -> str:
+    """Read a case with few, with some and with all arguments; returns the last outcome."""
+    some = {key: value for key, value in case.stated.items() if dice.random() < 0.5}
+    for arguments in (case.needed, case.needed | some):
+        outcome(case, arguments)
+    return outcome(case, case.needed | case.stated)
+
+
+def run(count: int, seed: int, report: Callable[[str], None] | None = None) -> Counter[str]:
+    """Try as many cases; how often each shape was read with all arguments."""
+    found: Counter[str] = Counter()
+    for k in range(count):
+        dice = random.Random(f"{seed}-{k}")
+        case = make(dice)
+        try:
+            last = try_case(case, dice)
+        except AssertionError as error:
+            raise AssertionError(f"case {seed}-{k}: {error}") from None
+        found["read" if last == "read" else "refused"] += 1
+        if last != "read" and report is not None:
+            report(f"{seed}-{k} {case.traits} {case.stated}: {last}")
+    return found
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--refused", action="store_true", help="print what was refused with all arguments")
+    options = parser.parse_args()
+    found = run(options.count, options.seed, (lambda text: print(text)) if options.refused else None)
+    sys.stdout.write(f"{options.count} files: {dict(found)} with all arguments, none read as another motion\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,17 @@
+"""Random layouts of files of records and traces: what is read is the truth, or it is refused with the reason."""
+
+import os
+
+import pytest
+
+from tests.excitation.dialects import run
+from tests.sampling import SEED
+
+CASES = 10_000 if os.environ.get("FUZZ_ALL") == "1" else 150
+
+
+@pytest.mark.parametrize("seed", [1, SEED])
+def test_no_dialect_is_read_as_another_motion(seed):
+    """`python -m tests.excitation.dialects --count 10000 --seed 1` reads more; the seed is in a failure."""
+    found = run(CASES, seed)
+    assert found["read"] > 0.9 * CASES  # with all that a person who knows the file may state
