@@ -12,7 +12,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import MAX_LENGTH, UNITS, USUAL, unit_name
 
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/:]\s*([^\s,/:]{1,8})\s*$|\bin\s+([^\s,/]{1,12})\s*$")
-_LAST = re.compile(r"[\s_]+([^\s_]{1,12})\s*$")
+_LAST = re.compile(r"[\s_]+([^\s_()\[\]]{1,12})\s*$")
 _PARTS = re.compile(r"[/|,;:()\[\]=]")
 _ROUND = re.compile(r"(?<!\w)[\u00d8\u00f8\u2300\u2205\u03a6\u03c6](?!\w)")
 _SIGNS = re.compile('[%\u2030\u00b0"\u2033$\u20ac\u00a3]')
@@ -94,19 +94,19 @@ class Column:
         """
         if not self.unit:
             return cell
-        text = cell.strip()
+        text = cell.strip().removeprefix("'")  # of a spreadsheet's text
         if text.lower() in self.words:
             return text.lower()
-        found = _NUMBER.fullmatch(text.removeprefix("'")) if len(text) <= MAX_LENGTH else None
+        found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
         if not found:
             raise InvalidArgumentError(
                 self.name, text[:MAX_LENGTH], "a number, with its unit or with one in the header"
             )
-        number = self._number(found[1].strip(), found[2], text, "" if text.startswith("'") else decimal)
+        number = self._number(found[1].strip(), found[2], text, "" if cell.strip() != text else decimal)
         written = unit_name(found[3], self.unit) if found[3] else unit or self.assumed
         if written is None:
             raise InvalidArgumentError(self.name, text, f"a unit such as {', '.join(UNITS[self.unit])}")
-        if not written and self.unit in USUAL:
+        if not written and self.unit in USUAL and number:
             usual = USUAL[self.unit][-1]
             allowed = f"a unit: write {self.name} [{usual}] in the header, or {text} {usual} in the cell"
             raise InvalidArgumentError(self.name, text, allowed)
@@ -218,8 +218,10 @@ def read_header(text: str, names: Mapping[str, Column], argument: str) -> tuple[
         one = named(name, names)
         if one is None:
             continue
-        if one.unit not in UNITS:
+        if one.unit not in UNITS and must:
             return one, ""
+        if one.unit not in UNITS:  # "room name" is no room
+            continue
         stated = written or name if _SIGNS.search(name) else written
         known = unit_name(stated, one.unit) if stated else ""
         if known is None and named(stated, names) is one:  # its symbol, such as "friction (mu)"
@@ -235,6 +237,6 @@ def stated_unit(text: str, unit: str) -> str | None:
     """The unit that a header states, of any name, if it is one of a quantity, such as "m"."""
     for _, written, must in _splits(text):
         known = unit_name(written, unit) if written else None
-        if known and (must or known not in ("m", "in")):  # "Made in" has no unit
+        if known and (must or written.lower() not in ("m", "in") or "_" in text):  # "Made in" has no unit
             return known
     return None

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import re
 import sys
 from collections import Counter
@@ -59,11 +58,12 @@ EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 MAX_NAME = 200
 """Longest name of a column with its unit [characters]."""
 
-TOTALS = {
-    *("total", "totals", "sum", "mean", "average", "summe", "gesamt", "mittelwert", "insgesamt", "gesamtsumme"),
-    *("totale", "somma", "somme", "suma", "count", "subtotal", "media", "moyenne", "promedio"),
-}
-"""First cells of rows that are no objects."""
+_TOTAL = re.compile(
+    r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne)"
+    r"\s*(?:[:(\d].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos)\b.*)?",
+    re.IGNORECASE | re.DOTALL,
+)
+"""First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
 
 EMPTY = {
     *("", "-", "--", "\u2013", "\u2014", "?", "n/a", "na", "n.a.", "#n/a", "none", "null", "nan", "nil"),
@@ -91,6 +91,13 @@ _LENGTH_WORD = re.compile(
     r"|breit|tief|lange|hoh|hoeh|dick|stark|largh|profond|lungh|altez|spess|largeur|longueur|hauteur|epais|ancho|altura"
     r"|largo|espes|grosor|fondo|platos|ypsos|vathos|pachos|mikos|^[a-z][12]?$"
 )
+_NO_LENGTH = re.compile(
+    r"year|date|period|found|acquired|signed|gallery|hall|saal|sala|condition|zustand|stato|etat|rank|priority|class|categor"
+    r"|century|jahr|anno|annee|\bano\b|made|qty|quantit|count|pieces|anzahl|stuck|value|price|cost|wert|preis"
+    r"|valore|prezzo|valeur|prix|valor|precio|room|raum|floor|level|stockwerk|shelf|case|page|number|\bno\b|\bnr\b|id$"
+    r"|code|index|age|\blot\b|weight|mass|score|rating|angle|percent"
+)
+_LAST_UNIT = re.compile(r"\s(?:in|m)\s*$", re.IGNORECASE)
 _AMOUNT = re.compile(r"\W*(?:c|ca|circa|approx\w*|about|um|env\w*|max|min)?[\s.:]*\d", re.IGNORECASE)
 _UNUSED = ("unused", "not used")
 MARK = "\ufeff"
@@ -349,7 +356,7 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
             if columns > SHEET_COLUMNS or rows * columns > SHEET_CELLS:
                 allowed = f"at most {SHEET_COLUMNS} columns and {SHEET_CELLS} cells"
                 raise InvalidArgumentError(argument, f"a sheet of {rows} rows and {columns} columns", allowed)
-            frame = pd.read_excel(file, header=None, dtype=object)
+            frame = pd.read_excel(file, header=None, dtype=object, na_filter=False)
     except ImportError as error:
         raise ImportError("sheets need the extra `sheets`: pip install 'rocking[sheets]'", name=error.name) from None
     except (InvalidArgumentError, MemoryError):
@@ -409,9 +416,27 @@ def _cell_text(value: object) -> str:
 
 @dataclass(frozen=True)
 class _Line:
-    """A line that may be the header: its cells as they stand and under given names, columns with units, an error."""
+    """A line that may be the header.
+
+    Attributes
+    ----------
+    number : int
+        From 0.
+    cells, labels, texts : list of str
+        Its cells; completed by the line above, with their number where one is empty or not the first; completed, under
+        the names that were given to them.
+    columns : dict of int to (Column, str)
+        Quantities that are read, with their units.
+    grouped : set of int
+        Columns in a group of lengths that are not read.
+    complete : bool
+        Whether it has all columns that a header needs.
+    error : InvalidArgumentError or None
+        Its first unit that is not understood.
+    """
 
     number: int
+    cells: list[str]
     labels: list[str]
     texts: list[str]
     columns: dict[int, tuple[Column, str]]
@@ -455,6 +480,8 @@ def _lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[_Line
         if len(row) > MAX_COLUMNS:
             continue
         own = [*rows[number - 1], *[""] * len(row)][: len(row)] if number else [""] * len(row)
+        if not all(map(_is_unit, filter(None, map(str.strip, own)))):
+            own = ["" if _is_unit(text) else text for text in own]
         above = zip(_merged(own), own, row, strict=True)
         pairs = [_joined(*one, known) if max(map(len, one)) <= MAX_NAME else ("", False) for one in above]
         texts = [_renamed(text, schema.renamed) for text, _ in pairs]
@@ -472,7 +499,8 @@ def _lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[_Line
         names = {one.name for one, _ in found.values()}
         complete = all(any(name in names for name in group) for group in schema.required)
         labels = _labels([text for text, _ in pairs])
-        yield _Line(number, labels, texts, found, {k for k, (_, group) in enumerate(pairs) if group}, complete, error)
+        groups = {k for k, (_, group) in enumerate(pairs) if group and any(map(str.strip, own[1:]))}  # not by a title
+        yield _Line(number, [*row], labels, texts, found, groups, complete, error)
 
 
 def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
@@ -492,7 +520,9 @@ def _header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> _Header:
         allowed = f'one column {name}; the name of a column that is not read begins with "unused"'
         raise InvalidArgumentError(f"{schema.argument}, header", same[:MAX_NAME], allowed)
     columns, lengths, after = _with_units(line, rows, schema)
-    return _Header(after, line.labels, line.texts, columns, _unit_columns(line.texts, columns), lengths)
+    units = _unit_columns(line.texts, columns)
+    lengths = dict.fromkeys(sorted(_beside(line, columns, units)), False) | lengths
+    return _Header(after, line.labels, line.texts, columns, units, lengths)
 
 
 def _is_used(text: str) -> bool:
@@ -604,10 +634,36 @@ def _with_units(
                 )
             columns[place] = one, unit
         lengths |= {place: True for place in others if place < len(below) and unit_name(below[place], "m")}
+    names = {place: plain_name(name_and_unit(line.texts[place])[0]) for place in others}
+    weak = set()
+    for place, name in names.items():
+        found = _LENGTH_WORD.search(name)
+        exempt = _NO_LENGTH.search(name) and (found is None or found[0] in ("base", "side", "size"))  # "base price"
+        if (found or _LAST_UNIT.search(line.texts[place])) and not exempt:
+            weak.add(place)
+    weak |= line.grouped & set(others)
+    return columns, dict.fromkeys(sorted(weak), False) | lengths, last
+
+
+def _beside(line: _Line, columns: Mapping[int, tuple[Column, str]], units: Mapping[int, int]) -> set[int]:
+    """Columns that are not read and may be a length without a unit: between those of lengths, anywhere beside headers
+    without units.
+    """
     measured = [place for place, (one, _) in columns.items() if one.unit == "m"]
-    nameless = {k for k, text in enumerate(line.texts) if not text.strip() and min(measured) < k < max(measured)}
-    weak = {place for place in others if _LENGTH_WORD.search(plain_name(name_and_unit(line.texts[place])[0]))}
-    return columns, dict.fromkeys(sorted(weak | nameless | (line.grouped & set(others))), False) | lengths, last
+    first, last = min(measured, default=0), max(measured, default=0)
+    if not all(stated_unit(line.cells[place], "m") for place in measured):
+        first, last = 0, len(line.texts)
+    found = set()
+    for place, text in enumerate(line.texts[: last + 1]):
+        name = plain_name(name_and_unit(text)[0])
+        if (
+            place >= first
+            and place not in columns
+            and place not in units.values()
+            and (text.strip() or 0 < place < last)
+        ):
+            found |= {place} if not name.startswith(_UNUSED) and not _NO_LENGTH.search(name) else set()
+    return found
 
 
 def _unit_columns(texts: Sequence[str], columns: Mapping[int, tuple[Column, str]]) -> dict[int, int]:
@@ -659,12 +715,9 @@ def read_rows(
     items: list[Item] = []
     kept: list[Sequence[str]] = []
     errors: list[tuple[int, InvalidArgumentError]] = []
-    sums: Counter[str] = Counter()
     for number, row in body:
         try:
             values = _values(row, header, decimal, schema)
-            if _is_sum(values, sums, len(kept)) and any(one.name == "name" for one, _ in header.columns.values()):
-                raise InvalidArgumentError("row", "the sums of the rows above", "objects")
             others = {
                 label: cell
                 for place, (label, text, cell) in enumerate(zip(labels, header.texts, row, strict=False))
@@ -672,7 +725,6 @@ def read_rows(
             }
             items.append(schema.make(number, values, others))
             kept.append(row)
-            sums.update({name: value for name, value in values.items() if isinstance(value, float)})
         except InvalidArgumentError as error:
             errors.append((number, _of_cell(error, row, header)))
     size = len(header.texts)
@@ -700,18 +752,7 @@ def _labels(texts: Sequence[str]) -> list[str]:
 def _is_item(row: Sequence[str]) -> bool:
     """Whether a row has values, and is not one of totals."""
     first = next(filter(None, map(str.strip, row)), "")
-    return (
-        bool(first) and first.lower().removesuffix(":").rstrip() not in TOTALS and any(map(str.isalnum, "".join(row)))
-    )
-
-
-def _is_sum(values: Mapping[str, Any], sums: Mapping[str, float], count: int) -> bool:
-    """Whether a row without a name, or with one such as "Total (12 objects)", has the sums of those above."""
-    words = str(values.get("name", "")).lower().split()
-    numbers = {name: value for name, value in values.items() if isinstance(value, float)}
-    if count < 2 or (words and words[0].strip(":(") not in TOTALS):
-        return False
-    return bool(numbers) and all(math.isclose(one, sums[name]) for name, one in numbers.items())
+    return bool(first) and not _TOTAL.fullmatch(first[:MAX_NAME]) and any(map(str.isalnum, "".join(row)))
 
 
 def _written_unit(cell: str, one: Column) -> str:
@@ -737,9 +778,20 @@ def _values(row: Sequence[str], header: _Header, decimal: str, schema: Schema[An
     for one, _ in header.columns.values():
         if values.get(one.name) == 0.0 and any(values.get(other) for other in one.absent_beside):
             del values[one.name]
+    if schema.every_length and "name" not in values and not _has_text(row, header):
+        raise InvalidArgumentError("row", "numbers only", "a name or another text, which totals lack")
     if not any(one.unit not in ("", "-", "kg") and one.name in values for one, _ in header.columns.values()):
         raise InvalidArgumentError("row", "no dimension", "one or more in each row")
     return values
+
+
+def _has_text(row: Sequence[str], header: _Header) -> bool:
+    """Whether a row of a table with names has a text."""
+    if not any(one.name == "name" for one, _ in header.columns.values()):
+        return True
+    numeric = {place for place, (one, _) in header.columns.items() if one.unit}
+    texts = (cell for place, cell in enumerate(row) if place not in numeric and not _is_unit(cell))
+    return any(map(str.isalnum, "".join(texts)))
 
 
 def _row_unit(row: Sequence[str], header: _Header, place: int) -> str:
@@ -789,7 +841,8 @@ def _of_cell(error: InvalidArgumentError, row: Sequence[str], header: _Header) -
         if one.name == error.parameter and place < len(row) and row[place].strip().lower() not in EMPTY:
             text = header.labels[place].strip()
             of = "" if plain_name(name_and_unit(text)[0]) == plain_name(one.name) else f" (column {text!r})"
-            return InvalidArgumentError(one.name, row[place].strip(), error.allowed + of)
+            cell = row[place].strip().removeprefix("'") if one.unit else row[place].strip()
+            return InvalidArgumentError(one.name, cell, error.allowed + of)
     return error
 
 
@@ -801,7 +854,7 @@ def _decimal_sign(cells: Iterable[str], usual: str) -> str:
     signs: set[str] = set()
     for cell in cells:
         found = None if isinstance(cell, _Exact) else split_number(cell)
-        own = decimal_sign(found[0]) if found else ""
+        own = decimal_sign(found[0]) if found and found[0].strip("+-0.,") else ""  # 0.0 is written by machines
         if own and (not own.startswith("?") or own[1] == usual):
             signs.add(own[-1])
     return signs.pop() if len(signs) == 1 else ""

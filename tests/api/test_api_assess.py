@@ -2,15 +2,22 @@
 
 import csv
 import io
+import random
 
 import numpy as np
 import pytest
 from rocking_api.models.assess import AssessedRow
 from rocking_api.routers import assess as router
+from rocking_api.routers.assess import check_table
 
 import rocking
 from rocking._assessment.columns import OUTPUTS
+from rocking._assessment.tables import objects_of_text
+from rocking._base.errors import InvalidArgumentError
 from tests.api.conftest import assert_problem, client_of
+from tests.assessment.dialects import Writer, errors_of
+from tests.sampling import SEED
+from tests.sheets import xlsx_bytes
 
 URL = "/v1/assess?pga=3&pgv=0.3&shapes=sine,ricker&sensitivity=false"
 CSV = {"content-type": "text/csv"}
@@ -90,6 +97,25 @@ def test_a_floor_of_too_many_samples_and_too_many_motions_are_refused(client, mo
     assert_problem(client.post(f"{URL}&floor_periods=1", json=ROWS), 422, "floor_periods")
     monkeypatch.setattr(router, "MAX_PAIRS", 5)
     assert_problem(client.post(URL, json=ROWS), 413, "objects")
+
+
+def test_tables_are_read_as_by_the_package(client):
+    """Random layouts, as text and as a workbook that the page turns into text."""
+    for seed in random.Random(SEED).sample(range(10**9), 4):
+        dialect = Writer(seed, typed=True).table()
+        text = client.post("/objects/text?name=a.xlsx", content=xlsx_bytes(dialect.rows)).content
+        response = client.post(URL + "&format=json", content=text, headers=CSV)
+        try:
+            expected = objects_of_text(text, json=False)
+            check_table(expected, "objects")
+        except InvalidArgumentError:
+            assert response.status_code == 422, seed
+            continue
+        answer = response.json()
+        assert errors_of(expected, dialect) == [], seed
+        assert {row["object"] for row in answer["rows"]} == {one.name for one in expected.objects}, seed
+        assert [one["row"] for one in answer["bad_rows"]] == [one.row for one in expected.bad_rows], seed
+        assert (answer["columns"], answer["skipped"]) == (expected.columns, expected.skipped), seed
 
 
 def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
