@@ -1,1 +1,1 @@
-"""Readers of accelerogram files: PEER AT2, ESM ASCII, K-NET, columns of numbers, SAC and miniSEED through obspy."""
+"""Readers of accelerogram files: `read_record.py` first, then a module for each format, `columns.py` for all others."""

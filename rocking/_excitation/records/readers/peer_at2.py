@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import re
 
-from rocking._excitation.records.readers.columns import names_below
 from rocking._excitation.records.readers.header import Statement, read_header
+from rocking._excitation.records.readers.layout import names_below
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
 from rocking._excitation.records.record import Record
 
