@@ -10,7 +10,7 @@ from tests.sampling import SEED
 CASES = 10_000 if os.environ.get("FUZZ_ALL") == "1" else 150
 
 
-@pytest.mark.parametrize("seed", [1, SEED])
+@pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds
 def test_no_dialect_is_read_as_another_motion(seed):
     """`python -m tests.excitation.dialects --count 10000 --seed 1` reads more; the seed is in a failure."""
     found = run(CASES, seed)
