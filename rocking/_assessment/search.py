@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from rocking._assessment.objects import BodyArray
 from rocking._assessment.site import Motion
 from rocking._boundary.search import refine_brackets
-from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.body_response import respond_bodies
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
+from rocking._dimensional.problem import Problem
+from rocking._dimensional.response import respond
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
@@ -59,7 +59,7 @@ def factors_of(
     return np.stack(columns, axis=1)
 
 
-def factor_from_one_side(problem: BodyProblem, motion: Motion, stop: StopFlag | None = None) -> Array:
+def factor_from_one_side(problem: Problem, motion: Motion, stop: StopFlag | None = None) -> Array:
     """Lowest factor on the motion of a problem that overturns each body, nan up to `HIGHEST_FACTOR`; (bodies,)."""
     if isinstance(motion.motion, Record):
         return _record_factor(problem, motion.motion, stop)
@@ -75,7 +75,7 @@ def overturned_by(
     if isinstance(motion.motion, Record):
         given = np.minimum(given, motion.motion.peak_acceleration * _strongest(motion.motion))
     problems = problems_of(body, motion, given)
-    codes = [problem.solve(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
+    codes = [problem.solve_edges(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
     return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
 
 
@@ -86,22 +86,22 @@ def responses_of(
     overturned, rotation, displacement = [], [], []
     for motion in motions:
         problems = problems_of(body, motion)
-        found = [respond_bodies(problem, stop=stop) for problem in problems]
+        found = [respond(problem, stop=stop) for problem in problems]
         overturned.append(np.logical_or.reduce([one.overturned for one in found]))
         rotation.append(np.fmax.reduce([one.rotation for one in found]))
         displacement.append(np.fmax.reduce([one.displacement for one in found]))
     return np.stack(overturned, 1), np.stack(rotation, 1), np.stack(displacement, 1)
 
 
-def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[BodyProblem]:
+def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[Problem]:
     """The bodies under a motion, and its mirror image where that differs, at the strength of the site or another."""
     return [problem_of(side, motion, acceleration) for side in body.sides]
 
 
-def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> BodyProblem:
+def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> Problem:
     """The bodies under a motion from one side, at the strength of the site or another."""
     peak = motion.peak_acceleration if acceleration is None else acceleration
-    return BodyProblem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
+    return Problem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
 
 
 def _strongest(record: Record) -> float:
@@ -109,10 +109,10 @@ def _strongest(record: Record) -> float:
     return 0.999 * highest_vertical_scale(record)
 
 
-def _record_factor(problem: BodyProblem, record: Record, stop: StopFlag | None) -> Array:
+def _record_factor(problem: Problem, record: Record, stop: StopFlag | None) -> Array:
     """Lowest of `LEVELS` at which a record overturns each body, and the change of outcome below it."""
     cells = problem.cells
-    top = _strongest(record) * record.peak_acceleration / float(problem.acceleration)
+    top = _strongest(record) * record.peak_acceleration / float(problem.peak_acceleration)
 
     def classify(factor: Array, lines: Array, _eta: Array) -> tuple[NDArray[np.int64], Array]:
         chosen, limited = cells[lines.astype(np.intp)], np.minimum(factor, top)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.search import RESOLUTION, refine_brackets
-from rocking._dimensional.body_problem import BodyProblem
+from rocking._dimensional.problem import Problem
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -93,7 +93,7 @@ class _Nodes:
         return _Nodes(*(column[kept] for column in vars(both).values()))
 
 
-def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFlag | None = None) -> Array:
+def lowest_thresholds(problem: Problem, highest: Array | float, stop: StopFlag | None = None) -> Array:
     """The lowest peak acceleration of a pulse that overturns each body of a problem, whose own one is not read.
 
     The nodes of `rocking.thresholds` are searched from uplift on: every 128th one up to the first that
@@ -102,7 +102,7 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
 
     Parameters
     ----------
-    problem : BodyProblem
+    problem : Problem
         Bodies under a pulse.
     highest : float array
         Highest peak acceleration searched, which broadcasts with the problem [m/s2]; at most `HIGHEST` times that of
@@ -125,7 +125,7 @@ def lowest_thresholds(problem: BodyProblem, highest: Array | float, stop: StopFl
         raise InvalidArgumentError("motion", motion, "a pulse")
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
-    cells = replace(problem, acceleration=np.asarray(uplift)).cells
+    cells = replace(problem, peak_acceleration=np.asarray(uplift)).cells
     top = (np.broadcast_to(highest, shape) / uplift).ravel()
     count = np.minimum(np.searchsorted(-GRID, -1.0 / np.maximum(top, 1.0)) + 1, GRID.size)  # nodes up to the highest
 

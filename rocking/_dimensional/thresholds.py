@@ -16,10 +16,9 @@ from rocking._base.errors import InvalidArgumentError, number
 from rocking._base.units import Scalar
 from rocking._boundary.amplitude import amplitude_changes, thresholds
 from rocking._boundary.scan import lowest_overturning, outcome_changes, scanned
-from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.problem import (
     HIGHEST_SCALE,
-    BlockProblem,
+    Problem,
     record_groups,
     restitution_of,
     search_range,
@@ -156,14 +155,14 @@ class BodyThresholds(EqualByValue):
         return self.to_xarray().drop_vars("searched").to_dataframe()
 
 
-def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: StopFlag | None = None) -> BodyThresholds:
+def thresholds_of(problem: Problem, highest: float | None = None, stop: StopFlag | None = None) -> BodyThresholds:
     """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
 
     Under a pulse as `rocking.thresholds`; under a record as `scale_thresholds`.
 
     Parameters
     ----------
-    problem : BodyProblem
+    problem : Problem
         The bodies and the motion.
     highest : float, optional
         Highest strength searched, in its unit; by default 100 times that of uplift under a pulse, 10 under a record.
@@ -173,7 +172,7 @@ def thresholds_of(problem: BodyProblem, highest: float | None = None, stop: Stop
     motion, shape = problem.motion, problem.shape
     by_record = isinstance(motion, Record)
     unit = motion.peak_acceleration if isinstance(motion, Record) else 1.0
-    problem = replace(problem, acceleration=np.full(shape, unit))  # of the strength 1
+    problem = replace(problem, peak_acceleration=np.full(shape, unit))  # of the strength 1
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / unit
     if isinstance(motion, Record) and motion.vertical is not None:
         uplift = np.array([_uplift_scale(motion, motion.vertical, cell) for cell in problem.cells])
@@ -214,7 +213,7 @@ def _uplift_scale(record: Record, vertical: Array, cell: KernelRecord) -> float:
 
 
 def _pulse_changes(
-    problem: BodyProblem, k: int, uplift: float, highest: float, stop: StopFlag | None
+    problem: Problem, k: int, uplift: float, highest: float, stop: StopFlag | None
 ) -> tuple[Array, Flags]:
     cell = problem.cells[k]
     found = amplitude_changes(
@@ -224,7 +223,7 @@ def _pulse_changes(
 
 
 def _record_changes(
-    problem: BodyProblem, k: int, uplift: float, highest: float, stop: StopFlag | None
+    problem: Problem, k: int, uplift: float, highest: float, stop: StopFlag | None
 ) -> tuple[Array, Flags]:
     solve, cell = problem.solver(k, stop), problem.cells[k]
     rate, slenderness = float(cell["rate"]), float(cell["slenderness"].min())
@@ -236,14 +235,12 @@ def _record_changes(
     return outcome_changes(overturns, scanned(uplift, highest))
 
 
-def block_thresholds(
-    problem: BlockProblem, highest: float | None = None, stop: StopFlag | None = None
-) -> BodyThresholds:
+def block_thresholds(problem: Problem, highest: float | None = None, stop: StopFlag | None = None) -> BodyThresholds:
     """Every strength at which the outcome for a block changes.
 
     Parameters
     ----------
-    problem : BlockProblem
+    problem : Problem
         The block and the motion.
     highest : float, optional
         Highest peak acceleration [m/s2] or factor [-] searched; by default as `thresholds_of`, or 10 times the peak
@@ -251,7 +248,7 @@ def block_thresholds(
     stop : StopFlag, optional
         Cancels the work, which then raises `StoppedError`.
     """
-    block, motion, groups = problem.block, problem.motion, problem.groups
+    block, motion, groups = problem.block, problem.motion, dict(problem.groups)
     if isinstance(motion, Record):
         if highest is None:
             highest = max(HIGHEST[1] * uplift_scale(motion, block), BEYOND[1] * problem.scale)

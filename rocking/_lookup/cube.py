@@ -26,7 +26,7 @@ from rocking._base.errors import (
     number,
     one_of,
 )
-from rocking._excitation.pulses import AbstractPulse
+from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._interpolation.kernel import (
     BLOCK,
     INTERPOLATED,
@@ -45,7 +45,7 @@ from rocking._model.fields import DERIVED_FIELDS
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
-from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
+from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_checked
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 
 Array = NDArray[np.float64]
@@ -370,15 +370,8 @@ def _response(found: Found) -> BoundedResponse:
 
 
 def _solve(pulse: str | AbstractPulse, points: Points, threads: int | None, stop: StopFlag | None) -> BoundedResponse:
-    return solve_with_bound(
-        pulse,
-        slenderness=points.slenderness,
-        frequency_ratio=points.frequency_ratio,
-        restitution=points.restitution,
-        alpha=points.alpha,
-        threads=threads,
-        stop=stop,
-    )
+    groups = points.slenderness, points.frequency_ratio, points.restitution, points.alpha
+    return solve_checked(as_pulse(pulse), *groups, None, threads, stop)
 
 
 def open_cube(source: Path | str) -> Cube:

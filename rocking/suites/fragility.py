@@ -20,7 +20,7 @@ from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record
-from rocking._model.block import AbstractBlock
+from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.body_arrays import over_bodies
@@ -108,6 +108,8 @@ def fragility(
     """
     limits = check_demands(demand)
     confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")
+    if isinstance(blocks, RectangularBlock) and blocks.shape:  # an array of blocks
+        blocks = RigidBody.from_size(**blocks.parameters | blocks.labels)
     if isinstance(blocks, RigidBody):
         one = threads or (1 if any(getattr(value, "chunks", None) for value in blocks.labels.values()) else None)
         options: dict[str, Any] = {

@@ -100,7 +100,7 @@ def check_suite(
     bodies = (blocks,) if isinstance(blocks, AbstractBody) else tuple(blocks)
     if not motions or not all(isinstance(motion, Record) for motion in motions):
         raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
-    if not bodies or not all(isinstance(body, AbstractBlock) for body in bodies):
+    if not bodies or not all(getattr(body, "is_block", False) for body in bodies):
         raise InvalidArgumentError(
             "blocks", blocks, "one or more objects of rocking.Block or rocking.EquivalentBlock, with two equal edges"
         )
