@@ -14,7 +14,7 @@ Pictures: `rocking.plot`.
 >>> import rocking
 >>> block = rocking.Block(width="40 cm", height="160 cm")
 >>> block.response("sine", peak_acceleration="0.6 g", period="0.5 s")
-<rocking.BlockResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m under sine of 5.884 m/s2 and 0.5 s>
+<rocking.BodyResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m under sine of 5.884 m/s2 and 0.5 s>
 
 Numbers are in SI units and radians, lengths are full sizes; texts such as "40 cm" and quantities of pint are converted.
 Every error is a `RockingError`, of an argument also a `ValueError`. The public names are listed in `__init__.pyi` and

@@ -14,6 +14,7 @@ from ._boundary.amplitude import thresholds as thresholds
 from ._boundary.tracing import overturning_boundary as overturning_boundary
 from ._dimensional.block import Block as Block
 from ._dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
+from ._dimensional.response import BodyResponse as BodyResponse
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._evidence.calibration import calibrate as calibrate
 from ._evidence.free_rocking import identify_free_rocking as identify_free_rocking

@@ -70,7 +70,7 @@ def factors_by_direction(
     for motion in motions:
         problem = problem_of(body, motion)
         factor = factor_from_one_side(problem, motion, stop, resolution)
-        overturned = problem.solve(stop=stop)[0]["outcome"].ravel() >= Outcome.OVERTURNED_DIRECTLY
+        overturned = problem.solve_edges(stop=stop)[0]["outcome"].ravel() >= Outcome.OVERTURNED_DIRECTLY
         # an object beyond the range of the search has no factor, and may overturn
         columns.append(np.fmin(factor, np.where(overturned, 1.0, np.nan)))
     own = np.nan_to_num(np.stack(columns, axis=1), nan=np.inf)

@@ -14,8 +14,8 @@ from rocking._assessment.search import least, problems_of
 from rocking._assessment.site import LENGTH, Motion, static_acceleration
 from rocking._assessment.sliding import first_exceedance
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
+from rocking._dimensional.problem import Problem
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -130,7 +130,7 @@ def envelope_of(
     periods = np.geomspace(shortest, longest, ENVELOPE_PERIODS)
     found = {}
     for name, pulse in pulses.items():
-        problems = [BodyProblem(side, pulse, np.asarray(1.0), periods, None) for side in body.sides]
+        problems = [Problem(side, pulse, np.asarray(1.0), periods, None) for side in body.sides]
         lowest = [lowest_thresholds(one, highest, stop) for one in problems]
         found[name] = least(np.stack([one.ravel() for one in lowest], axis=1)).reshape(lowest[0].shape)
     return periods, found

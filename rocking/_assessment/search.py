@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from rocking._assessment.objects import BodyArray
 from rocking._assessment.site import Motion
 from rocking._boundary.scan import RESOLUTION
-from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.body_response import respond_bodies
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
+from rocking._dimensional.problem import Problem
+from rocking._dimensional.response import respond
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
@@ -56,7 +56,7 @@ def factors_of(
 
 
 def factor_from_one_side(
-    problem: BodyProblem,
+    problem: Problem,
     motion: Motion,
     stop: StopFlag | None = None,
     resolution: float = RESOLUTION,
@@ -83,7 +83,7 @@ def overturned_by(
     given = motion.peak_acceleration if acceleration is None else acceleration
     given = np.minimum(given, motion.peak_acceleration * strongest_factor(motion))
     problems = problems_of(body, motion, given)
-    codes = [problem.solve(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
+    codes = [problem.solve_edges(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
     return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
 
 
@@ -94,22 +94,22 @@ def responses_of(
     overturned, rotation, displacement = [], [], []
     for motion in motions:
         problems = problems_of(body, motion)
-        found = [respond_bodies(problem, stop=stop) for problem in problems]
+        found = [respond(problem, stop=stop) for problem in problems]
         overturned.append(np.logical_or.reduce([one.overturned for one in found]))
         rotation.append(np.fmax.reduce([one.rotation for one in found]))
         displacement.append(np.fmax.reduce([one.displacement for one in found]))
     return np.stack(overturned, 1), np.stack(rotation, 1), np.stack(displacement, 1)
 
 
-def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[BodyProblem]:
+def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[Problem]:
     """The bodies under a motion, and its mirror image where that differs, at the strength of the site or another."""
     return [problem_of(side, motion, acceleration) for side in body.sides]
 
 
-def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> BodyProblem:
+def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> Problem:
     """The bodies under a motion from one side, at the strength of the site or another."""
     peak = motion.peak_acceleration if acceleration is None else acceleration
-    return BodyProblem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
+    return Problem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
 
 
 def strongest_factor(motion: Motion) -> float:

@@ -187,7 +187,7 @@ def _probed(body: BodyArray, motion: Motion, highest: float, stop: StopFlag | No
     factors = np.minimum(np.append(PROBES, highest), strongest_factor(motion))
     over, peak = np.zeros((body.shape[0], factors.size), dtype=np.bool_), np.zeros((body.shape[0], factors.size))
     for problem in problems_of(body.column, motion, motion.peak_acceleration * factors):
-        records = problem.solve(stop=stop)[0].reshape(over.shape)
+        records = problem.solve_edges(stop=stop)[0].reshape(over.shape)
         over |= records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
         peak = np.fmax(peak, records["peak_rotation"])
     met = over[:, : PROBES.size]

@@ -135,11 +135,13 @@ def in_range(
         With the first offending entry and its index.
     """
     array = float_array(parameter, value, low, high, closed=closed, unit=unit)
+    # two comparisons instead of arrays of them; min and max are nan if an entry is
+    if array.size == 0 or (low < array.min() and array.max() < high):
+        return array
     if array.ndim == 0:
         if not _within(float(array), low, high, closed):
             reject_range(parameter, float(array), low, high, closed, unit)
-    # two comparisons instead of arrays of them; min and max are nan if an entry is
-    elif array.size and not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
+    elif not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
         places = np.ndenumerate(array)
         index, wrong = next((place, entry) for place, entry in places if not _within(float(entry), low, high, closed))
         reject_range(parameter, float(wrong), low, high, closed, unit, index)
@@ -150,6 +152,8 @@ def number(
     parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> float:
     """Return `value` as a float after checking that it is one finite number in the range; as `in_range`."""
+    if type(value) is float and low < value < high:  # all that is left to do for most
+        return value
     if isinstance(value, list | tuple) or (hasattr(value, "ndim") and value.ndim):
         raise InvalidArgumentError(parameter, value, f"one number in {_interval(low, high, closed, unit)}")
     return float(in_range(parameter, value, low, high, closed=closed, unit=unit))
@@ -243,6 +247,8 @@ def float_array(
     unit: str = "-",
 ) -> NDArray[np.float64]:
     """Return `value` as a float64 array, as `in_range` but not compared with the range, nan and infinity included."""
+    if type(value) is np.ndarray and value.dtype == np.float64:
+        return value
     given = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
     if not _is_real(given):
         allowed = f"real numbers, none of them masked, in {_interval(low, high, closed, unit)}"

@@ -176,7 +176,7 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
         records, margin = solve(*cells)
         if work is not None:
             work.add(records["impacts"])
-        codes = code_of(Found(*(records[name] for name in ("outcome", "impacts", "chatter"))))
+        codes = code_of(Found(records["outcome"], records["impacts"], records["chatter"]))
         return codes.reshape(groups[0].shape), margin.reshape(groups[0].shape)
 
     return classify

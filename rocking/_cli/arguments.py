@@ -19,7 +19,7 @@ from rocking._model.parameters import FREQUENCY_RATIO
 
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block
-    from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.problem import Problem
     from rocking._dimensional.rigid_body import RigidBody
     from rocking._dimensional.table import BlockTable
 
@@ -48,7 +48,7 @@ class Params:
     frequency_ratio: float
     restitution: float
     alpha: float | None
-    problem: BlockProblem | None = None
+    problem: Problem | None = None
 
     @property
     def groups(self) -> dict[str, float | None]:
@@ -258,7 +258,7 @@ def read_duration(text: str | None, params: Params) -> float | None:
     if text is None:
         return None
     if params.problem is not None:
-        return si_value("duration", text, "s") * params.problem.block.frequency_parameter
+        return float(si_value("duration", text, "s") * params.problem.block.frequency_parameter)
     try:
         return float(text)
     except ValueError:
@@ -276,12 +276,11 @@ def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
 
 
 def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | str, period: float) -> Params:
-    from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.problem import Problem
 
     pulse = read_pulse(options.pulse)
-    problem = BlockProblem(block, pulse, peak_acceleration, period, _restitution(options))
-    groups: Mapping[str, float] = problem.groups
-    return Params(pulse, **groups, problem=problem)
+    problem = Problem.of(block, pulse, peak_acceleration, period, _restitution(options))
+    return Params(pulse, **problem.groups, problem=problem)
 
 
 def _window(
@@ -302,11 +301,11 @@ def _window(
 
 
 def _ratio(block: Block, period: float) -> float:
-    return 2.0 * math.pi / (period * block.frequency_parameter)
+    return float(2.0 * math.pi / (period * block.frequency_parameter))
 
 
 def _period(block: Block, ratio: float) -> float:
-    return 2.0 * math.pi / (ratio * block.frequency_parameter)
+    return float(2.0 * math.pi / (ratio * block.frequency_parameter))
 
 
 def _given(options: SizeOptions, name: str) -> str:

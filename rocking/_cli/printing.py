@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json as json_writer
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,6 +16,7 @@ from rocking._cli.arguments import Params, given_units
 from rocking._cli.options import OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
+from rocking._dimensional.response import FIELDS, JUDGED
 from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
 from rocking._model.outcome import Outcome
@@ -25,12 +25,9 @@ from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking._dimensional.assessment import Assessment
-    from rocking._dimensional.body_response import BodyResponse
-    from rocking._dimensional.problem import BlockProblem
+    from rocking._dimensional.response import BodyResponse
     from rocking._dimensional.rigid_body import RigidBody
     from rocking._dimensional.table import BlockTable
-    from rocking._history.contact import ContactExtremes
 
 
 @dataclass(frozen=True)
@@ -84,21 +81,20 @@ def response(params: Params, form: Form) -> None:
 def body_response(body: RigidBody, motion: Mapping[str, Any], form: Form) -> None:
     """Print outcome, peaks about both edges and changes of the outcome of a body under a pulse."""
     with progress("solving the body"):
-        found = body.response(**motion)
-        result = body_columns(found) | {
-            "peak_acceleration": motion["peak_acceleration"],
-            "period": motion["period"],
-            "thresholds": [
-                {"peak_acceleration": one.value, "overturns_above": one.overturns_above} for one in found.thresholds
-            ],
-        }
+        result = body_columns(body.response(**motion))
     print_answer(result, [result["meaning"]], form)
 
 
-def body_columns(found: BodyResponse, *, thresholds: bool = True) -> dict[str, Any]:
-    """What is printed of a body of a given size, by name."""
-    given = {name: float(value) for name, value in found.problem.body.parameters.items()}
-    return found.summary(thresholds=thresholds) | {
+def body_columns(found: BodyResponse) -> dict[str, Any]:
+    """What is printed of one body, by name; of one with two edges also its size."""
+    strengths = (
+        {} if "record" in found.motion else {"peak_acceleration": found.peak_acceleration, "period": found.period}
+    )
+    about = found.summary() | strengths | {"thresholds": found.changes}
+    if found.problem.is_block:
+        return about
+    given = {name: float(value) for name, value in found.body.parameters.items()}
+    return about | {
         "width": given["left"] + given["right"],
         "height": given["top_height"],
         "mass_height": given["height"],
@@ -124,23 +120,25 @@ def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -
 
 def _response(params: Params) -> tuple[dict[str, Any], str]:
     """What is printed of one block, by name, and the outcome in words."""
+    if params.problem is not None:
+        from rocking._dimensional.response import respond
+
+        result = _groups(params) | body_columns(respond(params.problem))
+        return result, result["meaning"]
     found = _solve(params, params.frequency_ratio)
     result = _groups(params) | {name: column[0] for name, column in _columns(found).items()}
-    sentence = Outcome[result["outcome"]].sentence
-    if params.problem is not None:
-        from rocking._dimensional.assessment import assess
+    if params.alpha is None:
+        return result, Outcome[result["outcome"]].sentence
+    from rocking._history.contact import contact_extremes
+    from rocking._history.motion import build_motion
 
-        assessment = assess(params.problem)
-        sentence = assessment.sentence
-        result |= _contact(assessment.contact) | _dimensional(params.problem, result["peak_rotation"], assessment)
-    elif params.alpha is not None:
-        from rocking._history.contact import contact_extremes
-        from rocking._history.motion import build_motion
-
-        contact = contact_extremes(build_motion(params.pulse, **params.groups))  # type: ignore[arg-type]
-        sentence = contact.sentence
-        result |= _contact(contact)
-    return result, sentence
+    contact = contact_extremes(build_motion(params.pulse, **params.groups))  # type: ignore[arg-type]
+    about = {
+        "friction_demand": finite(contact.largest_friction_demand),
+        "lifts_off": contact.lifts_off,
+        "rocking_model_applies": contact.rocking_applies,
+    }
+    return result | about, contact.sentence
 
 
 def responses(table: BlockTable, form: Form) -> None:
@@ -166,43 +164,6 @@ _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
 """Responses of many blocks that a table holds, or begins with."""
 
 
-def _contact(found: ContactExtremes) -> dict[str, Any]:
-    return {
-        "friction_demand": finite(found.largest_friction_demand),
-        "lifts_off": found.lifts_off,
-        "rocking_model_applies": found.rocking_applies,
-    }
-
-
-def _dimensional(problem: BlockProblem, peak: float | None, assessment: Assessment) -> dict[str, Any]:
-    """The response in SI units and degrees."""
-    block, margins = problem.block, assessment.margins
-    rotation = None if peak is None else peak * block.alpha
-    thresholds = assessment.thresholds
-    return {
-        "peak_rotation_deg": None if rotation is None else math.degrees(rotation),
-        "top_displacement": None if rotation is None else block.top_displacement(rotation),
-        "alpha_deg": math.degrees(block.alpha),
-        "width": block.width,
-        "height": block.height,
-        "half_diagonal": block.half_diagonal,
-        "frequency_parameter": block.frequency_parameter,
-        "peak_acceleration": problem.peak_acceleration,
-        "period": problem.period,
-        "pulse_duration": problem.duration,
-        "uplift_acceleration": block.uplift_acceleration,
-        "largest_safe_acceleration": assessment.largest_safe_acceleration,
-        "largest_safe_friction_demand": assessment.largest_safe_friction_demand,
-        "nearest_acceleration": None if margins is None else margins.nearest_acceleration,
-        "nearest_period": None if margins is None else margins.nearest_period,
-        "thresholds": None
-        if thresholds is None
-        else [{"peak_acceleration": one.value, "overturns_above": one.overturns_above} for one in thresholds],
-        "margin": assessment.margin,
-        "warnings": assessment.warnings,
-    }
-
-
 _FIRST_LINES = (
     *("edge", "rotation_left_deg", "rotation_right_deg"),
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
@@ -215,26 +176,21 @@ _FIRST_LINES = (
 _IN_GROUPS = ("peak_rotation", "impacts", "exceeded_alpha", "error_bound", "friction_demand")
 """The same of a block in groups."""
 
-_NO_LINES = ("meaning", "margin", "warnings", "overturns_above")
+_NO_LINES = ("meaning", "margin", "warnings", "notes", "overturns_above")
 """What the text output says before the values, or in one line with another value."""
 
 _UNITS = {
+    **{one.label: one.label_unit for one in (*FIELDS, *JUDGED) if one.unit != "1"},
     **dict.fromkeys(("alpha", "alpha_lower", "alpha_upper", "noise", "offset"), "rad"),
-    **dict.fromkeys(("frequency_parameter", "frequency_parameter_lower", "frequency_parameter_upper"), "rad/s"),
+    **dict.fromkeys(("frequency_parameter_lower", "frequency_parameter_upper"), "rad/s"),
     "angular_velocity_deg": "deg/s",
     "annual_rate": "1/year",
-    "gravity": "m/s2",
-    **dict.fromkeys(("peak_rotation_deg", "rotation_deg", "alpha_deg"), "deg"),
-    **dict.fromkeys(("rotation_left_deg", "rotation_right_deg", "alpha_left_deg", "alpha_right_deg"), "deg"),
-    **dict.fromkeys(("period", "pulse_duration", "nearest_period", "period", "time", "impact_time_s"), "s"),
-    **dict.fromkeys(("mass_height", "left", "right"), "m"),
-    **dict.fromkeys(("uplift_time", "time_step", "significant_duration", "mean_period"), "s"),
-    **dict.fromkeys(("top_displacement", "width", "height", "half_diagonal", "peak_displacement"), "m"),
+    "rotation_deg": "deg",
+    **dict.fromkeys(("time", "impact_time_s", "time_step", "significant_duration", "mean_period"), "s"),
+    **dict.fromkeys(("mass_height", "left", "right", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
-    **dict.fromkeys(("peak_acceleration", "uplift_acceleration", "largest_safe_acceleration", "acceleration"), "m/s2"),
-    **dict.fromkeys(
-        ("nearest_acceleration", "thresholds", "pulse_peak_acceleration", "peak_vertical_acceleration"), "m/s2"
-    ),
+    **dict.fromkeys(("gravity", "acceleration", "thresholds"), "m/s2"),
+    **dict.fromkeys(("pulse_peak_acceleration", "peak_vertical_acceleration"), "m/s2"),
 }
 """Units that the text output names beside a value or a column; others are dimensionless."""
 

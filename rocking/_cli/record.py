@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,8 +13,6 @@ from rocking._cli.options import MassOptions, OutputOptions, RecordOptions, with
 
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block
-    from rocking._dimensional.rigid_body import RigidBody
-    from rocking._dimensional.thresholds import BodyThresholds
     from rocking._excitation.records.record import Record
 
 File = Annotated[
@@ -55,15 +52,21 @@ def record(
         form = printing.output_format(output, block)
         motion, shape, restitution = read_problem(file, block)
         body = body_of_size(shape.width, shape.height, mass.offset or 0.0, mass.mass_height)
+        if fit and not isinstance(body, Block):
+            raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
         with progress("solving the block under the record"):
-            about = _measures(motion) | {"scale": block.scale}
-            if isinstance(body, Block):
-                found, sentences = _solved(motion, body, restitution, block.scale, thresholds, fit)
-            elif fit:
-                raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
+            found = body.response(motion, scale=block.scale, restitution=restitution, thresholds=thresholds)
+            about = printing.body_columns(found)
+            changes = about.pop("thresholds")
+            if changes is None:
+                about.pop("overturning_scale")
             else:
-                found, sentences = _solved_body(motion, body, restitution, block.scale, thresholds)
-            about |= found
+                about["threshold_scale"] = [one["scale"] for one in changes]
+                about["overturns_above"] = [one["overturns_above"] for one in changes]
+            about |= {"scale": block.scale, **_measures(motion)}
+            if isinstance(body, Block):
+                about |= {"alpha": body.alpha} | (_fitted(motion, body) if fit else {})
+        sentences = [text for text in (about["meaning"], about["margin"]) if text]
     printing.print_answer(about, sentences, form)
 
 
@@ -141,74 +144,18 @@ def _measures(motion: Record) -> dict[str, Any]:
     }
 
 
-def _changes(found: BodyThresholds | None) -> dict[str, Any]:
-    """The factors at which the outcome changes; nothing if they were not searched."""
-    if found is None:
-        return {}
-    return {
-        "overturning_scale": found[0].value if found else None,
-        "threshold_scale": found.value.tolist(),
-        "overturns_above": found.overturns_above.tolist(),
-    }
-
-
-def _solved_body(
-    motion: Record, body: RigidBody, restitution: float | Literal["momentum"], scale: float, thresholds: bool
-) -> tuple[dict[str, Any], list[str]]:
-    """As `_solved`, of a body whose centre of mass is not that of the block."""
-    from rocking._cli.printing import body_columns
-
-    found = body.response(motion, scale=scale, restitution=restitution)
-    about = body_columns(found, thresholds=thresholds) | _changes(found.thresholds if thresholds else None)
-    return about, [text for text in (about["meaning"], about["margin"]) if text]
-
-
-def _solved(
-    motion: Record,
-    block: Block,
-    restitution: float | Literal["momentum"],
-    scale: float,
-    thresholds: bool,
-    fit: bool,
-) -> tuple[dict[str, Any], list[str]]:
-    """What is printed of a block, by name, and the outcome and the margin in words."""
+def _fitted(motion: Record, block: Block) -> dict[str, Any]:
+    """What is printed of the pulse that is fitted to a record, by name."""
     from rocking._base.errors import finite
+    from rocking.suites.pulse_fit import fit_pulse
 
-    found = block.response(motion, scale=scale, restitution=restitution, thresholds=thresholds)
-    response, assessment = found.dimensionless, found.assessment
-    refined = assessment.resampled
-    about: dict[str, Any] = {
-        "width": block.width,
-        "height": block.height,
-        "frequency_parameter": block.frequency_parameter,
-        "alpha": block.alpha,
-        "uplift_acceleration": block.uplift_acceleration,
-        "restitution": found.restitution,
-        "slenderness": found.slenderness,
-        "outcome": found.outcome.name,
-        "overturned": bool(response.overturned),
-        "exceeded_alpha": bool(response.exceeded_alpha),
-        "impacts": int(response.impacts),
-        "peak_rotation": finite(float(response.peak_rotation)),
-        "amplification": finite(assessment.amplification),
-        "peak_rotation_deg": finite(math.degrees(found.rotation)),
-        "top_displacement": finite(found.displacement),
-        "peak_rotation_resampled": None if refined is None else finite(float(refined.peak_rotation)),
-        "overturned_resampled": None if refined is None else bool(refined.overturned),
+    fitted = fit_pulse(motion, blocks=block)
+    return {
+        "pulse": fitted.velocity.family,
+        "period": fitted.period,
+        "pulse_peak_acceleration": fitted.peak_acceleration,
+        "pulse_cycles": finite(fitted.velocity.cycles),
+        "pulse_phase": finite(fitted.velocity.phase),
+        "pulse_explained": fitted.explained,
+        "pulse_scale_ratio": finite(float(fitted.scale_ratio[0])),
     }
-    about |= _changes(assessment.thresholds)
-    if fit:
-        from rocking.suites.pulse_fit import fit_pulse
-
-        fitted = fit_pulse(motion, blocks=block)
-        about |= {
-            "pulse": fitted.velocity.family,
-            "period": fitted.period,
-            "pulse_peak_acceleration": fitted.peak_acceleration,
-            "pulse_cycles": finite(fitted.velocity.cycles),
-            "pulse_phase": finite(fitted.velocity.phase),
-            "pulse_explained": fitted.explained,
-            "pulse_scale_ratio": finite(float(fitted.scale_ratio[0])),
-        }
-    sentences = [text for text in (assessment.sentence, assessment.margin) if text]
-    return about | {"margin": assessment.margin, "warnings": assessment.warnings}, sentences

@@ -11,52 +11,32 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._base.errors import (
-    InvalidArgumentError,
-    broadcast,
-    in_range,
-    integer,
-    needed,
-    number,
-    positive,
-    reject_given,
-)
+from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
-from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.body_response import BODY_FIELDS, BodyResponse, respond_bodies
 from rocking._dimensional.curves import (
     block_boundary,
     block_history,
     block_spectrum,
     body_boundary,
     body_history,
-    frequency_window,
+    over_axis,
 )
-from rocking._dimensional.problem import HIGHEST_SCALE, BlockProblem, checked_restitution
-from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, scale_thresholds, thresholds_of
-from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._dimensional.problem import HIGHEST_SCALE, STRENGTHS, Motion, Problem, are_numbers, checked_restitution
+from rocking._dimensional.response import FIELDS, BodyResponse, respond
+from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, thresholds_of
+from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
-from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.checks import check, check_number
-from rocking._model.labelled import Index, in_unit, index_of, is_labelled, labelled_response
-from rocking._model.parameters import RESTITUTION, Parameter
+from rocking._model.labelled import in_unit, is_labelled, labelled_response
+from rocking._model.parameters import RESTITUTION
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
-
-Motion = str | AbstractPulse | Record
-
-STRENGTHS = {
-    "peak_acceleration": Parameter("peak_acceleration", "a_g", "m/s2", 0.0, math.inf, "neither", "peak acceleration"),
-    "period": Parameter("period", "T_p", "s", 0.0, math.inf, "neither", "period of the pulse"),
-    "scale": Parameter("scale", "", "-", 0.0, HIGHEST_SCALE, "right", "factor of a record"),
-}
-"""Arguments that say how strong and how long a motion is."""
 
 
 class RespondingBody(AbstractBody):
@@ -78,6 +58,7 @@ class RespondingBody(AbstractBody):
         period: Values | None = None,
         scale: Values | None = None,
         restitution: Values = "momentum",
+        thresholds: bool = True,
         threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BodyResponse: ...
@@ -90,10 +71,14 @@ class RespondingBody(AbstractBody):
         period: Values | None = None,
         scale: Values | None = None,
         restitution: Values = "momentum",
+        thresholds: bool = True,
         threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BodyResponse | xr.Dataset:
-        """Outcome and peak rotations about both edges under a pulse or a record. The arguments broadcast.
+        """Outcome, peak rotation and displacement under a pulse or a record. The arguments broadcast.
+
+        One block with numbers is solved with a bound of its error and has margins; arrays, and bodies whose edges
+        differ, by their two edges.
 
         Labelled ones (`xarray.DataArray`), also of the body, broadcast by the names of their dimensions and give an
         `xarray.Dataset` of the same fields, which stays lazy where they are backed by dask.
@@ -109,36 +94,55 @@ class RespondingBody(AbstractBody):
         scale : array_like
             Factor of a record, of both its components [-], (0, 1e6]; 1 by default.
         restitution : array_like or "momentum"
-            eta [-], [0, 1], of every impact; or from conservation of angular momentum, 0 where that is negative.
+            eta [-], [0, 1], of every impact; or from conservation of angular momentum, (2.4) for a block, 0 where that
+            is negative.
+        thresholds : bool
+            Whether the strengths of the motion at which the outcome changes are searched, when they, the warnings or
+            the text of the response to a record are first asked for.
         threads : int, optional
-            Number of threads, >= 1; by default all cores.
+            Number of threads for arrays, >= 1; by default all cores.
         stop : StopFlag, optional
             Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
         Raises
         ------
         InvalidArgumentError
-            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast.
+            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast;
+            for arrays where the equation of motion is the linear one (3.1).
         StoppedError
             If `stop` was set.
+
+        Examples
+        --------
+        >>> import rocking
+        >>> block = rocking.Block("40 cm", "160 cm")
+        >>> block.response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
+        False
         """
         if threads is not None:
             threads = integer("threads", threads, 1, math.inf)
-        make, own = self._labelled()
-        given = {"peak_acceleration": peak_acceleration, "period": period, "scale": scale}
-        given = {name: in_unit(name, value, STRENGTHS[name].unit) for name, value in given.items()}
-        if is_labelled(*given.values(), restitution, *own.values()):
-            eta = restitution if is_labelled(restitution) else checked_restitution(restitution)
-            plain = {
-                name: check(STRENGTHS[name], one)
-                for name, one in given.items()
-                if one is not None and not is_labelled(one)
-            }
-            solve = partial(_respond_part, make, tuple(own), motion)
-            options = {"threads": threads, "stop": stop}
-            return labelled_response(solve, own | given | plain | {"restitution": eta}, options, BODY_FIELDS)
-        problem, arguments = self._problem(motion, peak_acceleration, period, scale, restitution)
-        return respond_bodies(problem, arguments, threads, stop)
+        given = {"peak_acceleration": peak_acceleration, "period": period, "scale": scale, "restitution": restitution}
+        if self.labels or (not are_numbers(*given.values()) and is_labelled(*given.values())):
+            return self._labelled_response(motion, given, {"threads": threads, "stop": stop})
+        problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
+        return respond(problem, threads, stop, thresholds=thresholds)
+
+    def _labelled_response(self, motion: Motion, given: dict[str, Any], options: dict[str, Any]) -> xr.Dataset:
+        """The response to labelled arguments, or of a body that is made from some."""
+        eta, own = given.pop("restitution"), self.labels
+        if not is_labelled(eta):
+            eta = checked_restitution(eta)
+        strengths = {
+            name: in_unit(name, one, STRENGTHS[name].unit) if is_labelled(one) else check(STRENGTHS[name], one)
+            for name, one in given.items()
+            if one is not None
+        }
+        plain = {name: value for name, value in self.parameters.items() if name not in own}
+        make = partial(type(self), **plain) if own else lambda: self
+        solve = partial(_respond_part, make, tuple(own), motion)
+        one_kind = "record" if isinstance(motion, Record) else "pulse"
+        fields = [one for one in FIELDS if {one_kind, "edges", "many"} <= one.kinds]
+        return labelled_response(solve, {**own, **strengths, "restitution": eta}, options, fields)
 
     def thresholds(
         self,
@@ -170,24 +174,20 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError, StoppedError
             As for `response`.
         """
+        share = checked_resolution(resolution)
         if highest is not None:
             highest = (
                 number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
                 if isinstance(motion, Record)
                 else positive("highest", highest, "m/s2")
             )
-        numbers = as_numbers(period=period, restitution=restitution)
-        if isinstance(self, AbstractBlock) and numbers:
-            if isinstance(motion, Record):
-                reject_given("a record", period=period)
-                eta = numbers["restitution"]
-                return scale_thresholds(
-                    motion, self, restitution=eta, highest=highest, resolution=resolution, stop=stop
-                )
-            return block_thresholds(BlockProblem(self, motion, self.uplift_acceleration, **numbers), highest, stop)
-        strength = {"scale": 1.0} if isinstance(motion, Record) else {"peak_acceleration": 1.0}
-        problem, *_ = self._problem(motion, period=period, restitution=restitution, **strength)
-        return thresholds_of(problem, highest, stop, checked_resolution(resolution))
+        uplift = float(np.min(self.uplift_acceleration))  # a strength that is not read
+        strength: dict[str, Any] = {"peak_acceleration": uplift}
+        if isinstance(motion, Record):
+            reject_given("a record", period=period)
+            strength = {"scale": min(uplift / motion.peak_acceleration, HIGHEST_SCALE)}
+        problem = Problem.of(self, motion, **strength, period=period, restitution=restitution, flies=True)
+        return (block_thresholds if problem.is_block else thresholds_of)(problem, highest, stop, share)
 
     def spectrum(
         self,
@@ -232,20 +232,14 @@ class RespondingBody(AbstractBody):
         if along.ndim > 1:
             raise InvalidArgumentError(axis, along.shape, "one dimension")
         along = np.atleast_1d(along)
-        if size is None and isinstance(self, AbstractBlock):
-            problem = BlockProblem(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
-            return block_spectrum(problem, along, stop)
         body, times = (self, along) if size is None else (self.scaled(along), period)
         if size is not None and period is not None:
             times = positive("period", period, "s")
-        given, arguments = body._problem(motion, peak_acceleration, times, scale, restitution)
-        found = respond_bodies(given, arguments, stop=stop).to_xarray()
-        kept = found.drop_vars([one for one in found.coords if one not in ("period", "peak_acceleration", "scale")])
-        kept = kept.drop_vars(axis, errors="ignore").rename({found["rotation"].dims[0]: axis})
-        about = {"units": "s", "long_name": "period"}
-        if size is not None:
-            about = {"units": "1", "long_name": "factor of all lengths"}
-        return kept.assign_coords({axis: (axis, along, about)})
+        if size is None and self.is_block:
+            one = Problem.of(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
+            return block_spectrum(one, along, stop)
+        found = respond(Problem.of(body, motion, peak_acceleration, times, restitution, scale=scale), stop=stop)
+        return over_axis(found, axis, along)
 
     def boundary(
         self,
@@ -283,11 +277,9 @@ class RespondingBody(AbstractBody):
         self._need_one("boundary", restitution)
         if isinstance(motion, Record):
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
-        if isinstance(self, AbstractBlock):
-            return block_boundary(self, motion, restitution=restitution, period=period, stop=stop)
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
-        problem, *_ = self._problem(motion, 1.0, unit, restitution=restitution)
-        return body_boundary(problem, frequency_window(period, lambda one: unit / one), stop)
+        problem = Problem.of(self, motion, 1.0, unit, restitution)
+        return (block_boundary if problem.is_block else body_boundary)(problem, period, stop)
 
     def history(
         self,
@@ -336,11 +328,9 @@ class RespondingBody(AbstractBody):
         """
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
-        if isinstance(self, AbstractBlock):
-            asked = BlockProblem(self, motion, peak_acceleration, period, restitution, scale=scale)
-            return block_history(asked, duration=length, samples=samples, contact=contact, stop=stop)
-        problem, *_ = self._problem(motion, peak_acceleration, period, scale, restitution)
-        return body_history(problem, duration=length, samples=samples, contact=contact, stop=stop)
+        problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
+        draw = block_history if problem.is_block else body_history
+        return draw(problem, duration=length, samples=samples, contact=contact, stop=stop)
 
     def scaled(self, size: Values) -> RespondingBody:
         """The body with all lengths times a factor.
@@ -356,43 +346,6 @@ class RespondingBody(AbstractBody):
             If it is not positive.
         """
         return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
-
-    index: Index | None = None
-    """Name and labels of the index of the series (pandas) from which an array of bodies is made."""
-
-    def _labelled(self) -> tuple[Callable[..., RespondingBody], dict[str, Any]]:
-        """What makes the body from its labelled arguments (xarray), and these by name."""
-        return (lambda: self), {}
-
-    def _problem(
-        self,
-        motion: Motion,
-        peak_acceleration: Values | None = None,
-        period: Values | None = None,
-        scale: Values | None = None,
-        restitution: Values = "momentum",
-    ) -> tuple[BodyProblem, dict[str, Array]]:
-        """The checked problem, and its arguments as arrays."""
-        eta = checked_restitution(restitution)
-        given: dict[str, Values]
-        if isinstance(motion, Record):
-            reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
-            given = {"scale": 1.0 if scale is None else scale}
-        else:
-            reject_given("a pulse: state `peak_acceleration`", scale=scale)
-            strength = needed("a pulse", peak_acceleration=peak_acceleration)
-            given = {"peak_acceleration": strength, "period": needed("a pulse", period=period)}
-        checked = {name: check(STRENGTHS[name], value) for name, value in given.items()}
-        if isinstance(motion, Record):
-            acceleration, times = checked["scale"] * motion.peak_acceleration, np.ones(())
-        else:
-            acceleration, times = checked["peak_acceleration"], checked["period"]
-        if eta is not None:
-            given["restitution"], checked["restitution"] = restitution, eta
-        broadcast({**self.parameters, **given}, [*self.parameters.values(), *checked.values()])
-        made = motion if isinstance(motion, Record) else as_pulse(motion)
-        index = index_of(*given.values()) or self.index
-        return BodyProblem(self, made, acceleration, times, eta, index), checked
 
     def _need_one(self, name: str, restitution: Scalar, **numbers: Scalar | None) -> None:
         """Refuse an array of bodies, and arrays as arguments that are one number."""
@@ -463,8 +416,3 @@ def _respond_part(make: Callable[..., RespondingBody], own: tuple[str, ...], mot
     """The response to arguments as arrays, of the body that `make` makes from those of them that are its own."""
     body = make(**{name: values.pop(name) for name in own})
     return RespondingBody.response(body, motion, **values)
-
-
-def as_numbers(**given: Any) -> dict[str, Any]:
-    """The arguments, if each is one number or text or None; empty otherwise."""
-    return {} if any(np.ndim(getattr(value, "magnitude", value)) for value in given.values()) else given

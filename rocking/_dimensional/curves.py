@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError, in_range, integer, positive
 from rocking._base.units import Scalar
 from rocking._boundary.tracing import overturning_boundary, trace_curves
-from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of, restitution_of
-from rocking._excitation.pulses import AbstractPulse
+from rocking._dimensional.problem import Problem, frequency_ratio_of, period_of
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, reactions_of
 from rocking._history.motion import SamplesMotion
@@ -29,9 +27,11 @@ from rocking._solver.bounded_response import solve_with_bound
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rocking._dimensional.response import BodyResponse
+
 
 def block_history(
-    problem: BlockProblem,
+    problem: Problem,
     *,
     duration: Scalar | None = None,
     samples: int | None = None,
@@ -54,7 +54,7 @@ def block_history(
     return in_si_units(found, problem)
 
 
-def in_si_units(found: xr.Dataset, problem: BlockProblem) -> xr.Dataset:
+def in_si_units(found: xr.Dataset, problem: Problem) -> xr.Dataset:
     """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
     about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
     if isinstance(problem.motion, Record):
@@ -87,7 +87,7 @@ def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
 
 
 def body_history(
-    problem: BodyProblem,
+    problem: Problem,
     *,
     duration: float | None = None,
     samples: int | None = None,
@@ -127,7 +127,7 @@ def body_history(
     attributes: dict[str, Any] = {
         "motion": problem.motion.name,
         "body": body.description,
-        "peak_acceleration": float(problem.acceleration),
+        "peak_acceleration": float(problem.peak_acceleration),
         "outcome": Outcome(int(record["outcome"])).name,
         "impacts": int(record["impacts"]),
         "alpha": alpha,
@@ -158,12 +158,12 @@ def body_history(
     )
 
 
-def block_spectrum(problem: BlockProblem, period: NDArray[np.float64], stop: StopFlag | None = None) -> xr.Dataset:
+def block_spectrum(problem: Problem, period: NDArray[np.float64], stop: StopFlag | None = None) -> xr.Dataset:
     """Peak rotation of a block against the period of the pulse, in SI units.
 
     Parameters
     ----------
-    problem : BlockProblem
+    problem : Problem
         The block and the pulse, whose own period is not read.
     period : float array (periods,)
         T_p [s], > 0.
@@ -199,36 +199,36 @@ def block_spectrum(problem: BlockProblem, period: NDArray[np.float64], stop: Sto
     )
 
 
-def block_boundary(
-    block: AbstractBlock,
-    pulse: str | AbstractPulse,
-    *,
-    restitution: Scalar = "momentum",
-    period: tuple[float, float] | None = None,
-    stop: StopFlag | None = None,
-) -> xr.Dataset:
-    """Boundary curves of overturning of a block: peak acceleration against period.
+def over_axis(found: BodyResponse, axis: str, along: NDArray[np.float64]) -> xr.Dataset:
+    """The responses of one body over periods [s], or of its sizes, as a data set with this axis."""
+    data = found.to_xarray()
+    kept = data.drop_vars([one for one in data.coords if one not in ("period", "peak_acceleration", "scale")])
+    kept = kept.drop_vars(axis, errors="ignore").rename({data["rotation"].dims[0]: axis})
+    about = {"units": "s", "long_name": "period"}
+    if axis == "size":
+        about = {"units": "1", "long_name": "factor of all lengths"}
+    return kept.assign_coords({axis: (axis, along, about)})
 
-    The other arguments and the errors are those of `rocking.Block.boundary`.
 
-    Returns
-    -------
-    xarray.Dataset
-        As `rocking.overturning_boundary`, with peak_acceleration(point) [m/s2] and period(point) [s] beside the groups.
-    """
+def block_boundary(problem: Problem, period: tuple[float, float] | None, stop: StopFlag | None = None) -> xr.Dataset:
+    """Boundary curves of overturning of a block: peak acceleration against period, as of `rocking.Block.boundary`."""
+    block, groups = problem.block, problem.groups
     window = frequency_window(period, lambda one: frequency_ratio_of(block, one))
-    eta = restitution_of(block, restitution)
-    found = overturning_boundary(pulse, restitution=eta, alpha=block.equation_alpha, frequency_ratio=window, stop=stop)
+    found = overturning_boundary(
+        problem.pulse, restitution=groups["restitution"], alpha=groups["alpha"], frequency_ratio=window, stop=stop
+    )
     return add_si_axes(found, block)
 
 
-def body_boundary(problem: BodyProblem, window: tuple[float, float], stop: StopFlag | None = None) -> xr.Dataset:
-    """Boundary curves of one body as of `rocking.RigidBody`, in a window of frequency ratios to the right edge."""
+def body_boundary(problem: Problem, period: tuple[float, float] | None, stop: StopFlag | None = None) -> xr.Dataset:
+    """The same of one body whose edges differ."""
     body, eta = problem.body, float(problem.cells["eta"][0, 0])
+    unit = 2.0 * math.pi / float(body.right.frequency_parameter)
+    window = frequency_window(period, lambda one: unit / one)
     curves = trace_curves(problem.solver(0, stop), eta, window, (0.02, 1.0))
     uplift = float(body.uplift_acceleration)
     curves.attrs |= {"pulse": problem.motion.name, "body": body.description, "uplift_acceleration": uplift}
-    return with_si_axes(curves, uplift, 2.0 * math.pi / float(body.right.frequency_parameter))
+    return with_si_axes(curves, uplift, unit)
 
 
 def frequency_window(

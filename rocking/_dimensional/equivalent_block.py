@@ -17,8 +17,8 @@ from typing import Self, final
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.units import Scalar
-from rocking._dimensional.block import RespondingBlock
-from rocking._model.block import RectangularBlock
+from rocking._dimensional.body import RespondingBody
+from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.checks import check_number
 from rocking._model.linkage import LinearEquation
 from rocking._model.masonry_arch import MasonryArch
@@ -26,8 +26,8 @@ from rocking._model.parameters import FREQUENCY_PARAMETER, RESTITUTION
 
 
 @final
-@dataclass(frozen=True, init=False, repr=False)
-class EquivalentBlock(RespondingBlock):
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class EquivalentBlock(AbstractBlock, RespondingBody):
     """The block that rocks like a structure; it is accepted wherever a `Block` is.
 
     `width` and `height` are those of the rectangular block of this alpha and p. Contact forces and friction
@@ -90,8 +90,7 @@ class EquivalentBlock(RespondingBlock):
         if uplift_acceleration is not None:
             uplift = positive("uplift_acceleration", uplift_acceleration, "m/s2")
             own |= {"uplift_acceleration": uplift, "equation_alpha": 0.0}
-        for name, value in own.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+        vars(self).update(own)  # it is frozen
 
     @property
     def description(self) -> str:
@@ -175,7 +174,7 @@ class EquivalentBlock(RespondingBlock):
         InvalidArgumentError
             If `mass_ratio` is out of range, or the frame would bounce at impacts.
         """
-        if not isinstance(column, RectangularBlock):
+        if getattr(column, "shape", None) != () or not isinstance(column, RectangularBlock):
             raise InvalidArgumentError("column", column, "a rocking.Block")
         mass_ratio = number("mass_ratio", mass_ratio, 0.0, math.inf, closed="left")
         alpha, inertia = column.alpha, 1.0 + 3.0 * mass_ratio

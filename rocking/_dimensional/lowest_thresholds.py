@@ -22,8 +22,7 @@ from rocking._boundary.scan import (
 )
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.search import RESOLUTION, refine_brackets
-from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.problem import HIGHEST_SCALE
+from rocking._dimensional.problem import HIGHEST_SCALE, Problem
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -85,7 +84,7 @@ class _Nodes(Nodes):
 
 
 def lowest_thresholds(
-    problem: BodyProblem, highest: Array | float, stop: StopFlag | None = None, *, resolution: float = SCAN_RESOLUTION
+    problem: Problem, highest: Array | float, stop: StopFlag | None = None, *, resolution: float = SCAN_RESOLUTION
 ) -> Array:
     """The lowest peak acceleration of a motion that overturns each body of a problem, whose own one is not read.
 
@@ -96,7 +95,7 @@ def lowest_thresholds(
 
     Parameters
     ----------
-    problem : BodyProblem
+    problem : Problem
         The bodies and the motion.
     highest : float array
         Highest peak acceleration searched, which broadcasts with the problem [m/s2]; under a pulse at most `HIGHEST`
@@ -115,13 +114,13 @@ def lowest_thresholds(
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
     if isinstance(motion, Record):
         peak = motion.peak_acceleration
-        lines = replace(problem, acceleration=np.full(shape, peak))
+        lines = replace(problem, peak_acceleration=np.full(shape, peak))
         start, limit = record_range(lines)
         factor = np.broadcast_to(highest, shape).ravel() / peak
         found = lowest_overturning(record_lines(lines, stop), start, factor, limit, resolution=resolution, stop=stop)
         return found.reshape(shape) * peak
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
-    cells = replace(problem, acceleration=np.asarray(uplift)).cells
+    cells = replace(problem, peak_acceleration=np.asarray(uplift)).cells
     top = (np.broadcast_to(highest, shape) / uplift).ravel()
     count = np.minimum(np.searchsorted(-GRID, -1.0 / np.maximum(top, 1.0)) + 1, GRID.size)  # nodes up to the highest
 
@@ -134,7 +133,7 @@ def lowest_thresholds(
     return found.reshape(shape) * uplift
 
 
-def record_lines(problem: BodyProblem, stop: StopFlag | None = None) -> SolveLines:
+def record_lines(problem: Problem, stop: StopFlag | None = None) -> SolveLines:
     """The bodies of a problem under its record at the factor 1, as lines of other factors."""
     cells = problem.cells
 
@@ -148,7 +147,7 @@ def record_lines(problem: BodyProblem, stop: StopFlag | None = None) -> SolveLin
     return solve
 
 
-def record_range(problem: BodyProblem) -> tuple[Array, Array]:
+def record_range(problem: Problem) -> tuple[Array, Array]:
     """Factors of a record at which each body uplifts, and at which the vertical acceleration reaches -g; (size,).
 
     Uplift of an edge is where the horizontal acceleration over g tan(alpha_s) of the other reaches 1 + w/g
@@ -156,7 +155,7 @@ def record_range(problem: BodyProblem) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    problem : BodyProblem
+    problem : Problem
         Bodies under a record at the factor 1.
     """
     record: Any = problem.motion

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rocking._boundary.frequency import critical_frequency_ratio
-from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.problem import Problem
 from rocking._dimensional.threshold import Threshold
 from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag
@@ -101,7 +101,7 @@ class Margins:
 
 
 def margins_of(
-    problem: BlockProblem,
+    problem: Problem,
     accelerations: Iterable[Threshold],
     stop: StopFlag | None = None,
     served: tuple[float, float] = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper),
@@ -110,7 +110,7 @@ def margins_of(
 
     Parameters
     ----------
-    problem : BlockProblem
+    problem : Problem
         The block and the pulse.
     accelerations : iterable of Threshold
         As `block_thresholds` finds them.

@@ -1,10 +1,16 @@
-"""A block under a pulse or a record in SI units, and its groups. Both components of a record have the same factor."""
+"""Bodies under a pulse or a record in SI units; both components of a record have the same factor.
+
+One block with numbers for its arguments is solved in groups, with a bound of the error under a pulse; arrays, and
+bodies whose edges differ, are solved by their two edges. `Problem.of` checks what a user gives, once: below it there
+are floats and arrays.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from numbers import Real
 from typing import Any
 
@@ -12,89 +18,168 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, needed, number, positive, reject_given
+from rocking._base.equality import EqualByValue
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, number, reject_given
+from rocking._base.parameter import Parameter
 from rocking._base.units import Scalar, Values
+from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale, reject_flight
-from rocking._history.motion import BodyMotion, build_motion, build_record_motion
+from rocking._history.motion import (
+    FREE_DURATION,
+    BodyMotion,
+    PulseMotion,
+    SamplesMotion,
+    build_motion,
+    build_record_motion,
+)
 from rocking._model.block import AbstractBlock
+from rocking._model.body import AbstractBody
 from rocking._model.checks import check, check_number
-from rocking._model.parameters import RESTITUTION
+from rocking._model.fields import SOLVED_FIELDS
+from rocking._model.labelled import Index, index_of
+from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
-from rocking._solver.records.record_response import record_response
+from rocking._numba.compilation import Record as KernelRecord
+from rocking._solver.bodies import outcome_margin_of, solve_motion
+from rocking._solver.bounded_response import BoundedResponse, solve_checked
+from rocking._solver.records.record_response import frequency_parameter_range, pulse_rows, record_response
+from rocking._solver.records.samples import motion_samples
+from rocking._solver.state import BODY_CELL
+
+Array = NDArray[np.float64]
+
+Motion = str | AbstractPulse | Record
 
 HIGHEST_SCALE = 1e6
 """Largest factor of a record [-]."""
 
+STRENGTHS = {
+    "peak_acceleration": Parameter("peak_acceleration", "a_g", "m/s2", 0.0, math.inf, "neither", "peak acceleration"),
+    "period": Parameter("period", "T_p", "s", 0.0, math.inf, "neither", "period of the pulse"),
+    "scale": Parameter("scale", "", "-", 0.0, HIGHEST_SCALE, "right", "factor of a record"),
+}
+"""Arguments that say how strong and how long a motion is."""
 
-@dataclass(frozen=True, init=False)
-class BlockProblem:
-    """A block under a ground motion.
 
-    Parameters
+@dataclass(frozen=True, eq=False)
+class Problem(EqualByValue):
+    """Bodies under a ground motion; floats for one block under one motion, otherwise arrays that broadcast.
+
+    Attributes
     ----------
-    block : AbstractBlock
-        The block.
-    motion : str, AbstractPulse or Record
-        The pulse, or the record without its factor.
-    peak_acceleration : float
-        a_g [m/s2], > 0, of a pulse. A number without unit that is small enough to be one in g gives a warning.
-    period : float
-        T_p = 2 pi/omega_g [s], > 0, of a pulse; 1 for a record. `duration` is how long the motion lasts.
-    restitution : float or "momentum"
-        eta [-], [0, 1]; or that of (2.4), 0 where it is negative: None as an attribute.
-    scale : float
-        Factor of a record, of both its components [-], (0, 1e6]; 1 by default, and for a pulse.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, missing, or has no meaning for the kind of motion; if the vertical acceleration
-        times the factor reaches -g.
+    body : AbstractBody
+        One body or an array of them.
+    motion : AbstractPulse or Record
+        The ground motion, a record without its factor.
+    peak_acceleration : float or float array [m/s2]
+        Largest horizontal acceleration, > 0; of a record times its factor.
+    period : float or float array [s]
+        T_p = 2 pi/omega_g of a pulse, > 0; 1 for a record. `duration` is how long the motion lasts.
+    restitution : float or float array, or None
+        eta of every impact [-], [0, 1]; None: by angular momentum, 0 where that is negative.
+    scale : float or float array
+        Factor of a record, of both its components [-]; 1 for a pulse.
+    arguments : mapping of str to array
+        The arguments that were given, before broadcasting, for the coordinates of exports; nothing for one block.
+    index : (name, labels) or None
+        Index of the last axis if an argument was a series (pandas).
+    unit_is_stated : bool
+        Whether the peak acceleration was no plain number.
     """
 
-    block: AbstractBlock
+    body: AbstractBody
     motion: AbstractPulse | Record
-    peak_acceleration: float
-    period: float
-    restitution: float | None
-    scale: float
-    unit_is_stated: bool = field(compare=False, repr=False)
+    peak_acceleration: Any
+    period: Any
+    restitution: Any
+    scale: Any = 1.0
+    arguments: Mapping[str, Array] = field(default_factory=dict, compare=False, repr=False)
+    index: Index | None = field(default=None, compare=False, repr=False)
+    unit_is_stated: bool = field(default=True, compare=False, repr=False)
 
-    def __init__(
-        self,
-        block: AbstractBlock,
-        motion: str | AbstractPulse | Record,
-        peak_acceleration: Scalar | None = None,
-        period: Scalar | None = None,
-        restitution: Scalar = "momentum",
+    @classmethod
+    def of(
+        cls,
+        body: AbstractBody,
+        motion: Motion,
+        peak_acceleration: Values | None = None,
+        period: Values | None = None,
+        restitution: Values = "momentum",
         *,
-        scale: Scalar | None = None,
-    ) -> None:
-        made = motion if isinstance(motion, Record) else as_pulse(motion)
-        if isinstance(made, Record):
+        scale: Values | None = None,
+        flies: bool = False,
+    ) -> Problem:
+        """The checked problem; arguments as of `rocking.Block.response`.
+
+        `flies`: the strength is not read, its vertical acceleration may reach -g.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast;
+            for one block, if the vertical acceleration times the factor reaches -g.
+        """
+        given: dict[str, Any]
+        if isinstance(motion, Record):
             reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
-            factor = checked_scale(1.0 if scale is None else scale, made, block)
-            strength, length = factor * made.peak_acceleration, 1.0
+            given = {"scale": 1.0 if scale is None else scale}
         else:
+            motion = as_pulse(motion)
             reject_given("a pulse: state `peak_acceleration`", scale=scale)
-            given = needed("a pulse", peak_acceleration=peak_acceleration)
-            strength, factor = positive("peak_acceleration", given, "m/s2"), 1.0
-            length = positive("period", needed("a pulse", period=period), "s")
-        checked = {
-            "block": block,
-            "motion": made,
-            "peak_acceleration": strength,
-            "period": length,
-            "restitution": checked_restitution(restitution, check_number),
-            "scale": factor,
-            "unit_is_stated": not isinstance(peak_acceleration, Real),
-        }
-        for name, value in checked.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+            given = {"peak_acceleration": peak_acceleration, "period": period}
+            for name, value in given.items():
+                needed("a pulse", **{name: value})
+        one = body.is_block and are_numbers(*given.values(), restitution)
+        eta = None
+        if not (isinstance(restitution, str) and restitution == "momentum"):
+            eta = checked_restitution(restitution, check_number if one else check)
+        stated = not isinstance(peak_acceleration, Real)
+        if one:
+            values: dict[str, Any] = {}
+            for name, value in given.items():
+                about = STRENGTHS[name]
+                values[name] = number(name, value, about.lower, about.upper, closed=about.closed, unit=about.unit)
+            made = cls(body, motion, *_strength(motion, values), eta, values.get("scale", 1.0), unit_is_stated=stated)
+            if not flies:
+                made.reject_flight()
+            return made
+        values = {name: check(STRENGTHS[name], value) for name, value in given.items()}
+        peak, times = _strength(motion, values)
+        if eta is not None:
+            given["restitution"], values["restitution"] = restitution, eta
+        broadcast({**body.parameters, **given}, [*body.parameters.values(), *values.values()])
+        arguments = {name: value for name, value in (body.parameters | values).items() if value.size}
+        index = index_of(*given.values()) or body.index
+        return cls(body, motion, peak, times, eta, values.get("scale", 1.0), arguments, index, stated)
+
+    @cached_property
+    def is_block(self) -> bool:
+        """Whether it is one block with numbers for its arguments, which is solved in groups."""
+        return self.body.is_block and isinstance(self.peak_acceleration, float)
+
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """Broadcast shape of the bodies and the arguments; () for one body under one motion."""
+        if self.is_block:
+            return ()
+        eta = np.shape(self.restitution)
+        return np.broadcast_shapes(self.body.shape, np.shape(self.peak_acceleration), np.shape(self.period), eta)
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """The kinds of responses, as of `rocking._model.fields.KINDS`."""
+        motion = "record" if isinstance(self.motion, Record) else "pulse"
+        return frozenset((motion, "block" if self.is_block else "edges", *(["many"] if self.shape else [])))
+
+    @property
+    def block(self) -> AbstractBlock:
+        """The body, where it is a block."""
+        if not isinstance(self.body, AbstractBlock):
+            raise InvalidArgumentError("body", self.body, "a block")
+        return self.body
 
     @property
     def pulse(self) -> AbstractPulse:
@@ -104,14 +189,7 @@ class BlockProblem:
         return self.motion
 
     @property
-    def record(self) -> Record:
-        """The motion, where it is a record."""
-        if not isinstance(self.motion, Record):
-            raise InvalidArgumentError("motion", self.motion, "a record")
-        return self.motion
-
-    @property
-    def duration(self) -> float:
+    def duration(self) -> Any:
         """Duration of the motion [s]; of the half sine and the rectangular pulse half a period, of the sine one."""
         motion = self.motion
         if isinstance(motion, Record):
@@ -123,16 +201,23 @@ class BlockProblem:
         """Whether the peak acceleration, a number without unit, was probably meant in g; and remarks on a record."""
         if isinstance(self.motion, Record):
             return [*self.motion.remarks]
-        a, uplift = self.peak_acceleration, self.block.uplift_acceleration
+        a, uplift = float(self.peak_acceleration), float(self.body.uplift_acceleration)
         if self.unit_is_stated or not a < uplift < a * STANDARD_GRAVITY:
             return []
         text = f"peak_acceleration = {a:.4g} m/s2 is below the uplift acceleration {uplift:.4g} m/s2"
         return [f"{text}; if it was meant in g, write '{a:.4g} g'"]
 
-    @property
+    @cached_property
     def groups(self) -> dict[str, Any]:
-        """The groups, restitution and alpha of the equation of motion, as keyword arguments of `peak_response`."""
-        block, eta = self.block, self.block.inelastic_restitution if self.restitution is None else self.restitution
+        """Of one block: groups, restitution and alpha of the equation of motion, keyword arguments of `peak_response`.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If a group is out of range.
+        """
+        block = self.block
+        eta = block.inelastic_restitution if self.restitution is None else self.restitution
         if isinstance(self.motion, Record):
             return record_groups(self.motion, block, self.scale, eta)
         return {
@@ -142,18 +227,159 @@ class BlockProblem:
             "alpha": block.equation_alpha,
         }
 
-    def solve(self, stop: StopFlag | None = None) -> Response | BoundedResponse:
-        """The response in groups, arrays of shape (); under a pulse with a bound of its error."""
-        if isinstance(self.motion, Record):
-            return record_response(self.motion, **self.groups, stop=stop)
-        return solve_with_bound(self.motion, **self.groups, stop=stop)
+    @cached_property
+    def cells(self) -> NDArray[np.void]:
+        """The cells `BODY_CELL` of the solver (size,), not to be changed.
 
-    def block_motion(self, stop: StopFlag | None = None, **changed: float) -> BodyMotion:
-        """The motion of the block as a function of time; with other groups where some are given."""
-        groups = self.groups | changed
+        Raises
+        ------
+        InvalidArgumentError
+            If an edge or a ratio of frequencies is out of range, or the equation of motion is linear.
+        """
+        body, right, left = self.body, self.body.right, self.body.left
+        if body.is_linear:
+            allowed = "solved with numbers, not arrays: its equation of motion is linear"
+            raise InvalidArgumentError("body", body.description, allowed)
+        for name, edge in (("right", right), ("left", left)):
+            in_range(f"alpha of the {name} edge", edge.alpha, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
+            in_range(f"restitution of the {name} edge", edge.restitution, -math.inf, 1.0, closed="right")
+        p = right.frequency_parameter
         if isinstance(self.motion, Record):
-            return build_record_motion(self.motion, **groups, stop=stop)
-        return build_motion(self.motion, **groups, stop=stop)
+            in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
+        else:
+            check(FREQUENCY_RATIO, 2.0 * math.pi / (self.period * p))
+        etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
+        unit = self.motion.time_step * p if isinstance(self.motion, Record) else 2.0 * math.pi / (self.period * p)
+        columns = {
+            "rate": unit,
+            "vertical": self.vertical_scale,
+            "alpha": right.alpha,
+            "ratio": left.alpha / right.alpha,
+            "stiffness": (left.frequency_parameter / p) ** 2,
+        }
+        cells = np.zeros(self.shape, BODY_CELL)
+        for name, value in columns.items():
+            cells[name] = value
+        for side, edge in enumerate((right, left)):
+            cells["slenderness"][..., side] = body.gravity * np.tan(edge.alpha) / self.peak_acceleration  # (5.3)
+            cells["eta"][..., side] = np.maximum(etas[side], 0.0)  # departs from (2.4) where that is negative
+        return cells.ravel()
+
+    @property
+    def vertical_scale(self) -> Array:
+        """Factor of the vertical component of a record, over the standard gravity [-]; 0 without one."""
+        if not isinstance(self.motion, Record) or self.motion.vertical is None:
+            return np.zeros(())
+        scale = self.peak_acceleration / self.motion.peak_acceleration
+        return np.asarray(scale * (STANDARD_GRAVITY / self.body.gravity))
+
+    def solve(
+        self, threads: int | None = None, stop: StopFlag | None = None
+    ) -> tuple[Response | BoundedResponse, Array | None]:
+        """The response in groups, and what differs from edge to edge, as of `rocking._solver.bodies.solve_motion`.
+
+        Of one block under a pulse with a bound of its error, and nothing for each edge; refused where the vertical
+        acceleration reaches -g.
+        """
+        motion, body = self.motion, self.body
+        if not self.is_block:
+            records, edges = self.solve_edges(threads, stop)
+            fields: dict[str, Any] = {one.name: records[one.name].reshape(self.shape) for one in SOLVED_FIELDS}
+            return Response(**fields, pulse=motion.name, motion=motion, body=body), edges
+        if isinstance(motion, Record):
+            return record_response(motion, **self.groups, stop=stop, body=body), None
+        return self.solve_with_bound(threads, stop), None
+
+    def solve_with_bound(self, threads: int | None = None, stop: StopFlag | None = None) -> BoundedResponse:
+        """The response of one block to a pulse in groups, with a bound of its error."""
+        groups = self.groups
+        s, w, alpha = groups["slenderness"], groups["frequency_ratio"], groups["alpha"]
+        low, high = SLENDERNESS.lower, FREQUENCY_RATIO.upper
+        if not (low < s < math.inf and FREQUENCY_RATIO.lower < w < high and not 0.0 < alpha < SMALLEST_ALPHA):
+            check(SLENDERNESS, s)
+            check(FREQUENCY_RATIO, w)
+            in_range("alpha", alpha or ALPHA.upper, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
+        return solve_checked(self.pulse, s, w, groups["restitution"], alpha, self.body, threads, stop)
+
+    def solve_edges(self, threads: int | None = None, stop: StopFlag | None = None) -> tuple[NDArray[np.void], Array]:
+        """`rocking._solver.bodies.solve_motion` of `cells`; refused where the vertical acceleration reaches -g."""
+        self.reject_flight()
+        return solve_motion(self.motion, self.cells, threads, stop)
+
+    def solver(self, index: int = 0, stop: StopFlag | None = None) -> Solve:
+        """One of the bodies as a `Solve`: slenderness over that of uplift, `rate` of the cell; eta is not read."""
+        cell: KernelRecord = self.cells[index]
+        uplift = cell["slenderness"] / cell["slenderness"].min()
+        vertical = cell["vertical"] * cell["slenderness"].min()  # at uplift
+
+        def solve(slenderness: Array, omega: Array, eta: Array) -> tuple[NDArray[np.void], Array]:
+            cells = np.repeat(cell, eta.size)
+            cells["rate"], cells["slenderness"] = omega, slenderness[:, None] * uplift
+            cells["vertical"] = vertical / slenderness
+            records, edges = solve_motion(self.motion, cells, None, stop)
+            return records, outcome_margin_of(records, edges, cells)
+
+        return solve
+
+    def body_motion(
+        self, duration: float | None = None, stop: StopFlag | None = None, index: int = 0, **changed: float
+    ) -> BodyMotion:
+        """The motion of one of the bodies over time, up to a duration [s] or 8/p after the ground motion.
+
+        Of one block with other groups where some are `changed`, and without a duration.
+        """
+        motion = self.motion
+        if self.is_block:
+            build: Callable[..., BodyMotion] = build_record_motion if isinstance(motion, Record) else build_motion
+            return build(motion, **self.groups | changed, stop=stop)
+        self.reject_flight()
+        cell: KernelRecord = self.cells[index : index + 1].copy()[0]
+        edges, place = (self.body.right, self.body.left), np.unravel_index(index, self.shape)
+
+        def own(values: Array) -> float:
+            return float(np.broadcast_to(values, self.shape)[place])
+
+        inertia = own(edges[0].inertia_ratio), own(edges[1].inertia_ratio)
+        tilt, p = own(self.body.tilt), own(edges[0].frequency_parameter)
+        if isinstance(motion, Record):
+            end, rows = p * motion.duration, motion_samples(motion)
+        else:
+            end = (motion.end - motion.start) / float(cell["rate"])
+        horizon = end + FREE_DURATION if duration is None else p * duration
+        if not isinstance(motion, Record):
+            if motion.samples is None:
+                return PulseMotion(cell, horizon, stop, motion, inertia_ratio=inertia, tilt=tilt)
+            rows = pulse_rows(motion, float(cell["rate"]))
+            cell["rate"] = 1.0 / cell["rate"]
+        return SamplesMotion(cell, horizon, stop, rows, inertia_ratio=inertia, tilt=tilt)
+
+    def reject_flight(self) -> None:
+        """Refuse a factor of a record at which its vertical acceleration reaches -g."""
+        motion, gravity = self.motion, self.body.gravity
+        if not isinstance(motion, Record) or motion.vertical is None:
+            return
+        if self.is_block:
+            reject_flight("scale", motion, self.scale, float(gravity))
+            return
+        scale = np.asarray(self.peak_acceleration / motion.peak_acceleration)
+        for g in np.unique(gravity).tolist():
+            reject_flight("scale", motion, float(np.max(scale, where=np.asarray(gravity == g), initial=0.0)), g)
+
+
+def _strength(motion: AbstractPulse | Record, values: Mapping[str, Any]) -> tuple[Any, Any]:
+    """Peak acceleration [m/s2] and period [s] of checked arguments."""
+    if not isinstance(motion, Record):
+        return values["peak_acceleration"], values["period"]
+    scale = values["scale"]
+    return scale * motion.peak_acceleration, 1.0 if isinstance(scale, float) else np.ones(())
+
+
+def are_numbers(*arguments: Any) -> bool:
+    """Whether each argument is one number or text or None."""
+    for value in arguments:
+        if type(value) not in (float, int, str) and np.ndim(getattr(value, "magnitude", value)):
+            return False
+    return True
 
 
 def checked_restitution(restitution: Values, checked: Callable[..., Any] = check) -> Any:
@@ -175,17 +401,17 @@ def checked_restitution(restitution: Values, checked: Callable[..., Any] = check
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
     """The coefficient of restitution [-]: the number, or that of the geometry for "momentum"; `checked_restitution`."""
     eta = checked_restitution(restitution, check_number)
-    return block.inelastic_restitution if eta is None else float(eta)
+    return float(block.inelastic_restitution if eta is None else eta)
 
 
 def frequency_ratio_of(block: AbstractBlock, period: float) -> float:
     """omega = omega_g/p [-] of a period T_p [s]."""
-    return 2.0 * math.pi / period / block.frequency_parameter
+    return float(2.0 * math.pi / period / block.frequency_parameter)
 
 
 def period_of(block: AbstractBlock, frequency_ratio: float) -> float:
     """T_p [s] of a frequency ratio omega [-]."""
-    return 2.0 * math.pi / frequency_ratio / block.frequency_parameter
+    return float(2.0 * math.pi / frequency_ratio / block.frequency_parameter)
 
 
 def record_groups(
@@ -202,26 +428,13 @@ def record_groups(
     }
 
 
-def checked_scale(scale: Scalar, record: Record, block: AbstractBlock) -> float:
-    """The factor of a record [-].
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is not one number in (0, 1e6], or so large that the vertical acceleration reaches -g.
-    """
-    factor = number("scale", scale, 0.0, HIGHEST_SCALE, closed="right")
-    reject_flight("scale", record, factor, block.gravity)
-    return factor
-
-
 def uplift_scale(record: Record, block: AbstractBlock) -> float:
     """Smallest factor of a record at which a block uplifts [-]; 1e6 where the vertical component prevents it longer.
 
     Uplift is where |a|/(g tan alpha) reaches 1 + w/g: at a sample, since both are linear between samples.
     """
     if record.vertical is None:
-        return block.uplift_acceleration / record.peak_acceleration
+        return float(block.uplift_acceleration / record.peak_acceleration)
     excess = np.abs(record.acceleration) / block.uplift_acceleration - record.vertical / block.gravity
     largest = float(excess.max())
     return 1.0 / max(largest, 1.0 / HIGHEST_SCALE)

@@ -1,108 +1,315 @@
-"""The response of a block in SI units: rotation, displacement, outcome in words, margins and warnings."""
+"""Responses in SI units: fields, outcome in words, margins, contact with the ground, conditioning, warnings.
+
+A field is declared once, in `FIELDS`: attributes, exports, the columns of the command line and the models of the
+service derive from it. Margins, contact and warnings are found when they are first asked for.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from html import escape
-from typing import TYPE_CHECKING, Any
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
-from rocking._dimensional.assessment import SEARCH_SECONDS, Assessment, assess
-from rocking._dimensional.margins import Margins
-from rocking._dimensional.problem import BlockProblem
-from rocking._dimensional.thresholds import BodyThresholds
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.doubts import LARGEST_AMPLIFICATION, notes_of, resampled_response, warnings_of
+from rocking._dimensional.margins import Margins, margins_of
+from rocking._dimensional.problem import STRENGTHS, Problem
+from rocking._dimensional.thresholds import WORDS, BodyThresholds, block_thresholds, thresholds_of
 from rocking._excitation.records.record import Record
+from rocking._history.contact import ContactExtremes, contact_extremes
 from rocking._model.block import AbstractBlock
+from rocking._model.body import AbstractBody
 from rocking._model.fields import (
+    DERIVED_FIELDS,
     ERROR_BOUND,
     EXCEEDED_ALPHA,
     IMPACTS,
+    KINDS,
     OUTCOME,
     OVERTURNED,
     PEAK_ROTATION,
+    UPLIFT_TIME,
     ResponseField,
 )
+from rocking._model.labelled import with_index
 from rocking._model.outcome import Outcome
-from rocking._model.response import Response
-from rocking._numba.cancellation import StopFlag
+from rocking._model.parameters import FREQUENCY_RATIO
+from rocking._model.response import Response, along_own_axes, axis_names
+from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._solver.bounded_response import BoundedResponse
+from rocking._solver.records.amplification import record_amplification
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-ROTATION = ResponseField("rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns")
+Array = NDArray[np.float64]
+
+T = TypeVar("T")
+
+SEARCH_SECONDS = 12.0
+"""Time limit of the search along one line for one block [s]."""
+
+RELATIVE_OFFSET = 1e-9
+"""Relative distance below the lowest change of outcome at which the contact is judged [-]."""
+
+
+def _rotation(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> Any:
+    if "over_right" not in known:
+        return known["peak_rotation"] * body.alpha
+    return np.max(np.stack(_rotations(known, body)), axis=0)
+
+
+def _rotations(known: Mapping[str, Any], body: Any) -> tuple[Array, Array]:
+    """Peak rotations about the right and the left edge [rad]: z has the scale of the right one."""
+    alpha = body.right.alpha
+    return known["over_right"] * alpha, known["over_left"] * alpha
+
+
+def _edge(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> Any:
+    right, left = _rotations(known, body)
+    larger = np.where(right / body.right.alpha >= left / body.left.alpha, 1, -1)
+    larger = np.where(known["outcome"] == Outcome.NO_UPLIFT, 0, larger)
+    return np.where(known["overturned"], known["last_edge"], larger)
+
+
+ROTATION = ResponseField(
+    "rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns", derive=_rotation,
+    shown="peak_rotation_deg",
+)  # fmt: skip
 DISPLACEMENT = ResponseField(
-    "displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", "the block overturns"
-)
+    "displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", "the block overturns",
+    derive=lambda known, groups, motion, body: body.top_displacement(_rotation(known, groups, motion, body)),
+    shown="top_displacement",
+)  # fmt: skip
+
+ONE, EDGES, BLOCK = KINDS - {"many"}, KINDS - {"block"}, KINDS - {"edges", "many"}
+PULSES, RECORDS = BLOCK - {"record"}, BLOCK - {"pulse"}
+
+
+ARGUMENTS = ("scale", "peak_acceleration", "period", "slenderness", "frequency_ratio", "restitution")
+"""Fields that are arguments or groups of the problem."""
+
+
+def _about(
+    name: str, unit: str, equation: str, meaning: str, kinds: frozenset[str], of_body: str = ""
+) -> ResponseField:
+    """A number that is an argument, a group or a property of the body."""
+
+    def derive(_known: Any, groups: Any, _motion: Any, body: Any) -> Any:
+        return groups[name] if name in ARGUMENTS else attrgetter(of_body or name)(body)
+
+    return ResponseField(name, "f8", unit, equation, meaning, derive=derive, kinds=kinds)
+
 
 FIELDS = (
     ROTATION,
+    replace(ROTATION, name="rotation_left", meaning="peak rotation about the left edge", kinds=EDGES, shown="",
+            derive=lambda known, _groups, _motion, body: _rotations(known, body)[1]),
+    replace(ROTATION, name="rotation_right", meaning="peak rotation about the right edge", kinds=EDGES, shown="",
+            derive=lambda known, _groups, _motion, body: _rotations(known, body)[0]),
     DISPLACEMENT,
     OVERTURNED,
     OUTCOME,
+    ResponseField("edge", "i1", "1", "2.2",
+                  "edge of the largest rotation over alpha, or of overturning: 1 right, -1 left, 0 without uplift",
+                  kinds=EDGES, derive=_edge),
     IMPACTS,
     EXCEEDED_ALPHA,
     PEAK_ROTATION,
-    ERROR_BOUND,
-    ResponseField("width", "f8", "m", "2.1", "width 2b of the block"),
-    ResponseField("height", "f8", "m", "2.1", "height 2h of the block"),
-    ResponseField("half_diagonal", "f8", "m", "2.2", "half-diagonal R of the block"),
-    ResponseField("alpha", "f8", "rad", "2.1", "slenderness angle"),
-    ResponseField("frequency_parameter", "f8", "rad s-1", "2.2", "frequency parameter p"),
-    ResponseField("uplift_acceleration", "f8", "m s-2", "2.1", "smallest ground acceleration that starts rocking"),
-    ResponseField("scale", "f8", "1", "2.2", "factor of the record"),
-    ResponseField("peak_acceleration", "f8", "m s-2", "3.2", "peak ground acceleration a_g"),
-    ResponseField("period", "f8", "s", "3.2", "period T_p of the pulse"),
-    ResponseField("slenderness", "f8", "1", "5.3", "dimensionless slenderness g tan(alpha)/a_g"),
-    ResponseField("frequency_ratio", "f8", "1", "5.3", "frequency ratio omega_g/p"),
-    ResponseField("restitution", "f8", "1", "2.4", "coefficient of restitution eta"),
-)
-"""Fields of a response in SI units, in order; each is an attribute of the response, of its groups or of its block."""
+    replace(UPLIFT_TIME, unit="s", meaning="time of the first uplift", kinds=EDGES,
+            derive=lambda known, _groups, _motion, body: known["uplift_time"] / body.right.frequency_parameter),
+    replace(ERROR_BOUND, kinds=PULSES),
+    *DERIVED_FIELDS,
+    _about("width", "m", "2.1", "width 2b of the block", BLOCK),
+    _about("height", "m", "2.1", "height 2h of the block", BLOCK),
+    _about("half_diagonal", "m", "2.2", "half-diagonal R of the block", BLOCK),
+    _about("alpha", "rad", "2.1", "slenderness angle", BLOCK),
+    _about("alpha_left", "rad", "2.1", "slenderness angle of the left edge", ONE - {"block"}, "left.alpha"),
+    _about("alpha_right", "rad", "2.1", "slenderness angle of the right edge", ONE - {"block"}, "right.alpha"),
+    _about("frequency_parameter", "rad s-1", "2.2", "frequency parameter p", BLOCK),
+    _about("uplift_acceleration", "m s-2", "2.1", "smallest ground acceleration that starts rocking", ONE),
+    _about("scale", "1", "2.2", "factor of the record", ONE - {"pulse"}),
+    _about("peak_acceleration", "m s-2", "3.2", "peak ground acceleration a_g", ONE),
+    _about("period", "s", "3.2", "period T_p of the pulse", ONE - {"record"}),
+    _about("slenderness", "1", "5.3", "dimensionless slenderness g tan(alpha)/a_g", BLOCK),
+    _about("frequency_ratio", "1", "5.3", "frequency ratio omega_g/p", PULSES),
+    _about("restitution", "1", "2.4", "coefficient of restitution eta", BLOCK),
+)  # fmt: skip
+"""Fields of a response in SI units, in order; each is an attribute of the responses of its kinds."""
 
-OF_PULSES, OF_RECORDS = ("error_bound", "period", "frequency_ratio"), ("scale",)
-"""Names of the fields of one kind of motion only."""
+
+def _judged(
+    name: str, meaning: str, missing: str = "", *, dtype: str = "f8", unit: str = "1", kinds: frozenset[str] = ONE,
+    source: Callable[[BodyResponse], Any] | None = None,
+) -> tuple[ResponseField, Callable[[BodyResponse], Any]]:  # fmt: skip
+    """A value that is found only when it is asked for: an attribute of the response, or a function of it."""
+    return ResponseField(name, dtype, unit, "", meaning, missing, kinds=kinds), source or attrgetter(name)
+
+
+_UNKNOWN = "it lifts off, or the forces are not known"
+
+JUDGED = dict((
+    _judged("meaning", "the outcome in words; where the rocking model does not apply, first of all that and why",
+            dtype="U", source=lambda found: found.sentence),
+    _judged("margin", "from which strength of the motion it overturns, or below which it does not, in words",
+            "that was not asked for", dtype="U"),
+    _judged("rocking_model_applies", "false: pure rocking needs a coefficient of friction beyond 1, or the body lifts "
+            "off; what is said of its rocking and overturning then does not hold for a body that is free to do so",
+            dtype="?"),
+    _judged("friction_demand", "coefficient of friction that pure rocking needs, impacts excluded; if it overturns, "
+            "until it passes alpha for good", _UNKNOWN, source=lambda found: found.contact.largest_friction_demand),
+    _judged("friction_at_impact", "ratio of the horizontal to the vertical impulse at its impacts, 0 without impacts",
+            "it is not known", source=lambda found: found.contact.impulse_ratio),
+    _judged("smallest_normal_reaction", "normal reaction over the weight; 0 and below: it lifts off",
+            "it is not known", source=lambda found: found.contact.smallest_normal_reaction),
+    _judged("lifts_off", "whether pure rocking would need a tensile reaction of the ground", dtype="?",
+            source=lambda found: found.contact.lifts_off),
+    _judged("friction_at_uplift", "coefficient of friction below which it slides instead of rocking", kinds=BLOCK,
+            source=lambda found: found.block.half_width / found.block.half_height),
+    _judged("pulse_duration", "duration of the pulse", unit="s", kinds=ONE - {"record"},
+            source=lambda found: float(found.problem.duration)),
+    _judged("largest_safe_acceleration", "peak acceleration below which this block, of this size, does not overturn "
+            "under this pulse at this period; a smaller block of the same shape may", "no change of outcome was found, "
+            "or the rocking model does not apply just below the lowest of `thresholds`, see `warnings`",
+            unit="m s-2", kinds=PULSES),
+    _judged("largest_safe_friction_demand", "coefficient of friction that it needs just below that acceleration",
+            "that is null, or it is not known", kinds=PULSES),
+    _judged("nearest_acceleration", "peak acceleration nearest in its logarithm at which the outcome changes",
+            "none was found", unit="m s-2", kinds=PULSES,
+            source=lambda found: found.margins and found.margins.nearest_acceleration),
+    _judged("nearest_period", "period nearest in its logarithm at which the outcome changes", "none was found",
+            unit="s", kinds=PULSES, source=lambda found: found.margins and found.margins.nearest_period),
+    _judged("overturning_scale", "lowest factor of the record found at which it overturns", "none was found, or it was "
+            "not asked for; narrower ranges than 0.2 % can be missed", kinds=ONE - {"pulse"}),
+    _judged("amplification", "relative change of the peak rotation over that of the amplitude of the record",
+            "it overturns or does not uplift, or the outcome changes within 1e-9 of the amplitude", kinds=RECORDS),
+    _judged("peak_is_determined", "false: the amplification exceeds 1e4, the record does not determine the peak, see "
+            "`warnings`", dtype="?", kinds=RECORDS),
+    _judged("overturned_resampled", "the outcome under the record interpolated band-limited at an eighth of its step",
+            "it is too long, or its step too small", dtype="?", kinds=RECORDS,
+            source=lambda found: found.resampled and bool(found.resampled.overturned)),
+    _judged("peak_rotation_resampled", "peak of |theta|/alpha likewise", "it overturns, or that was not computed",
+            kinds=RECORDS, source=lambda found: found.resampled and float(found.resampled.peak_rotation)),
+    _judged("warnings", "where the answer is in doubt", dtype="O"),
+    _judged("notes", "what else is worth knowing", dtype="O"),
+))  # fmt: skip
+"""What is found of one body when it is asked for, in order."""
+
+SHOWN = (*(one for one in FIELDS if one.name not in STRENGTHS), *JUDGED)
+"""What the command line and the service show of one body, in order: without the strength of the motion."""
+
+
+class ResponseFields:
+    """The fields of responses in SI units: a float, int or bool of one body, an array of several."""
+
+    if TYPE_CHECKING:  # those of `FIELDS`, which are set below
+        rotation: Any
+        rotation_left: Any
+        rotation_right: Any
+        displacement: Any
+        overturned: Any
+        outcome: Any
+        edge: Any
+        impacts: Any
+        exceeded_alpha: Any
+        peak_rotation: Any
+        uplift_time: Any
+        error_bound: Any
+        residual_energy: Any
+        width: Any
+        height: Any
+        half_diagonal: Any
+        alpha: Any
+        alpha_left: Any
+        alpha_right: Any
+        frequency_parameter: Any
+        uplift_acceleration: Any
+        scale: Any
+        peak_acceleration: Any
+        period: Any
+        slenderness: Any
+        frequency_ratio: Any
+        restitution: Any
+
+
+for _field in FIELDS:
+    _cached = cached_property(partial(lambda found, about: found._value(about), about=_field))
+    _cached.__doc__ = _field.description("nan")
+    _cached.__set_name__(ResponseFields, _field.name)
+    setattr(ResponseFields, _field.name, _cached)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BlockResponse(EqualByValue):
-    """What happens to a block under a pulse or a record.
+class BodyResponse(ResponseFields, EqualByValue):
+    """What happens to bodies under a pulse or a record, in SI units.
 
-    Margins, contact forces and warnings are found when they are first asked for, in some hundredths of a second under a
-    pulse, some tenths under a record.
+    Its fields, those of `fields`, are attributes: numbers for one body under one motion, arrays of the broadcast shape
+    otherwise; `outcome` is a `rocking.Outcome`, or its codes. What concerns one body is found when it is first asked
+    for, in some hundredths of a second under a pulse, some tenths under a record, and refused for several: `sentence`,
+    `margin`, `margins`, `contact`, `warnings`, `notes`.
 
     Attributes
     ----------
     dimensionless : Response or BoundedResponse
-        The response in groups, arrays of shape (); under a pulse with a bound of its error.
-    problem : BlockProblem
-        The block and the motion.
+        The response in groups; of one block under a pulse with a bound of its error.
+    problem : Problem
+        Bodies and ground motion.
+    edges : float array (size, 4) or None
+        What differs from edge to edge, see `rocking._solver.state.EDGE_COLUMNS`; None for one block.
     searches_thresholds : bool
-        Whether the strengths at which the outcome changes are searched.
+        Whether the strengths at which the outcome changes are searched for sentences, warnings and margins.
+    seconds : float
+        Time limit of each search for one block [s].
+    served : (float, float)
+        Frequency ratios beyond which periods are not searched [-].
+    stop : StopFlag or None
+        Cancels also what is found later.
     """
 
     dimensionless: Response | BoundedResponse
-    problem: BlockProblem
+    problem: Problem
+    edges: Array | None = None
     searches_thresholds: bool = True
+    seconds: float = field(default=SEARCH_SECONDS, compare=False)
+    served: tuple[float, float] = field(default=(FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper), compare=False)
+    stop: StopFlag | None = field(default=None, compare=False)
 
     @property
     def fields(self) -> tuple[ResponseField, ...]:
-        """The fields of the exports, in order: those of `FIELDS` that the kind of motion has."""
-        others = OF_PULSES if isinstance(self.problem.motion, Record) else OF_RECORDS
-        return tuple(one for one in FIELDS if one.name not in others)
+        """The fields of this kind of response, in order."""
+        kinds = self.problem.kinds
+        return tuple(one for one in FIELDS if kinds <= one.kinds)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The broadcast shape of bodies and arguments; () for one body under one motion."""
+        return self.problem.shape
+
+    @property
+    def body(self) -> AbstractBody:
+        """The body, or the array of them."""
+        return self.problem.body
 
     @property
     def block(self) -> AbstractBlock:
-        """The block."""
+        """The body, where it is a block."""
         return self.problem.block
 
     @property
     def record(self) -> Record:
-        """The record, without its factor; not of a pulse."""
-        return self.problem.record
+        """The record without its factor, where the motion is one."""
+        if not isinstance(self.problem.motion, Record):
+            raise InvalidArgumentError("motion", self.problem.motion, "a record")
+        return self.problem.motion
 
     @property
     def motion(self) -> Mapping[str, str]:
@@ -110,185 +317,321 @@ class BlockResponse(EqualByValue):
         motion = self.problem.motion
         return {"record" if isinstance(motion, Record) else "pulse": motion.name}
 
-    @property
-    def scale(self) -> float:
-        """Factor of the record [-]; 1 for a pulse."""
-        return self.problem.scale
+    @cached_property
+    def _known(self) -> dict[str, Any]:
+        """What was solved, by name: arrays."""
+        found = self.dimensionless
+        known = {one: value for one, value in vars(found).items() if isinstance(value, np.ndarray)}
+        known[OVERTURNED.name] = found.overturned
+        if self.edges is not None:
+            known |= dict(zip(("over_right", "over_left", "side", "last_edge"), self._sides, strict=True))
+        return known
 
     @property
-    def peak_acceleration(self) -> float:
-        """Peak ground acceleration a_g [m/s2], of the scaled record."""
-        return self.problem.peak_acceleration
+    def _sides(self) -> Any:
+        return np.moveaxis(np.asarray(self.edges).reshape(*self.shape, -1), -1, 0)
 
-    @property
-    def period(self) -> float:
-        """Period T_p of the pulse [s]; 1 for a record."""
-        return self.problem.period
-
-    @property
-    def slenderness(self) -> float:
-        """g tan(alpha)/a_g [-]: depends on the motion, unlike h/b."""
-        return float(self.problem.groups["slenderness"])
-
-    @property
-    def frequency_ratio(self) -> float:
-        """omega_g/p [-]; of a pulse."""
-        return float(self.problem.groups["frequency_ratio"])
-
-    @property
-    def restitution(self) -> float:
-        """eta [-]."""
-        return float(self.problem.groups["restitution"])
-
-    @property
-    def outcome(self) -> Outcome:
-        """Final outcome by the rocking model."""
-        return Outcome(int(self.dimensionless.outcome))
-
-    @property
-    def overturned(self) -> bool:
-        """Whether the block overturns in the end."""
-        return bool(self.dimensionless.overturned)
-
-    @property
-    def impacts(self) -> int:
-        """Number of impacts until the outcome is certain, as `Response.impacts`."""
-        return int(self.dimensionless.impacts)
-
-    @property
-    def exceeded_alpha(self) -> bool:
-        """Whether |theta| passed alpha at some time."""
-        return bool(self.dimensionless.exceeded_alpha)
-
-    @property
-    def peak_rotation(self) -> float:
-        """Peak rotation max |theta|/alpha [-]; nan where the block overturns, 0 without uplift."""
-        return float(self.dimensionless.peak_rotation)
-
-    @property
-    def rotation(self) -> float:
-        """Peak rotation [rad]; nan where the block overturns, 0 without uplift."""
-        return self.peak_rotation * self.block.alpha
-
-    @property
-    def displacement(self) -> float:
-        """Largest horizontal displacement of a top corner [m]; nan where the block overturns."""
-        return self.block.top_displacement(self.rotation)
+    def _value(self, about: ResponseField) -> Any:
+        """The values of a field; a number of one body, the code of an outcome as an `Outcome`."""
+        problem, known = self.problem, self._known
+        if not problem.kinds <= about.kinds:
+            raise AttributeError(about.name)
+        if about in DERIVED_FIELDS:
+            value = getattr(self.dimensionless, about.name)
+        elif about.derive is None:
+            value = known[about.name]
+        else:
+            given = {name: getattr(problem, name) for name in ("peak_acceleration", "period", "scale")}
+            value = about.derive(known, (problem.groups if problem.is_block else {}) | given, problem.motion, self.body)
+        if self.shape:
+            return np.array(np.broadcast_to(value, self.shape), about.dtype)
+        one = np.asarray(value, about.dtype).reshape(()).item()
+        return Outcome(one) if about is OUTCOME else one
 
     @cached_property
-    def assessment(self) -> Assessment:
-        """Margins, contact forces, conditioning and warnings."""
-        return self.assess()
+    def thresholds(self) -> BodyThresholds | None:
+        """Peak accelerations [m/s2], or factors of the record, at which the outcome changes, for each body.
 
-    def assess(self, *, seconds: float = SEARCH_SECONDS, stop: StopFlag | None = None) -> Assessment:
-        """The assessment, with a time limit [s] of each search and a flag that cancels the work."""
-        return assess(self.problem, self.dimensionless, thresholds=self.searches_thresholds, seconds=seconds, stop=stop)
+        Of one block None if they are not searched, or not found in time.
+        """
+        problem = self.problem
+        if not problem.is_block:
+            return thresholds_of(problem, stop=self.stop)
+        return self._searched(lambda part: block_thresholds(problem, stop=part)) if self.searches_thresholds else None
+
+    @property
+    def changes(self) -> list[dict[str, Any]] | None:
+        """The thresholds of one body, of a record with the peak accelerations too, and whether it overturns above.
+
+        None if they are not searched, or not found in time.
+        """
+        found = self.thresholds if self.searches_thresholds else None
+        if found is None:
+            return None
+        peak = self.problem.motion.peak_acceleration if isinstance(self.problem.motion, Record) else 1.0
+        return [
+            {found.strength: one.value, "peak_acceleration": one.value * peak, "overturns_above": one.overturns_above}
+            for one in found
+        ]
+
+    def _searched(self, search: Callable[[StopFlag], T]) -> T | None:
+        return run_with_timeout(search, self.seconds, StopFlag() if self.stop is None else self.stop)
+
+    @cached_property
+    def contact(self) -> ContactExtremes:
+        """Extremes of the contact forces during the motion of one body.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If there are several bodies or motions.
+        """
+        return self._contact("contact")
+
+    @cached_property
+    def contact_below(self) -> ContactExtremes | None:
+        """The same just below the lowest of `thresholds`, of a block under a pulse; None if there is none."""
+        if not self._has_margins or not self.thresholds:
+            return None
+        lowest = self.block.uplift_acceleration / self.thresholds[0].value
+        return self._contact("contact_below", slenderness=lowest * (1.0 + RELATIVE_OFFSET))
+
+    def _contact(self, name: str, **changed: float) -> ContactExtremes:
+        self._need_one(name)
+        found = contact_extremes(self.problem.body_motion(None, self.stop, 0, **changed))
+        return found if self.body.contact_is_known else found.without_forces()
+
+    @property
+    def _of_record(self) -> bool:
+        return isinstance(self.problem.motion, Record)
+
+    @property
+    def _has_margins(self) -> bool:
+        return self.problem.is_block and not self._of_record
 
     @property
     def sentence(self) -> str:
-        """The outcome in words, without a subject; first whether the rocking model does not apply."""
-        return self.assessment.sentence
-
-    @property
-    def margin(self) -> str | None:
-        """From which strength of the motion the block overturns, in words; None if that was not searched."""
-        return self.assessment.margin
+        """The outcome for one body in words, without a subject; first whether the rocking model does not apply."""
+        return self.contact.sentence
 
     @property
     def rocking_model_applies(self) -> bool:
-        """False if pure rocking needs a coefficient of friction beyond 1, or the block lifts off."""
-        return self.assessment.rocking_model_applies
+        """False if pure rocking needs a coefficient of friction beyond 1, or the body lifts off."""
+        return self.contact.rocking_applies
 
     @property
-    def thresholds(self) -> BodyThresholds | None:
-        """Peak accelerations of the pulse [m/s2], or factors of the record, at which the outcome changes.
+    def margin(self) -> str | None:
+        """From which strength one body overturns, in words; None if that was not searched.
 
-        At this period; None if they are not searched, or not found in time.
+        Of a block under a pulse below which acceleration it does not, as `largest_safe_acceleration`.
         """
-        return self.assessment.thresholds
+        self._need_one("margin")
+        found = self.thresholds if self.searches_thresholds else None
+        if found is None:
+            name = WORDS["scale" if self._of_record else "peak_acceleration"][0]
+            return f"from which {name} it overturns was not found in time" if self.searches_thresholds else None
+        if not self._has_margins:
+            return found.sentence
+        if not found:
+            return "no peak acceleration was found that overturns it at this period"
+        if not self._is_safe_below:
+            return "below which peak acceleration it is safe is not known: the rocking model does not apply"
+        return f"it does not overturn below {found[0].text()} m/s2 at this period"
 
     @property
+    def _is_safe_below(self) -> bool:
+        return self.contact_below is not None and self.contact_below.rocking_applies
+
+    @cached_property
     def margins(self) -> Margins | None:
-        """Distances to another outcome under a pulse; None of a record, if not searched, or not found in time."""
-        return self.assessment.margins
+        """Distances of a block to another outcome under a pulse; None otherwise, if not searched or found in time."""
+        self._need_one("margins")
+        if not (self._has_margins and self.searches_thresholds):
+            return None
+        found = self.thresholds or ()
+        return self._searched(lambda part: margins_of(self.problem, found, part, self.served))
 
     @property
+    def largest_safe_acceleration(self) -> float | None:
+        """Peak acceleration [m/s2] below which a block does not overturn under this pulse at this period.
+
+        None if no change of outcome was found, or if the rocking model does not apply just below the lowest.
+        """
+        self._need_one("largest_safe_acceleration")
+        return self.thresholds[0].value if self._is_safe_below and self.thresholds else None
+
+    @property
+    def largest_safe_friction_demand(self) -> float | None:
+        """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
+        below = self.contact_below
+        if below is None or not self._is_safe_below or not self.body.contact_is_known:
+            return None
+        return below.largest_friction_demand
+
+    @property
+    def overturning_scale(self) -> float | None:
+        """Lowest factor of a record found at which one body overturns [-]; None if none was found or searched."""
+        self._need_one("overturning_scale")
+        found = self.thresholds if self._of_record and self.searches_thresholds else None
+        return found[0].value if found else None
+
+    @cached_property
     def resampled(self) -> Response | BoundedResponse | None:
-        """The response to the record interpolated band-limited at an eighth of its step; None if it is not computed."""
-        return self.assessment.resampled
+        """The response of a block to the record interpolated band-limited at an eighth of its step.
+
+        None for a pulse, and for a record that would be too long, or its step too small, or its vertical acceleration
+        reach -g.
+        """
+        self._need_one("resampled")
+        return resampled_response(self.problem, self.stop) if self._of_record and self.problem.is_block else None
+
+    @cached_property
+    def amplification(self) -> float:
+        """Relative change of the peak rotation of a block per relative change of the amplitude of a record [-].
+
+        Infinite if the outcome changes within 1e-9 of the amplitude, nan if the block overturns or does not uplift.
+        """
+        self._need_one("amplification")
+        motion = self.problem.motion
+        if not isinstance(motion, Record) or not self.problem.is_block:
+            return math.nan
+        return float(record_amplification(motion, **self.problem.groups, stop=self.stop))
+
+    @property
+    def peak_is_determined(self) -> bool:
+        """False if the amplification exceeds `LARGEST_AMPLIFICATION`."""
+        return not self.amplification > LARGEST_AMPLIFICATION
 
     @property
     def warnings(self) -> list[str]:
-        """Where the response is in doubt."""
-        return self.assessment.warnings
+        """Where the answer for one body, one about pure rocking, is in doubt."""
+        self._need_one("warnings")
+        return warnings_of(self)
+
+    @property
+    def notes(self) -> list[str]:
+        """What else is worth knowing of one body."""
+        return notes_of(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields with numbers, and the outcome by its name."""
-        values: dict[str, Any] = {}
-        for field in self.fields:
-            source = next(one for one in (self, self.dimensionless, self.block) if hasattr(one, field.name))
-            value = getattr(source, field.name)
-            values[field.name] = value.name if field is OUTCOME else float(value) if field.dtype == "f8" else value
-        return values
+        """The fields of one body with numbers, and the outcome by its name; arrays of several."""
+        values = {one.name: getattr(self, one.name) for one in self.fields}
+        return values if self.shape else values | {OUTCOME.name: self.outcome.name}
+
+    def summary(self) -> dict[str, Any]:
+        """The fields of one body and what is judged of it, `SHOWN`, as the command line and the service show them.
+
+        Numbers, flags, texts and lists by name: angles in degrees, None in place of nan and infinity.
+        """
+        self._need_one("summary")
+        kinds = self.problem.kinds
+        return {
+            one.label: _shown(one, JUDGED[one](self) if one in JUDGED else getattr(self, one.name))
+            for one in SHOWN
+            if kinds <= one.kinds
+        }
 
     def to_xarray(self) -> xr.Dataset:
-        """The fields as a data set of scalars, with units, meanings and equation numbers."""
+        """The fields as a labelled data set, with units and meanings; arguments of several bodies are coordinates."""
         import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
-        values = self.to_dict() | {OUTCOME.name: int(self.outcome)}
-        return xr.Dataset(
-            {one.name: one.variable((), values[one.name]) for one in self.fields}, attrs=dict(self.motion)
-        )
+        arguments = self.problem.arguments
+        names = axis_names(len(self.shape), arguments, ())
+        variables: dict[str, Any] = {
+            one.name: one.variable(names, np.asarray(getattr(self, one.name)))
+            for one in self.fields
+            if one.name not in arguments
+        }
+        coordinates: dict[str, Any] = {
+            name: (*along_own_axes(value, names), {"units": _UNITS.get(name, "1")}) for name, value in arguments.items()
+        }
+        found = xr.Dataset(variables, coordinates, {"motion": self.problem.motion.name, **self.motion})
+        return with_index(found, names[-1], self.problem.index) if names else found
 
-    def to_pandas(self) -> pd.Series:
-        """The fields as a series; units are those of `to_xarray`."""
+    def to_pandas(self) -> pd.Series | pd.DataFrame:
+        """The fields of one body as a series; of several as columns, one row each, with the axes of `to_xarray`."""
         import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
 
-        return pd.Series({**self.motion, **self.to_dict()})
+        return self.to_xarray().to_dataframe() if self.shape else pd.Series({**self.motion, **self.to_dict()})
 
     def __repr__(self) -> str:
-        """What happened, in words and SI units; under a record with the margin, for which it is assessed."""
-        return f"<rocking.BlockResponse: {self._summary()}>"
+        """What happened, in words and SI units; of a block under a record with the margin, for which it is assessed."""
+        return f"<rocking.BodyResponse{' ' if self.shape else ': '}{self._words()}>"
 
     def _repr_html_(self) -> str:
-        values = self.to_dict()
+        if self.shape:
+            return f"<p>{escape(repr(self))}</p>{self.to_xarray()._repr_html_()}"
         rows = "".join(
-            f"<tr><td>{escape(one.meaning)}</td><td>{escape(_text(values[one.name]))}</td>"
+            f"<tr><td>{escape(one.meaning)}</td><td>{escape(_text(value))}</td>"
             f"<td>{'' if one.unit == '1' else escape(one.unit)}</td></tr>"
-            for one in self.fields
+            for one, value in zip(self.fields, self.to_dict().values(), strict=True)
         )
-        return f"<p>{escape(self._summary())}</p><table>{rows}</table>"
+        return f"<p>{escape(self._words())}</p><table>{rows}</table>"
 
-    def _summary(self) -> str:
-        motion, happened, doubt, margin = self.problem.motion, self.outcome.sentence, "", ""
-        impacts = count_of_impacts(self.impacts)
-        if isinstance(motion, Record):
-            found = self.assessment
-            happened, margin = found.sentence, f"; {found.margin}" if found.margin else ""
-            if not found.peak_is_determined:
-                doubt = f" (not determined: amplification {found.amplification:.1e})"
-            under = f"{motion.name or 'a record'} scaled to {self.peak_acceleration:.4g} m/s2"
+    def _words(self) -> str:
+        problem, motion, doubt, margin = self.problem, self.problem.motion, "", ""
+        under = motion.name or "a record"
+        if self.shape:
+            counts = np.bincount(self.outcome.ravel(), minlength=len(Outcome))
+            parts = [f"{count} {one.plural}" for one, count in zip(Outcome, counts.tolist(), strict=True) if count]
+            return f"under {under} of {' x '.join(map(str, self.shape))} bodies: {', '.join(parts)}"
+        outcome = self.outcome
+        happened, impacts = outcome.sentence, f"{self.impacts} impact{'' if self.impacts == 1 else 's'}"
+        strength = f"{self.peak_acceleration:.4g} m/s2"
+        if not problem.is_block:
+            under += f" of {strength}"
+            if outcome >= Outcome.OVERTURNED_DIRECTLY:
+                happened += f" about the {EDGE_NAMES[self.edge]} edge"
+        elif self._of_record:
+            happened, margin = self.sentence, f"; {self.margin}" if self.margin else ""
+            if not self.peak_is_determined:
+                doubt = f" (not determined: amplification {self.amplification:.1e})"
+            under += f" scaled to {strength}"
         else:
             impacts += " during the pulse"
-            under = f"{motion.name} of {self.peak_acceleration:.4g} m/s2 and {self.period:.4g} s"
-        if self.outcome == Outcome.SAFE:
-            happened += f": {described_peak(self.rotation, self.displacement, doubt)}, {impacts}"
-        return f"{happened}{margin}; {self.block.description} under {under}"
+            under += f" of {strength} and {self.period:.4g} s"
+        if outcome == Outcome.SAFE:
+            peak = f"peak rotation {math.degrees(self.rotation):.4g} deg{doubt}"
+            happened += f": {peak}, top displacement {self.displacement:.4g} m, {impacts}"
+        return f"{happened}{margin}; {self.body.description} under {under}"
+
+    def _need_one(self, name: str) -> None:
+        if self.shape:
+            raise InvalidArgumentError(name, f"shape {self.shape}", "a response of one body under one motion")
 
 
-def respond(problem: BlockProblem, *, thresholds: bool = True, stop: StopFlag | None = None) -> BlockResponse:
-    """The response of a block, by the solver; `stop` cancels it, `BlockResponse.assess` has its own."""
-    return BlockResponse(problem.solve(stop), problem, thresholds)
+EDGE_NAMES = {1: "right", -1: "left", 0: None}
+"""Edges in words."""
+
+_UNITS = {
+    "peak_acceleration": "m s-2",
+    "period": "s",
+    **dict.fromkeys(("left", "right", "width", "height", "gyration", "top_height"), "m"),
+    "gravity": "m s-2",
+    "inclination": "rad",
+}
+"""Units of the arguments; the others are numbers."""
 
 
-def described_peak(rotation: float, displacement: float, doubt: str = "") -> str:
-    """Peak rotation [rad] and displacement [m] in words."""
-    return f"peak rotation {math.degrees(rotation):.4g} deg{doubt}, top displacement {displacement:.4g} m"
+def respond(
+    problem: Problem, threads: int | None = None, stop: StopFlag | None = None, *, thresholds: bool = True,
+    seconds: float = SEARCH_SECONDS,
+) -> BodyResponse:  # fmt: skip
+    """The responses of bodies by the solver; `thresholds`, `seconds`: see `BodyResponse`."""
+    found, edges = problem.solve(threads, stop)
+    return BodyResponse(found, problem, edges, thresholds, seconds, stop=stop)
 
 
-def count_of_impacts(impacts: int) -> str:
-    """A number of impacts in words."""
-    return f"{impacts} impact{'' if impacts == 1 else 's'}"
+def _shown(about: ResponseField, value: Any) -> Any:
+    """A value as the command line and the service show it."""
+    if about is OUTCOME:
+        return value.name
+    if about.name == "edge":
+        return EDGE_NAMES[value]
+    if isinstance(value, float):
+        value = math.degrees(value) if about.unit == "rad" else value
+        return value if math.isfinite(value) else None
+    return value
 
 
 def _text(value: Any) -> str:

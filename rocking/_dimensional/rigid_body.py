@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Self, final
 
@@ -13,20 +13,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, positive
+from rocking._base.errors import InvalidArgumentError, in_range, number, positive
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rigid_edge
+from rocking._model.checks import check_lengths
 from rocking._model.labelled import broadcast_by_name, in_unit, index_of, is_labelled
 
 Array = NDArray[np.float64]
 
 RANGES = {"gravity": (0.0, math.inf, "m/s2"), "inclination": (-math.pi / 2, math.pi / 2, "rad")}
 """Open ranges and units of the arguments that are no lengths."""
-
-LENGTH = 0.0, math.inf, "m"
-"""Those of the others."""
 
 
 @final
@@ -67,7 +65,6 @@ class RigidBody(RespondingBody):
     """
 
     _given: dict[str, Array]
-    _labels: dict[str, Any]
 
     def __init__(
         self,
@@ -89,22 +86,8 @@ class RigidBody(RespondingBody):
             "gravity": gravity,
             "inclination": inclination,
         }
-        given = {
-            name: in_unit(name, value, RANGES.get(name, LENGTH)[2])
-            for name, value in arguments.items()
-            if value is not None
-        }
-        labels = {name: value for name, value in given.items() if is_labelled(value)}
-        given |= broadcast_by_name(labels)
-        checked = {
-            name: in_range(name, value, low, high, closed="neither", unit=unit)
-            for name, value in given.items()
-            for low, high, unit in [RANGES.get(name, LENGTH)]
-        }
-        broadcast(given, list(checked.values()))
-        object.__setattr__(self, "_labels", labels)  # a frozen dataclass
-        object.__setattr__(self, "index", index_of(*arguments.values()))
-        object.__setattr__(self, "_given", checked)
+        checked, labels, index = check_lengths(arguments, RANGES)
+        vars(self).update(_given=checked, labels=labels, index=index)  # it is frozen
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
             if not np.all(edge.alpha > 0.0):
                 limit = math.degrees(float(np.min(edge.alpha + sign * self.tilt)))
@@ -175,11 +158,6 @@ class RigidBody(RespondingBody):
         return self._given
 
     @property
-    def labels(self) -> dict[str, Any]:
-        """The arguments that were given as labelled arrays (xarray), with their labels."""
-        return self._labels
-
-    @property
     def description(self) -> str:
         if self.shape:
             return f"{' x '.join(map(str, self.shape))} bodies"
@@ -209,18 +187,14 @@ class RigidBody(RespondingBody):
         """
         added = in_unit("angle", angle, "rad")
         checked = in_range("angle", added, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
-        given = self._given | self._labels
+        given = self._given | self.labels
         return RigidBody(**given | {"inclination": given["inclination"] + (added if is_labelled(added) else checked)})
 
     def scaled(self, size: Values) -> RigidBody:
         factor = in_unit("size", size, "-")
         checked = in_range("size", factor, 0.0, math.inf, closed="neither")
-        given, factor = self._given | self._labels, factor if is_labelled(factor) else checked
+        given, factor = self._given | self.labels, factor if is_labelled(factor) else checked
         return RigidBody(**{name: value if name in RANGES else value * factor for name, value in given.items()})
-
-    def _labelled(self) -> tuple[partial[RigidBody], dict[str, Any]]:
-        plain = {name: value for name, value in self._given.items() if name not in self._labels}
-        return partial(RigidBody, **plain), self._labels
 
     @classmethod
     def from_size(
@@ -280,7 +254,7 @@ class RigidBody(RespondingBody):
             gravity=gravity,
             top_height=h,
         )
-        object.__setattr__(made, "index", index_of(*lengths.values(), gyration, gravity))
+        vars(made)["index"] = index_of(*lengths.values(), gyration, gravity)
         return made
 
     @classmethod

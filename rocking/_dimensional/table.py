@@ -12,7 +12,7 @@ import numpy as np
 from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, finite
 from rocking._dimensional.block import Block
-from rocking._dimensional.problem import BlockProblem
+from rocking._dimensional.problem import Problem
 from rocking._dimensional.table_reader import (
     HEIGHT,
     NAME,
@@ -54,7 +54,7 @@ class BlockTable:
 
     Attributes
     ----------
-    problems : list of BlockProblem
+    problems : list of Problem
         One for each row that could be read.
     names : list of str
         Labels, empty without a column `name`.
@@ -62,9 +62,9 @@ class BlockTable:
         The table that they were read from, with the rows that could not be read.
     """
 
-    problems: list[BlockProblem]
+    problems: list[Problem]
     names: list[str]
-    read: Table[BlockProblem] = field(default_factory=lambda: Table([]))
+    read: Table[Problem] = field(default_factory=lambda: Table([]))
 
     def check(self) -> None:
         """Refuse a table with a row that could not be read.
@@ -128,22 +128,22 @@ def read_blocks(
     return _blocks(read_file(source, _schema(pulse, {name: one for name, one in given.items() if one is not None})))
 
 
-def _schema(pulse: str | AbstractPulse, given: dict[str, float | str]) -> Schema[BlockProblem]:
+def _schema(pulse: str | AbstractPulse, given: dict[str, float | str]) -> Schema[Problem]:
     """A table of blocks under a pulse; `given` stands for cells that are empty."""
 
-    def block(_: int, values: dict[str, Any], __: dict[str, str]) -> BlockProblem:
+    def block(_: int, values: dict[str, Any], __: dict[str, str]) -> Problem:
         one = given | values
         for name in _NEEDED:
             if name not in one:
                 raise InvalidArgumentError(name, None, "a value in each row")
-        return BlockProblem(
+        return Problem.of(
             Block(one["width"], one["height"]), pulse, one["peak_acceleration"], one["period"], one["restitution"]
         )
 
     return Schema("blocks", (*COLUMNS, NUMBER), tuple((name,) for name in _NEEDED if name not in given), block)
 
 
-def _blocks(read: Table[BlockProblem]) -> BlockTable:
+def _blocks(read: Table[Problem]) -> BlockTable:
     names = next((read.cells[label] for label, name in read.columns.items() if name == "name"), [])
     return BlockTable(read.items, names, read)
 
@@ -175,6 +175,7 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
         restitution=np.array(columns["restitution"]),
         alpha=np.array([one["alpha"] for one in groups]),
         stop=stop,
+        body=Block(np.array(columns["width"]), np.array(columns["height"])),
     )
     peaks = [finite(peak) for peak in found.peak_rotation.tolist()]
     rotations = [
@@ -191,5 +192,6 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
         OUTCOME.name: [Outcome(code).name for code in found.outcome.tolist()],
         IMPACTS.name: found.impacts.tolist(),
         EXCEEDED_ALPHA.name: found.exceeded_alpha.tolist(),
+        **{name: [*map(finite, found.derived[name].tolist())] for name in found.derived},
         ERROR_BOUND.name: [finite(bound) for bound in found.error_bound.tolist()],
     }

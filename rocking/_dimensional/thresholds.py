@@ -24,11 +24,10 @@ from rocking._boundary.scan import (
 from rocking._boundary.scan import (
     Index as Lines,
 )
-from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.lowest_thresholds import record_lines, record_range
 from rocking._dimensional.problem import (
     HIGHEST_SCALE,
-    BlockProblem,
+    Problem,
     record_groups,
     restitution_of,
     search_range,
@@ -169,7 +168,7 @@ class BodyThresholds(EqualByValue):
 
 
 def thresholds_of(
-    problem: BodyProblem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
+    problem: Problem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
 ) -> BodyThresholds:
     """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
 
@@ -177,7 +176,7 @@ def thresholds_of(
 
     Parameters
     ----------
-    problem : BodyProblem
+    problem : Problem
         The bodies and the motion.
     highest : float, optional
         Highest strength searched, in its unit; by default 100 times that of uplift under a pulse, 10 under a record.
@@ -189,7 +188,7 @@ def thresholds_of(
     motion, shape = problem.motion, problem.shape
     by_record = isinstance(motion, Record)
     unit = motion.peak_acceleration if isinstance(motion, Record) else 1.0
-    problem = replace(problem, acceleration=np.full(shape, unit))  # of the strength 1
+    problem = replace(problem, peak_acceleration=np.full(shape, unit))  # of the strength 1
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / unit
     limit = np.full(uplift.size, math.inf)
     if isinstance(motion, Record):
@@ -228,7 +227,7 @@ def thresholds_of(
 
 
 def _pulse_changes(
-    problem: BodyProblem, k: int, uplift: float, highest: float, stop: StopFlag | None
+    problem: Problem, k: int, uplift: float, highest: float, stop: StopFlag | None
 ) -> tuple[Array, Flags]:
     cell = problem.cells[k]
     found = amplitude_changes(
@@ -238,13 +237,13 @@ def _pulse_changes(
 
 
 def block_thresholds(
-    problem: BlockProblem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
+    problem: Problem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
 ) -> BodyThresholds:
     """Every strength at which the outcome for a block changes.
 
     Parameters
     ----------
-    problem : BlockProblem
+    problem : Problem
         The block and the motion.
     highest : float, optional
         Highest peak acceleration [m/s2] or factor [-] searched; by default as `thresholds_of`, or 10 times the peak
@@ -254,7 +253,7 @@ def block_thresholds(
     resolution : float
         As of `scale_thresholds`.
     """
-    block, motion, groups = problem.block, problem.motion, problem.groups
+    block, motion, groups = problem.block, problem.motion, dict(problem.groups)
     if isinstance(motion, Record):
         if highest is None:
             highest = max(HIGHEST[1] * uplift_scale(motion, block), BEYOND[1] * problem.scale)

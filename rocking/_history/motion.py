@@ -118,23 +118,23 @@ class BodyMotion(ABC):
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
         """Sample the motion until the ground motion ends; the solver state, and the number of impacts written."""
 
-    @property
+    @cached_property
     def restitution(self) -> float:
         """Of impacts that leave the right edge [-]."""
         return float(self.cell["eta"][0])
 
-    @property
+    @cached_property
     def alpha(self) -> float:
         """Slenderness angle of the right edge [rad], 0 for the slender limit."""
         return float(self.cell["alpha"])
 
-    @property
+    @cached_property
     def contact_geometry(self) -> ContactGeometry:
         """What the contact forces need beside alpha."""
         ratio, speed = float(self.cell["ratio"]), math.sqrt(float(self.cell["stiffness"]))
         return ContactGeometry(ratio, speed, self.inertia_ratio, self.tilt)
 
-    @property
+    @cached_property
     def max_rotation(self) -> float:
         """|theta|/alpha up to which a body that overturns is followed [-]: `MAX_ROTATION`, or |theta| = pi/2."""
         most = MAX_ROTATION * max(1.0, float(self.cell["ratio"]))
@@ -188,18 +188,33 @@ class BodyMotion(ABC):
         for name, *_ in BODY_FIELDS:
             body[name] = state[name]
         written = sample_free_rocking(
-            *(float(state[name]) for name in ("end_rotation", "end_velocity", "end_sign")),
+            float(state["end_rotation"]),
+            float(state["end_velocity"]),
+            float(state["end_sign"]),
             body,
-            step_state(pulse_state(as_pulse("sine"))),  # without ground motion any pulse serves
+            self._free_steps,
             self.pulse_end,
             self.horizon * (1 + 1e-12),  # a step fills the samples before its end, so the last must lie inside
             self.max_rotation,
             history,
             impact_times,
-            flag_array(self.stop),
+            self._flag,
         )
-        check_stop(self.stop)
+        self._check_stop()
         return int(written)
+
+    @cached_property
+    def _free_steps(self) -> Record:
+        """Taylor steps of free rocking: without ground motion any pulse serves."""
+        return step_state(pulse_state(as_pulse("sine")))
+
+    @cached_property
+    def _flag(self) -> NDArray[np.uint8]:
+        return flag_array(self.stop)
+
+    def _check_stop(self) -> None:
+        if self._flag[0]:
+            check_stop(self.stop)
 
 
 def overturned(record: Record) -> bool:
@@ -218,12 +233,12 @@ class PulseMotion(BodyMotion):
 
     pulse: AbstractPulse
 
-    @property
+    @cached_property
     def frequency_ratio(self) -> float:
         """omega = omega_g/p [-]."""
         return float(self.cell["rate"])
 
-    @property
+    @cached_property
     def pulse_end(self) -> float:
         return (self.pulse.end - self.pulse.start) / self.frequency_ratio
 
@@ -247,10 +262,9 @@ class PulseMotion(BodyMotion):
         return np.asarray(f / self.cell["slenderness"][0])
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
-        flag = flag_array(self.stop)
         followed, solved = self._flights
         record = solved.copy()
-        sample_flights(followed, record, step_state(pulse_state(self.pulse)), self.max_rotation, history, flag)
+        sample_flights(followed, record, self._steps, self.max_rotation, history, self._flag)
         impacts = followed if record["end_sign"] == 0.0 else followed[:-1]
         written = min(impacts.size, impact_times.size)
         impact_times[:written] = (impacts["next_phase"][:written] - self.pulse.start) / self.frequency_ratio
@@ -258,8 +272,13 @@ class PulseMotion(BodyMotion):
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
-        check_stop(self.stop)
+        self._check_stop()
         return record, written
+
+    @cached_property
+    def _steps(self) -> Record:
+        """Taylor steps under the pulse."""
+        return step_state(pulse_state(self.pulse))
 
     @cached_property
     def _flights(self) -> tuple[NDArray[np.void], Record]:
@@ -270,9 +289,9 @@ class PulseMotion(BodyMotion):
         groups = [np.array([value]) for value in values]
         equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
         bodies = NO_BODIES if equal else np.array([cell])
-        steps, flag = step_state(state[0]), flag_array(self.stop)
-        count = solve_batch(*groups, bodies, state, steps, flag, np.empty(1, RESPONSE_RECORD), edges, followed)
-        check_stop(self.stop)
+        response = np.empty(1, RESPONSE_RECORD)
+        count = solve_batch(*groups, bodies, state, step_state(state[0]), self._flag, response, edges, followed)
+        self._check_stop()
         return followed[:count].copy(), state[0]
 
     def _set_response(self, record: Record) -> None:
@@ -306,7 +325,7 @@ class SamplesMotion(BodyMotion):
         """Times of the samples [tau]."""
         return np.asarray(self.cell["rate"] * self.samples[TIME])
 
-    @property
+    @cached_property
     def pulse_end(self) -> float:
         return float(self.times[-1])
 
@@ -336,9 +355,9 @@ class SamplesMotion(BodyMotion):
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
         state, start = samples_state.body_states(self.samples, 2)
         steps = samples_state.step_state(self.samples, self.cell)
-        rest = self.max_rotation, history, impact_times, flag_array(self.stop)
+        rest = self.max_rotation, history, impact_times, self._flag
         written = sample_record(self.samples, self.cell, state, start, steps, *rest)
-        check_stop(self.stop)
+        self._check_stop()
         return state, int(written)
 
 

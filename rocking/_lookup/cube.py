@@ -26,7 +26,7 @@ from rocking._base.errors import (
     number,
     one_of,
 )
-from rocking._excitation.pulses import AbstractPulse
+from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._interpolation.kernel import Found, interpolate_many, prepare
 from rocking._interpolation.slices import STENCIL_SIZE, slice_index, slice_window
 from rocking._lookup.cube_slice import CubeSlice, fetch_slice, open_slice
@@ -34,7 +34,7 @@ from rocking._model.checks import check_groups
 from rocking._model.fields import DERIVED_FIELDS
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
-from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_with_bound
+from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_checked
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 
 Array = NDArray[np.float64]
@@ -210,7 +210,9 @@ class Cube:
             left = np.flatnonzero(~found.known)
             if method == "cube":
                 self._refuse(points[left[:1]], limit)
-            solved = solve_with_bound(self.pulse, **vars(points[left]), threads=threads, stop=stop)
+            one = points[left]
+            groups = one.slenderness, one.frequency_ratio, one.restitution, one.alpha
+            solved = solve_checked(as_pulse(self.pulse), *groups, None, threads, stop)
             result.reshape((-1,)).put(left, solved)  # a view
         if method == "cube":
             result.from_cube[...] = True

@@ -13,11 +13,13 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, in_range
+from rocking._model.labelled import Index
 
 Array = NDArray[np.float64]
 
@@ -108,6 +110,26 @@ class AbstractBody(ABC):
     def is_linear(self) -> bool:
         """Whether the equation of motion is the linear one (3.1); False unless a body says otherwise."""
         return False
+
+    @property
+    def is_block(self) -> bool:
+        """Whether it is one block, with equal edges and numbers: what is solved in groups with an error bound."""
+        return False
+
+    @property
+    def contact_is_known(self) -> bool:
+        """Whether the contact forces follow from the motion."""
+        return not math.isnan(float(self.right.inertia_ratio))
+
+    def top_displacement(self, rotation: Array) -> Array:
+        """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
+        return np.asarray(self.top_height * np.sin(rotation))
+
+    labels: dict[str, Any] = {}  # noqa: RUF012  # not changed
+    """The arguments that were given as labelled arrays (xarray), with their labels."""
+
+    index: Index | None = None
+    """Name and labels of the index of the series (pandas) from which an array of bodies is made."""
 
     @property
     def parameters(self) -> dict[str, Array]:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import InvalidArgumentError, in_range, number
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number
+from rocking._base.parameter import Parameter
 from rocking._base.units import Quantity, Scalar
-from rocking._model.labelled import is_labelled
-from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA, Parameter
+from rocking._model.labelled import Index, broadcast_by_name, in_unit, index_of, is_labelled
+from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 
 Array = NDArray[np.float64]
 
@@ -48,6 +51,36 @@ def check_number(parameter: Parameter, value: ArrayLike | Quantity, name: str | 
     return number(
         name or parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit
     )
+
+
+def check_lengths(
+    arguments: Mapping[str, Any], others: Mapping[str, tuple[float, float, str]]
+) -> tuple[dict[str, Array], dict[str, Any], Index | None]:
+    """What bodies are made from: arrays by name, those of them that are labelled, and the index of a series.
+
+    Parameters
+    ----------
+    arguments : mapping
+        Numbers, texts, quantities or arrays, also labelled ones, by name; None is left out.
+    others : mapping
+        Open ranges and units of those that are no lengths > 0.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If a value is out of range, or they do not broadcast.
+    """
+    ranges = {name: others.get(name, (0.0, math.inf, "m")) for name in arguments}
+    given = {name: in_unit(name, value, ranges[name][2]) for name, value in arguments.items() if value is not None}
+    labels = {name: value for name, value in given.items() if is_labelled(value)}
+    given |= broadcast_by_name(labels)
+    checked = {
+        name: in_range(name, value, low, high, closed="neither", unit=unit)
+        for name, value in given.items()
+        for low, high, unit in [ranges[name]]
+    }
+    broadcast(given, list(checked.values()))
+    return checked, labels, index_of(*arguments.values())
 
 
 def check_window(
@@ -96,6 +129,8 @@ def check_alpha(alpha: ArrayLike | Quantity | None) -> Array:
 
 def check_one_alpha(alpha: ArrayLike | Quantity | None) -> float:
     """As `check_alpha`, for one angle."""
+    if type(alpha) is float and SMALLEST_ALPHA < alpha < ALPHA.upper:
+        return alpha
     if alpha is not None:
         check_number(ALPHA, alpha)
     return float(check_alpha(alpha))

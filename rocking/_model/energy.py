@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def residual_energy(fields: Mapping[str, NDArray[Any]], groups: Mapping[str, NDArray[Any]]) -> Array:
+def residual_energy(
+    fields: Mapping[str, Any], groups: Mapping[str, Any], _motion: Any = None, _body: Any = None
+) -> Array:
     """Kinetic and potential energy at the end of the pulse over the potential energy at alpha, both from rest [-].
 
     Free rocking conserves w^2 - X^2 between impacts, with z = |theta|/alpha, w = dz/dtau and

@@ -20,6 +20,10 @@ from numpy.typing import NDArray
 from rocking._model.energy import residual_energy
 from rocking._model.outcome import Outcome
 
+KINDS = frozenset({"pulse", "record", "block", "edges", "many"})
+"""Kinds of responses in SI units: by the motion; by the way of solution (one block in groups, bodies by their two
+edges); of many bodies or motions at once."""
+
 
 @dataclass(frozen=True)
 class ResponseField:
@@ -45,8 +49,13 @@ class ResponseField:
     at_rest : float
         Value of a block that does not uplift.
     derive : callable, optional
-        Computes the field from other fields and the groups, both arrays by name, which broadcast; the groups that a
-        response does not know are not there. None: the solver computes it.
+        Computes the field from other fields and the groups, both arrays by name, which broadcast, the motion, and the
+        body in SI units. Groups that a response does not know are not there; motion and body are None then. None: the
+        solver computes it, or it is an argument or a property of the body.
+    kinds : frozenset of str
+        Kinds of responses in SI units that have it, see `KINDS`.
+    shown : str
+        Its name on the command line and over HTTP, where it differs; angles are in degrees there, with the ending _deg.
     """
 
     name: str
@@ -57,7 +66,19 @@ class ResponseField:
     missing: str = ""
     detail: str = ""
     at_rest: float = 0.0
-    derive: Callable[[Mapping[str, NDArray[Any]], Mapping[str, NDArray[Any]]], NDArray[Any]] | None = None
+    derive: Callable[[Mapping[str, Any], Mapping[str, Any], Any, Any], Any] | None = None
+    kinds: frozenset[str] = KINDS
+    shown: str = ""
+
+    @property
+    def label(self) -> str:
+        """Its name on the command line and over HTTP."""
+        return self.shown or (f"{self.name}_deg" if self.unit == "rad" else self.name)
+
+    @property
+    def label_unit(self) -> str:
+        """Its unit there."""
+        return {"rad": "deg", "rad s-1": "rad/s", "m s-2": "m/s2", "1": "-"}.get(self.unit, self.unit)
 
     @property
     def file_dtype(self) -> str:
@@ -87,9 +108,10 @@ class ResponseField:
         """The variable of a data set."""
         return dims, values, {"units": self.unit} | self.attributes
 
-    def description(self, missing: str = "null") -> str:
-        """One line with meaning, unit, and what stands for a missing number."""
-        unit = "" if self.flags or self.dtype in ("?", "U") else f" [{'-' if self.unit == '1' else self.unit}]"
+    def description(self, missing: str = "null", unit: str = "") -> str:
+        """One line with meaning, unit, by default that of the field, and what stands for a missing number."""
+        named = unit or ("-" if self.unit == "1" else self.unit)
+        unit = "" if self.flags or self.dtype in ("?", "U") else f" [{named}]"
         remarks = [f"{missing} where {self.missing}"] if self.missing else []
         return "; ".join([self.meaning + unit, *remarks, *([self.detail] if self.detail else [])])
 
@@ -167,6 +189,7 @@ RESIDUAL_ENERGY = ResponseField(
     "it is interpolated in a data set, or the angle alpha is not known",
     "both from the energy at rest; where overturning is certain earlier, the energy then",
     derive=residual_energy,
+    kinds=KINDS - {"edges"},
 )
 
 OVERTURNED = ResponseField("overturned", "?", "1", "3.8", "whether the block overturns")

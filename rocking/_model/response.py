@@ -43,6 +43,10 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
         Names of the dimensions if an argument was labelled (xarray).
     index : (name, labels) or None
         Index of the last axis if an argument was a series (pandas).
+    motion : AbstractPulse or Record
+        The ground motion, for fields that are derived from it; None if not known.
+    body : AbstractBody
+        The bodies in SI units, likewise.
     """
 
     chatter: NDArray[np.bool_]
@@ -57,6 +61,8 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
     groups: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     dims: tuple[Hashable, ...] = ()
     index: Index | None = field(default=None, compare=False)
+    motion: Any = field(default=None, compare=False)
+    body: Any = field(default=None, compare=False)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -67,7 +73,7 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
         if field.derive is None:
             raise AttributeError(field.name)
         fields = {one.name: vars(self)[one.name] for one in SOLVED_FIELDS}
-        return np.asarray(field.derive(fields, self.groups), field.dtype)
+        return np.asarray(field.derive(fields, self.groups, self.motion, self.body), field.dtype)
 
     def __repr__(self) -> str:
         """What happened, in words."""

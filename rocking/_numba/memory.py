@@ -9,8 +9,7 @@ from numba import types
 from numba.extending import intrinsic
 
 
-@intrinsic
-def prefetch_for_write(_: Any, address: Any) -> Any:
+def _prefetch_for_write(_: Any, address: Any) -> Any:
     """Let the processor fetch the cache line at an address, an integer, that will be written, without waiting."""
 
     def lower(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
@@ -22,3 +21,6 @@ def prefetch_for_write(_: Any, address: Any) -> Any:
         return context.get_dummy_value()
 
     return types.void(address), lower
+
+
+prefetch_for_write: Any = intrinsic(_prefetch_for_write)  # called without its first parameter

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -10,14 +11,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
-from rocking._excitation.pulses import AbstractPulse
+from rocking._base.errors import integer
+from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.checks import check_groups
-from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, OVERTURNED, ResponseField, ResponseFields
+from rocking._model.fields import (
+    BOUNDED_FIELDS,
+    DERIVED_FIELDS,
+    OVERTURNED,
+    SOLVED_FIELDS,
+    ResponseField,
+    ResponseFields,
+)
 from rocking._model.outcome import Outcome
 from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.peak_response import peak_response
+from rocking._solver.peak_response import solve_cells
 from rocking._solver.rules import IMPACT_LIMIT
+from rocking._solver.state import FULL_PRECISION
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,7 +98,7 @@ class BoundedResponse(ResponseFields, EqualByValue, declared=BOUNDED_FIELDS):
 
     def reshape(self, shape: tuple[int, ...]) -> BoundedResponse:
         """The same responses in another shape."""
-        return self._each(lambda values: values.reshape(shape))
+        return self if shape == self.outcome.shape else self._each(lambda values: values.reshape(shape))
 
     def __getitem__(self, index: Flags | NDArray[np.intp] | slice) -> BoundedResponse:
         """The responses of a part of the points."""
@@ -118,6 +128,7 @@ def solve_with_bound(
     alpha: ArrayLike | None,
     threads: int | None = None,
     stop: StopFlag | None = None,
+    body: Any = None,
 ) -> BoundedResponse:
     """Solve twice, with the groups as given and slightly smaller, and bound the error of the peak by the difference.
 
@@ -125,30 +136,52 @@ def solve_with_bound(
     ratio and restitution decrease together by the fraction `SOLVER_ERROR`. Rounding errors act like such a change and
     are amplified near an outcome boundary. The bound is infinite where a block reached `IMPACT_LIMIT` impacts.
 
-    Arguments and errors are those of `rocking.peak_response` under a pulse.
+    Arguments and errors are those of `rocking.peak_response` under a pulse; `body` as of `rocking.Response`.
     """
     given = check_groups(slenderness=slenderness, frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha)
     s, w, eta, angle = np.broadcast_arrays(*given.values())
-    shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * s.ndim)  # downwards, so that eta = 1 stays in [0, 1]
-    groups = {
-        "slenderness": np.maximum(s * shift, SLENDERNESS.lower),
-        "frequency_ratio": np.maximum(w * shift, FREQUENCY_RATIO.lower),
-        "restitution": eta * shift,
-    }
-    found = peak_response(pulse, **groups, alpha=angle, threads=threads, stop=stop)
-    peak, outcome = found.peak_rotation[0], found.outcome[0]
+    if threads is not None:
+        threads = integer("threads", threads, 1, math.inf)
+    return solve_checked(as_pulse(pulse), s, w, eta, angle, body, threads, stop)
+
+
+def solve_checked(
+    pulse: AbstractPulse,
+    s: Array | float,
+    w: Array | float,
+    eta: Array | float,
+    alpha: Array | float,
+    body: Any = None,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> BoundedResponse:
+    """The same for groups that have been checked, arrays of one shape or numbers."""
+    shape = np.shape(s)
+    shift = (1.0 - SOLVER_ERROR * np.arange(2)).reshape(2, *[1] * len(shape))  # downwards: eta = 1 stays in [0, 1]
+    groups = np.empty((4, 2, *shape))
+    groups[0] = np.maximum(s * shift, SLENDERNESS.lower)
+    groups[1] = np.maximum(w * shift, FREQUENCY_RATIO.lower)
+    groups[2] = eta * shift
+    groups[3] = alpha
+    cells = [np.array(one.ravel()) for one in groups[: 4 if groups[3].any() else 3]]  # each of its own memory
+    records = solve_cells(pulse, cells, FULL_PRECISION, threads, stop).reshape(2, *shape)
+    peaks, outcomes, first = records["peak_rotation"], records["outcome"], records[0]
     with np.errstate(invalid="ignore"):
-        change = np.abs(found.peak_rotation[1] - peak)
-    bound = np.asarray(SOLVER_ERROR * peak + 3.0 * change)
-    bound[found.overturned.any(axis=0) | (found.impacts.max(axis=0) >= IMPACT_LIMIT)] = np.inf
-    bound[found.overturned[0]] = np.nan
-    bound[outcome == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
-    return BoundedResponse(
-        peak,
-        outcome,
-        found.impacts[0],
-        found.exceeded_alpha[0],
-        bound,
-        np.zeros(peak.shape, np.bool_),
-        {field.name: getattr(found, field.name)[0] for field in DERIVED_FIELDS},
-    )
+        change = np.abs(peaks[1] - peaks[0])
+    bound = np.asarray(SOLVER_ERROR * peaks[0] + 3.0 * change)
+    overturned = outcomes >= Outcome.OVERTURNED_DIRECTLY
+    bound[overturned.any(axis=0) | (records["impacts"].max(axis=0) >= IMPACT_LIMIT)] = np.inf
+    bound[overturned[0]] = np.nan
+    bound[outcomes[0] == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
+    known = {
+        "slenderness": groups[0, 0],
+        "frequency_ratio": groups[1, 0],
+        "restitution": groups[2, 0],
+        "alpha": groups[3, 0],
+    }
+    fields = {field.name: np.array(first[field.name]) for field in SOLVED_FIELDS}
+    derived = {
+        one.name: np.asarray(one.derive(fields, known, pulse, body), one.dtype) for one in DERIVED_FIELDS if one.derive
+    }
+    kept = fields["peak_rotation"], fields["outcome"], fields["impacts"], fields["exceeded_alpha"]
+    return BoundedResponse(*kept, bound, np.zeros(shape, np.bool_), derived)

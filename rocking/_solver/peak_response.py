@@ -208,7 +208,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
     dims, index = dimensions_of(*given.values()), index_of(*given.values())
-    return Response(**found, pulse=made.name, groups=checked, dims=dims, index=index)
+    return Response(**found, pulse=made.name, groups=checked, dims=dims, index=index, motion=made)
 
 
 def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:
@@ -243,6 +243,8 @@ def solve_cells(
         return solve_pulse(pulse, cells, threads, stop)
     if len(cells) == 3 and cells[1].min(initial=math.inf) >= pulse.series.least_arc_frequency:
         return _solve_alike(pulse, cells, True, precision, threads, stop)
+    if len(cells) == 4 and cells[3].all():  # none is slender
+        return _solve_alike(pulse, cells, False, precision, threads, stop)
     exact = solved_by_arcs(pulse, cells)
     if exact.all() or not exact.any():
         return _solve_alike(pulse, cells, bool(exact.any()), precision, threads, stop)

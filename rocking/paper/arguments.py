@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import broadcast, float_array
+from rocking._base.parameter import Parameter
 from rocking._model.checks import check
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, Parameter
+from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 
 Array = NDArray[np.float64]
 

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Scalar
-from rocking._dimensional.body_problem import BodyProblem
-from rocking._dimensional.body_response import respond_bodies
+from rocking._dimensional.problem import Problem
+from rocking._dimensional.response import respond
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record
 from rocking._model.checks import check_number
@@ -71,8 +71,8 @@ def body_outcomes(
         )
         scale = np.broadcast_to(levels / own, shape[:2])
         check_levels(levels, motion, scale, np.broadcast_to(body.gravity, body.shape).tolist())
-        problem = BodyProblem(column, motion, scale * motion.peak_acceleration, np.ones(()), eta)
-        found = respond_bodies(problem, threads=threads, stop=stop)
+        problem = Problem(column, motion, scale * motion.peak_acceleration, np.ones(()), eta)
+        found = respond(problem, threads=threads, stop=stop)
         for name, values in fields.items():
             values[:, :, k] = scale if name == "scale" else getattr(found, name)
     return labelled_outcomes(fields, levels, chosen, motions, _properties(body, eta))

@@ -19,7 +19,7 @@ from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record, offset_doubts
-from rocking._model.block import AbstractBlock
+from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.body_arrays import HasBody, over_bodies
@@ -113,6 +113,8 @@ def fragility(
     if isinstance(blocks, HasBody):
         restitution = blocks.restitution if restitution == "momentum" else restitution
         blocks = blocks.body
+    if isinstance(blocks, RectangularBlock) and blocks.shape:  # an array of blocks
+        blocks = RigidBody.from_size(**blocks.parameters | blocks.labels)
     if isinstance(blocks, RigidBody) and any(getattr(value, "chunks", None) for value in blocks.labels.values()):
         threads = threads or 1
 
@@ -124,7 +126,11 @@ def fragility(
             outcomes = suite_outcomes(suite, threads=threads, stop=stop)
         found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence, signs))
         found.attrs |= {"confidence": confidence}
-        doubts = offset_doubts(list(records)) if MEASURES[measure].scales_amplitude else []
+        doubts = (
+            offset_doubts([records] if isinstance(records, Record) else [*records])
+            if MEASURES[measure].scales_amplitude
+            else []
+        )
         if doubts:
             found.attrs["warnings"] = "; ".join(doubts)
         return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found

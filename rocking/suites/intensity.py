@@ -56,15 +56,15 @@ class Measure:
 
 
 def _pga_ratio(record: Record, block: AbstractBlock) -> float:
-    return record.peak_acceleration / block.uplift_acceleration
+    return float(record.peak_acceleration / block.uplift_acceleration)
 
 
 def _pgv_ratio(record: Record, block: AbstractBlock) -> float:
-    return block.frequency_parameter * record.peak_velocity / block.uplift_acceleration
+    return float(block.frequency_parameter * record.peak_velocity / block.uplift_acceleration)
 
 
 def _frequency_ratio(record: Record, block: AbstractBlock) -> float:
-    return 2.0 * math.pi / (record.mean_period * block.frequency_parameter)
+    return float(2.0 * math.pi / (record.mean_period * block.frequency_parameter))
 
 
 MEASURES = {

@@ -170,7 +170,7 @@ def fit_pulse(
         )
     else:
         compared = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
-        if not all(isinstance(block, AbstractBlock) for block in compared):
+        if not all(getattr(block, "is_block", False) for block in compared):
             raise InvalidArgumentError("blocks", blocks, "objects of rocking.Block")
     fits = [fit_velocity(record.velocity, record.time_step, name) for name in families]
     best = max(fits, key=lambda fit: fit.explained)

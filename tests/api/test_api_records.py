@@ -253,7 +253,7 @@ def test_the_vertical_component_is_a_column_of_the_body(client, motion):
     assert found["margin"] == expected.margin
     assert found["record"]["peak_vertical_acceleration"] == pytest.approx(both.peak_vertical_acceleration)
     assert found["record"]["digest"] == both.digest
-    contact = expected.assessment.contact
+    contact = expected.contact
     assert found["friction_demand"] == pytest.approx(contact.largest_friction_demand, rel=1e-9)
     assert found["smallest_normal_reaction"] == pytest.approx(contact.smallest_normal_reaction, rel=1e-9)
     history = post(client, body, route="history", **columns).json()

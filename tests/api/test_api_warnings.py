@@ -30,7 +30,7 @@ def assert_same(python, http, result, lines):
     """The same warnings and margin; the text begins with the outcome, the margin of a record, and the warnings."""
     assert http["warnings"] == result["warnings"] == python.warnings
     assert http["margin"] == result["margin"] == python.margin
-    assert http["meaning"] == lines[0] == python.assessment.sentence
+    assert http["meaning"] == lines[0] == python.sentence
     sentences = 2 if "record" in result else 1
     printed = lines[sentences : sentences + len(python.warnings)]
     assert printed == [f"warning: {text}" for text in python.warnings]
@@ -90,21 +90,21 @@ def test_warnings_under_a_record(client, width, height, scale, texts):
 def test_a_peak_that_the_record_does_not_determine_says_so_beside_it():
     block, motion = rocking.Block(0.2, 1.0), rocking.read_record(NAPA)
     found = block.response(motion, scale=0.87, thresholds=False)
-    assert found.assessment.amplification > 1e8
-    assert not found.assessment.peak_is_determined
+    assert found.amplification > 1e8
+    assert not found.peak_is_determined
     assert "deg (not determined: amplification 4.2e+08), top displacement" in repr(found)
     changed = rocking.Record(motion.acceleration * (1.0 + 1e-8), motion.time_step, "m/s2")
     other = block.response(changed, scale=0.87, thresholds=False)
     assert abs(other.rotation / found.rotation - 1.0) > 0.1 or other.overturned
     well = block.response(motion, scale=0.6, thresholds=False)
-    assert well.assessment.peak_is_determined
+    assert well.peak_is_determined
     assert "not determined" not in repr(well)
 
 
 def test_a_block_that_overturns_or_stays_has_no_amplification():
     block, motion = rocking.Block(0.2, 1.0), rocking.read_record(NAPA)
     for scale in (0.1, 5.0):
-        found = block.response(motion, scale=scale, thresholds=False).assessment
+        found = block.response(motion, scale=scale, thresholds=False)
         assert math.isnan(found.amplification)
         assert found.peak_is_determined
 

@@ -88,9 +88,7 @@ def test_samples_of_a_pulse_with_units():
     np.testing.assert_allclose(quantities.phases, expected.phases, rtol=1e-15)
 
 
-def test_messages_are_short_and_say_what_takes_arrays():
-    with pytest.raises(InvalidArgumentError, match=r"RigidBody\.from_size takes arrays"):
-        rocking.Block(np.linspace(0.2, 0.4, 1000), 1.6)
+def test_messages_are_short():
     with pytest.raises(InvalidArgumentError, match=r"\(DataArray\) is not allowed") as caught:
         rocking.Record(np.ones(3), xr.DataArray(np.linspace(0.1, 0.2, 1000)), "g")
     assert len(str(caught.value)) < 500

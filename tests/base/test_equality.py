@@ -50,7 +50,6 @@ EXAMPLES = {
     ),
     "PulseFit": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK),
     "VelocityPulse": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
-    "BlockResponse": lambda: BLOCK.response("sine", peak_acceleration=40.0, period=1.0),
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
     "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
     "Assessment": lambda: rocking.assess(rocking.Object("vase", width=0.2, height=1.0), rocking.Site(pga=3.0, pgv=0.4)),
@@ -118,7 +117,7 @@ def test_results_that_differ_in_one_field_differ(make):
 
 
 RESULTS = (
-    "Response", "BoundedResponse", "Thresholds", "PulseFit", "BlockResponse", "BodyResponse", "BodyThresholds",
+    "Response", "BoundedResponse", "Thresholds", "PulseFit", "BodyResponse", "BodyThresholds",
     "Assessment", "OverturningProbability",
 )  # fmt: skip
 """What functions and methods that a user calls return; other functions return data sets of xarray."""
@@ -173,8 +172,8 @@ def test_cubes_are_equal_if_their_files_are(tmp_path):
 @pytest.mark.parametrize(
     "make",
     [lambda: BLOCK, lambda: rocking.EquivalentBlock.rocking_frame(BLOCK, mass_ratio=0.5), record,
-     lambda: rocking.pulse("-c1"), lambda: BLOCK.response("sine", peak_acceleration=4.0, period=0.5).problem],
-    ids=["Block", "EquivalentBlock", "Record", "pulse", "BlockProblem"],
+     lambda: rocking.pulse("-c1")],
+    ids=["Block", "EquivalentBlock", "Record", "pulse"],
 )  # fmt: skip
 def test_what_holds_no_writable_array_has_a_hash(make):
     one, copy = make(), pickle.loads(pickle.dumps(make()))

@@ -43,7 +43,6 @@ class Hump(rocking.SmoothPulse):
 
 
 CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
-    "Block": (rocking.Block, [{"width": 0.4, "height": 1.6} | SIZE]),
     "Object": (
         rocking.Object,
         [{"name": "vase", "width": 0.4, "height": 1.6, "depth": 0.3, "mass_height": 0.7, "offset_width": 0.01,
@@ -261,8 +260,8 @@ def public_functions(module: ModuleType, prefix: str = "") -> Iterator[tuple[str
         value = getattr(module, name)
         if inspect.ismodule(value) and value is not rocking.plot:
             yield from public_functions(value, f"{name}.")
-        if not (getattr(value, "__module__", None) or "").startswith("rocking"):
-            continue
+        if value is rocking.BodyResponse or not (getattr(value, "__module__", None) or "").startswith("rocking"):
+            continue  # what a function returns is not made by users
         found = {prefix + name: value} if callable(value) else {}
         if inspect.isclass(value):
             members = {key: inspect.getattr_static(value, key) for key in dir(value) if not key.startswith("_")}

@@ -10,8 +10,8 @@ import xarray as xr
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional import assessment
-from rocking._dimensional.problem import BlockProblem, frequency_ratio_of, period_of
+from rocking._dimensional import response
+from rocking._dimensional.problem import Problem, frequency_ratio_of, period_of
 from rocking._model.block import STANDARD_GRAVITY
 from rocking._model.outcome import Outcome
 
@@ -43,7 +43,7 @@ def test_response_is_that_of_the_groups():
 def test_thresholds_and_margins_are_changes_of_the_outcome():
     found = BLOCK.response("sine", **MOTION)
     lowest = found.thresholds[0].value
-    assert found.assessment.largest_safe_acceleration == lowest == pytest.approx(4.7000674, rel=1e-7)
+    assert found.largest_safe_acceleration == lowest == pytest.approx(4.7000674, rel=1e-7)
     for factor, overturned in ((1 - 1e-6, False), (1 + 1e-6, True)):
         assert BLOCK.response("sine", peak_acceleration=lowest * factor, period=0.5).overturned is overturned
     period = found.margins.nearest_period
@@ -85,24 +85,22 @@ def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
 
 @pytest.mark.parametrize("motion", ["sine", "record"])
 def test_what_is_not_to_be_searched_is_not(motion, monkeypatch):
-    monkeypatch.setattr(assessment, "block_thresholds", None)  # a search fails
+    monkeypatch.setattr(response, "block_thresholds", None)  # a search fails
     given = {"motion": RECORD} if motion == "record" else {"motion": motion, **MOTION}
     found = BLOCK.response(**given, thresholds=False)
     assert (found.thresholds, found.margins, found.margin) == (None, None, None)
     assert not any("not found" in text for text in found.warnings)
 
 
-def test_margins_and_assessment_as_text_and_tables():
+def test_margins_and_responses_as_text_and_tables():
     found = BLOCK.response("sine", **MOTION)
     assert repr(found.margins).startswith("<rocking.Margins: acceleration 4.7 m/s2, period 0.5")
-    assert repr(found.assessment).startswith(
-        "<rocking.Assessment: rocks and comes to rest; it does not overturn below 4.7"
-    )
+    assert (found.sentence, found.margin[:30]) == ("rocks and comes to rest", "it does not overturn below 4.7")
     data, series = found.margins.to_xarray(), found.margins.to_pandas()
     assert data["periods"].values.tolist() == [one.value for one in found.margins.periods]
     for name, value in series.items():
         assert data[name].item() == value == getattr(found.margins, name)
-    for one in (found.margins, found.assessment, BLOCK.response(RECORD, scale=0.55).assessment):
+    for one in (found.margins, found, BLOCK.response(RECORD, scale=0.55)):
         assert pickle.loads(pickle.dumps(one)) == one
     none = BLOCK.response("sine", peak_acceleration=1e-3, period=0.01).margins
     assert none.to_pandas().isna()["nearest_period"]
@@ -122,13 +120,13 @@ def test_overturning_has_no_rotation():
     found = BLOCK.response("sine", peak_acceleration=8.0, period=0.5)
     assert math.isnan(found.rotation)
     assert math.isnan(found.displacement)
-    assert repr(found).startswith("<rocking.BlockResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m")
+    assert repr(found).startswith("<rocking.BodyResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m")
 
 
 def test_text_forms():
     found = BLOCK.response("sine", **MOTION)
     assert repr(found) == (
-        "<rocking.BlockResponse: rocks and comes to rest: peak rotation 7.419 deg, top displacement 0.2066 m, "
+        "<rocking.BodyResponse: rocks and comes to rest: peak rotation 7.419 deg, top displacement 0.2066 m, "
         "1 impact during the pulse; block of 0.4 m x 1.6 m under sine of 4 m/s2 and 0.5 s>"
     )
     html = found._repr_html_()
@@ -290,7 +288,7 @@ def test_outcome_changes_across_the_boundary():
 
 
 def test_periods_and_frequency_ratios():
-    problem = BlockProblem(BLOCK, "sine", 4.0, 0.5)
+    problem = Problem.of(BLOCK, "sine", 4.0, 0.5)
     omega = frequency_ratio_of(BLOCK, 0.5)
     assert omega == pytest.approx(problem.groups["frequency_ratio"], rel=1e-14)
     assert period_of(BLOCK, omega) == pytest.approx(0.5, rel=1e-14)
@@ -322,7 +320,7 @@ def test_a_record_with_a_scale_is_solved_in_groups():
     assert found.peak_rotation == expected.peak_rotation > 0.0
     assert found.rotation == found.peak_rotation * block.alpha
     assert found.displacement == pytest.approx(2.0 * block.half_height * math.sin(found.rotation))
-    assert repr(found).startswith("<rocking.BlockResponse: rocks and comes to rest: peak rotation")
+    assert repr(found).startswith("<rocking.BodyResponse: rocks and comes to rest: peak rotation")
     assert "under made up scaled to 2.69" in repr(found)
     data = found.to_xarray()
     assert data["displacement"].attrs["units"] == "m"

@@ -119,7 +119,7 @@ def test_restitution_of_a_frame_by_conservation_of_momentum(mass_ratio):
 
 def test_a_beam_makes_columns_safer():
     ground = {"peak_acceleration": 3.0, "period": 1.0}
-    alone = COLUMN.response("sine", **ground).assessment.thresholds[0].value
+    alone = COLUMN.response("sine", **ground).thresholds[0].value
     assert frame_of(2.0).response("sine", **ground).thresholds[0].value > alone  # Makris & Vassiliou (2013)
 
 
@@ -152,8 +152,8 @@ def test_contact_is_said_to_be_unknown():
     found = frame_of(1.0).response("sine", peak_acceleration=4.0, period=0.5)
     assert found.rocking_model_applies
     assert any("contact forces" in text for text in found.warnings)
-    assert found.assessment.largest_safe_acceleration is not None
-    assert found.assessment.largest_safe_friction_demand is None
+    assert found.largest_safe_acceleration is not None
+    assert found.largest_safe_friction_demand is None
     assert "structure of alpha" in repr(found)
 
 

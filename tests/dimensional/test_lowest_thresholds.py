@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._dimensional.body_problem import BodyProblem
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
+from rocking._dimensional.problem import Problem
 from rocking._excitation.pulses import as_pulse
 
 
@@ -26,7 +26,7 @@ def test_no_threshold_of_the_search_of_one_body_is_lower_and_each_is_confirmed_f
 ) -> None:
     bodies = random_bodies(7, 6)
     highest = 12.0 * np.asarray(bodies.uplift_acceleration)
-    found = lowest_thresholds(BodyProblem(bodies, as_pulse(pulse), np.ones(()), np.array(period), None), highest)
+    found = lowest_thresholds(Problem(bodies, as_pulse(pulse), np.ones(()), np.array(period), None), highest)
     single = np.array(
         [
             rocking.RigidBody(left=left, right=right, height=height).thresholds(pulse, period=period).lowest
@@ -48,7 +48,7 @@ def test_no_threshold_of_the_search_of_one_body_is_lower_and_each_is_confirmed_f
 
 def test_nothing_is_found_above_the_highest_acceleration_or_below_uplift() -> None:
     bodies = random_bodies(3, 6)
-    problem = BodyProblem(bodies, as_pulse("sine"), np.ones(()), np.array(0.8), None)
+    problem = Problem(bodies, as_pulse("sine"), np.ones(()), np.array(0.8), None)
     found = lowest_thresholds(problem, 20.0 * np.asarray(bodies.uplift_acceleration))
     known = np.isfinite(found)
     assert known.sum() >= 3

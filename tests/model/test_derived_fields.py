@@ -24,7 +24,18 @@ ROOT = Path(__file__).parents[2]
 DECLARATION = """
 RETURNS = ResponseField(
     "returns", "f8", "1", "3.11", "whether the block moves back as the pulse ends",
-    derive=lambda fields, groups: (fields["end_velocity"] < 0.0) * groups["restitution"],
+    derive=lambda fields, groups, motion, body: (fields["end_velocity"] < 0.0) * groups["restitution"],
+)
+def to_rest(fields, groups, motion, body):
+    "From the uplift to the end of the pulse, and in free rocking without loss to the next impact; slender [s]."
+    if body is None or "frequency_ratio" not in groups:
+        return np.full(fields["outcome"].shape, np.nan)
+    end = (motion.end - motion.start) / groups["frequency_ratio"]
+    free = np.arctanh(np.minimum(fields["end_rotation"], 0.9))
+    return np.where(fields["outcome"] == 1, (end - fields["uplift_time"] + free) / body.frequency_parameter, np.nan)
+TO_REST = ResponseField(
+    "rocking_duration", "f8", "s", "3.11", "duration of rocking", "it does not come to rest", derive=to_rest,
+    kinds=KINDS - {"edges"},
 )
 """
 
@@ -53,6 +64,12 @@ query = {"pulse": "sine", "slenderness": 0.3, "frequency_ratio": 5.0, "restituti
 with TestClient(create_app(Settings(results=sys.argv[2], max_seconds=600.0)), base_url="http://127.0.0.1") as client:
     one = client.get("/v1/response", params=query).json()
     many = client.post("/v1/response", json=query, headers={"Accept": "text/csv"}).text
+    given = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
+    one_block = client.get("/v1/blocks/response", params=given | {"pulse": "sine", "method": "solver"}).json()
+    rows = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [given]}).json()
+block = rocking.Block(0.4, 1.6).response("sine", peak_acceleration=4.0, period=0.5)
+sized = ["--width=0.4m", "--height=1.6m", "--peak-acceleration=4m/s2", "--period=0.5s", "--format=json"]
+in_si = json.loads(CliRunner().invoke(app, ["response", "--pulse", "sine", *sized]).output)
 cube = spectrum("sine", restitution=0.85, slenderness=np.linspace(0.2, 0.5, 4),
                 frequency_ratio=np.linspace(4.0, 6.0, 4), derived=["returns"])
 print(json.dumps({
@@ -61,6 +78,10 @@ print(json.dumps({
     "pandas": list(found.to_pandas().columns),
     "command": printed.output,
     "one": one,
+    "durations": [block.rocking_duration, block.to_dict()["rocking_duration"], block.to_pandas()["rocking_duration"],
+                  block.to_xarray()["rocking_duration"].item(), one_block["rocking_duration"],
+                  rows["rocking_duration"][0], in_si["rocking_duration"]],
+    "units": [block.to_xarray()["rocking_duration"].attrs["units"], one_block["units"]["rocking_duration"]],
     "many": many,
     "cube": cube["returns"].values.max(),
 }))
@@ -71,7 +92,7 @@ def test_a_declaration_alone_makes_a_field_appear_everywhere(tmp_path):
     module = ast.parse((ROOT / "rocking/_model/fields.py").read_text())
     names = [ast.unparse(one.targets[0]) if isinstance(one, ast.Assign) else "" for one in module.body]
     place = names.index("DERIVED_FIELDS")
-    module.body[place].value.elts.append(ast.Name("RETURNS", ast.Load()))
+    module.body[place].value.elts += [ast.Name(name, ast.Load()) for name in ("RETURNS", "TO_REST")]
     module.body[place:place] = ast.parse(DECLARATION).body
     declared = ast.unparse(module)
     done = subprocess.run(
@@ -82,6 +103,9 @@ def test_a_declaration_alone_makes_a_field_appear_everywhere(tmp_path):
     assert found["attribute"] == found["xarray"] == [0.0, 0.85]
     assert "returns" in found["pandas"]
     assert found["one"]["returns"] == found["cube"] == 0.85
+    (duration,) = set(found["durations"])
+    assert 0.44 < duration < 0.6
+    assert found["units"] == ["s", "s"]
     for text in (found["command"], found["many"]):
         header, row = text.strip().splitlines()
         assert float(dict(zip(header.split(","), row.split(","), strict=True))["returns"]) == 0.85

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._dimensional.curves import block_boundary
 from rocking._spectra.cubes import spectrum
 from tests.suites.motions import noise
 
@@ -37,7 +36,7 @@ PICTURES = {
         BLOCK.spectrum("sine", peak_acceleration=4.0, period=np.linspace(0.1, 0.5, 9)).top_displacement
     ),
     "fraction": lambda: rocking.fragility([noise(1), noise(2)], BLOCK, intensity=np.geomspace(1, 20, 6)).fraction,
-    "boundary": lambda: block_boundary(BLOCK, "sine", period=(0.5, 0.8)).peak_acceleration,
+    "boundary": lambda: BLOCK.boundary("sine", period=(0.5, 0.8)).peak_acceleration,
 }
 
 

@@ -13,7 +13,6 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 import rocking
 from rocking import plot
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.curves import block_boundary
 from rocking.plot.output import new_figure, save_figure
 from tests.suites.motions import noise
 
@@ -160,7 +159,7 @@ def test_a_response_is_refused_with_what_to_type(ax):
 
 def test_boundary_in_groups_and_in_si_units(ax):
     window = 2 * np.pi / (np.array([4.0, 2.0]) * BLOCK.frequency_parameter)
-    curves = block_boundary(BLOCK, "sine", restitution=0.85, period=tuple(window))
+    curves = BLOCK.boundary("sine", restitution=0.85, period=tuple(window))
     x = np.concatenate([line.get_xdata() for line in plot.boundary(curves, ax).lines])
     assert (np.nanmin(x), np.nanmax(x)) == pytest.approx(tuple(window), rel=1e-9)
     groups = plot.boundary(curves.drop_vars(["period", "peak_acceleration"]))

@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "notation.md").read_text(encoding="utf-8")
 HEADER = ["term", "symbol", "Python", "command line", "HTTP", "column", "unit", "where defined"]
 
-RETURNED = {"InvalidArgumentError", "Outcome", "PulseFit", "Response", "RockingError", "StoppedError"}
+RETURNED = {"BodyResponse", "InvalidArgumentError", "Outcome", "PulseFit", "Response", "RockingError", "StoppedError"}
 """Classes that functions return or raise."""
 
 

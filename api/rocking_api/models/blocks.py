@@ -12,7 +12,7 @@ from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import AbsoluteTolerance, Method, Params, PulseName, TableFormat
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, PointResponse
+from rocking_api.models.responses import BY_SOLVER, PointResponse, with_derived_fields, with_fields
 
 MAX_BLOCKS = 10_000
 """Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
@@ -112,6 +112,7 @@ class BlockRows(BlocksParams):
     )
 
 
+@with_derived_fields(list[float | None])
 class BlocksResponse(Answer):
     """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
 
@@ -139,6 +140,15 @@ class BlocksResponse(Answer):
 
 
 OVERTURNS_ABOVE = Field(description="true: overturns just above and survives just below; false: the reverse")
+
+
+AMPLITUDES = "all amplitudes at which the outcome changes"
+NOTES = Field(description="what else is worth knowing")
+
+Edge = Annotated[
+    Literal["right", "left"] | None,
+    Field(description="edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"),
+]
 
 
 class Threshold(BaseModel):
@@ -185,97 +195,28 @@ class Margins(BaseModel):
     sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal searched [m]")
 
 
-class BodySummary(Answer):
-    """What happens to a body whose centre of mass is not that of the block, under any motion."""
+@with_fields("pulse", "edges")
+class BodyResponse(Answer):
+    """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
-    meaning: str = Field(description="the outcome in words; where the rocking model does not apply, that and why")
-    margin: str | None = Field(description="from which strength of the motion it overturns, in words; null: not asked")
-    outcome: str = Field(description="final outcome by name")
-    overturned: bool = Field(description="by the rocking model: of a body that neither slides nor lifts off")
-    rocking_model_applies: bool = Field(
-        description="false: pure rocking needs a coefficient of friction beyond 1, or the body lifts off"
-    )
-    edge: Literal["right", "left"] | None = Field(
-        description="edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"
-    )
-    peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
-    rotation_left_deg: float | None = Field(description="largest rotation about the left edge [deg]; likewise")
-    rotation_right_deg: float | None = Field(description="largest rotation about the right edge [deg]; likewise")
-    top_displacement: float | None = Field(description="largest horizontal displacement of the top [m]; likewise")
-    peak_rotation: float | None = Field(description="max |theta|/alpha, alpha of the edge [-]; likewise")
-    exceeded_alpha: bool = Field(description="whether the rotation passes alpha; the ground can bring a body back")
-    impacts: int = Field(description="number of impacts until the outcome is certain [-]")
-    uplift_time: float | None = Field(description="time of the first uplift [s]; null: no uplift")
-    uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
-    alpha_left_deg: float = Field(description="slenderness angle of the left edge [deg]")
-    alpha_right_deg: float = Field(description="slenderness angle of the right edge [deg]")
-    friction_demand: float | None = Field(
-        description="coefficient of friction that pure rocking needs, impacts excluded [-]; null: it lifts off"
-    )
-    lifts_off: bool = Field(description="whether pure rocking would need a tensile reaction of the ground")
+    query: BlockParams = QUERY
+    edge: Edge
+    thresholds: list[Threshold] | None = Field(description=f"{AMPLITUDES}, this period, ascending")
+    notes: list[str] = NOTES
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
 
 
-class BodyResponse(BodySummary):
-    """What happens to a body under a pulse."""
-
-    query: BlockParams = QUERY
-    thresholds: list[Threshold] = Field(
-        description="all amplitudes at which the outcome changes, this period, ascending"
-    )
-
-
-class BlockSummary(Answer):
-    """What happens to a block, under any motion."""
-
-    overturned: bool = Field(description="by the rocking model: of a block that neither slides nor lifts off")
-    peak_rotation_deg: float | None = Field(description="max |theta| [deg]; null if overturned")
-    top_displacement: float | None = Field(description="largest horizontal displacement of the top corner [m]")
-    alpha_deg: float = Field(description="slenderness angle [deg]")
-    half_diagonal: float = Field(description="R [m]")
-    frequency_parameter: float = Field(description="p [rad/s]")
-    restitution: float = Field(description="eta [-]; with momentum 0 where (2.4) is negative")
-    uplift_acceleration: float = Field(description="smallest ground acceleration that starts rocking [m/s2]")
-    friction_at_uplift: float = Field(
-        description="coefficient of friction below which it slides instead of rocking [-]"
-    )
-    metadata: Metadata = METADATA_FIELD
-
-
-class BlockResponse(BlockSummary):
+@with_fields("pulse", "block")
+class BlockResponse(Answer):
     """What happens to the block."""
 
     query: BlockParams = QUERY
     response: PointResponse = Field(description="the same request and response in dimensionless groups")
-    rocking_model_applies: bool = Field(
-        description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off; what is "
-        "said of its rocking and overturning then does not hold for a block that is free to do so"
-    )
-    meaning: str = Field(
-        description="the outcome in words; where the rocking model does not apply, first of all that and why"
-    )
     thresholds: list[Threshold] | None = Field(
-        description="all amplitudes at which the outcome changes, this period, ascending; null if not found in time, "
-        "see `warnings`"
+        description=f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
     )
-    largest_safe_acceleration: float | None = Field(
-        description="peak acceleration below which this block, of this size, does not overturn under this pulse at "
-        "this period [m/s2]; a smaller block of the same shape may; null: no change of outcome was found, or the "
-        "rocking model does not apply just below the lowest of `thresholds`, see `warnings`"
-    )
-    largest_safe_friction_demand: float | None = Field(
-        description="coefficient of friction that it needs to be safe just below that acceleration [-]; null likewise"
-    )
-    margin: str = Field(description="below which peak acceleration it does not overturn at this period, in words")
     margins: Margins | None = Field(description="null if they were not found in time, see `warnings`")
-    friction_demand: float | None = Field(
-        description="the same through the whole motion, impacts excluded; if it overturns, until it passes alpha for "
-        "good [-]; null: it lifts off"
-    )
-    friction_at_impact: float = Field(
-        description="ratio of the horizontal to the vertical impulse at its impacts, 0 without impacts [-]"
-    )
-    smallest_normal_reaction: float = Field(description="over its weight, for as long [-]; 0 and below: it lifts off")
-    notes: list[str] = Field(description="what else is worth knowing")
+    notes: list[str] = NOTES
     data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
+    metadata: Metadata = METADATA_FIELD

@@ -12,10 +12,10 @@ from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import OVERTURNS_ABOVE, BlockSummary, BodySummary, MassHeight, Offset, SizeParams
+from rocking_api.models.blocks import NOTES, OVERTURNS_ABOVE, Edge, MassHeight, Offset, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Format
-from rocking_api.models.responses import BY_SOLVER, Motion
+from rocking_api.models.responses import BY_SOLVER, Motion, with_fields
 
 SMALLEST_SCALE = 1e-6
 """Smallest factor of a record [-]."""
@@ -194,63 +194,35 @@ class FittedPulse(BaseModel):
     )
 
 
-class RecordResponse(BlockSummary):
+_SCALES = Field(
+    description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
+)
+
+
+@with_fields("record", "block")
+class RecordResponse(Answer):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
     query: RecordResponseParams = QUERY
     record: RecordDescription = _RECORD
-    exceeded_alpha: bool = Field(description="whether the rotation passes alpha; the ground can bring a block back")
-    outcome: str = Field(description="final outcome by name")
-    rocking_model_applies: bool = Field(
-        description="false: pure rocking needs a coefficient of friction beyond 1, or the block lifts off"
-    )
-    meaning: str = Field(description="the outcome in words; where the rocking model does not apply, that and why")
-    margin: str | None = Field(
-        description="from which factor of the record it overturns, in words; null if that was not asked for"
-    )
-    overturning_scale: float | None = Field(
-        description="lowest factor of the record found at which it overturns [-]; null: none was found, or it was not "
-        "asked for; of factors at most 0.5 % apart"
-    )
-    impacts: int = Field(description="number of impacts while the ground moves [-]")
-    peak_rotation: float | None = Field(description="max |theta|/alpha [-]; null if overturned")
-    amplification: float | None = Field(
-        description="relative change of the peak rotation over that of the amplitude of the record [-]; null: it "
-        "overturns or does not uplift, or the outcome changes within 1e-9 of the amplitude"
-    )
-    peak_is_determined: bool = Field(
-        description="false: the amplification exceeds 1e4, the record does not determine the peak, see `warnings`"
-    )
-    slenderness: float = Field(description="g tan(alpha)/PGA of the scaled record [-]")
-    overturned_resampled: bool | None = Field(
-        description="the same under the record interpolated band-limited at an eighth of its step; null: it is too "
-        "long, or its step too small"
-    )
-    peak_rotation_resampled: float | None = Field(description="the same [-]; null if overturned, or not computed")
-    thresholds: list[ScaleThreshold] | None = Field(
-        description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
-    )
-    friction_demand: float | None = Field(
-        description="the same through the whole motion [-]; null: it lifts off, or the forces are not known"
-    )
-    friction_at_impact: float | None = Field(
-        description="horizontal over vertical impulse at its impacts [-]; null: not known"
-    )
-    smallest_normal_reaction: float | None = Field(
-        description="over its weight [-]; 0 and below: it lifts off; null: not known"
-    )
+    thresholds: list[ScaleThreshold] | None = _SCALES
+    notes: list[str] = NOTES
     pulse: FittedPulse | None = Field(None, description="null unless requested")
     source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
 
 
-class RecordBodyResponse(BodySummary):
+@with_fields("record", "edges")
+class RecordBodyResponse(Answer):
     """What happens to a body whose centre of mass is not that of the block."""
 
     query: RecordResponseParams = QUERY
     record: RecordDescription = _RECORD
-    thresholds: list[ScaleThreshold] | None = Field(
-        description="all scales at which the outcome changes, ascending; null: not asked for"
-    )
+    edge: Edge
+    thresholds: list[ScaleThreshold] | None = _SCALES
+    notes: list[str] = NOTES
+    source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
 
 
 class RecordHistoryResponse(Motion):

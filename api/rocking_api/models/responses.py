@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from rocking._base.errors import finite
+from rocking._dimensional.response import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model.fields import (
     COLUMN_FIELDS,
@@ -22,6 +23,7 @@ from rocking._model.fields import (
     OVERTURNED,
     PEAK_ROTATION,
     SOURCE,
+    ResponseField,
 )
 from rocking._model.response import Outcome
 from rocking_api.execution.evaluation import BatchResult, PointResult
@@ -57,6 +59,29 @@ def with_derived_fields(kind: Any) -> Callable[[type[Model]], type[Model]]:
     """A decorator that adds the derived fields, each of the type `kind`, to a model."""
     fields: dict[str, Any] = {field.name: (kind, Field(description=field.description())) for field in DERIVED_FIELDS}
     return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
+
+
+def with_fields(*kinds: str) -> Callable[[type[Model]], type[Model]]:
+    """A decorator that adds what is found of one body, for responses of some kinds, unless the model declares it."""
+    declared = [one for one in SHOWN if one.dtype != "O" and one.kinds >= {*kinds}]
+
+    def add(model: type[Model]) -> type[Model]:
+        fields: dict[str, Any] = {
+            one.label: (_type_of(one), Field(description=one.description(unit=one.label_unit)))
+            for one in declared
+            if one.label not in model.model_fields
+        }
+        return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
+
+    return add
+
+
+def _type_of(field: ResponseField) -> Any:
+    """The type in JSON of the values of a field for one body."""
+    if field is OUTCOME:
+        return str
+    kind: Any = {"f": float, "?": bool, "U": str, "i": int}[field.dtype[0]]
+    return kind | None if field.missing else kind
 
 
 @with_derived_fields(float | None)

@@ -8,15 +8,16 @@ from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._base.errors import InvalidArgumentError, finite
-from rocking._dimensional.assessment import Assessment, assess
+from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.block import Block
 from rocking._dimensional.margins import Margins as FoundMargins
-from rocking._dimensional.problem import BlockProblem
-from rocking._dimensional.rigid_body import RigidBody, body_of_size
+from rocking._dimensional.problem import Problem
+from rocking._dimensional.response import BodyResponse as Found
+from rocking._dimensional.response import respond
+from rocking._dimensional.rigid_body import body_of_size
 from rocking._dimensional.table import BlockTable, read_table, respond_table
-from rocking._dimensional.thresholds import BodyThresholds
 from rocking._numba.cancellation import StopFlag
+from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate, point_results
 from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
@@ -34,7 +35,6 @@ from rocking_api.models.blocks import (
     Margins,
     PeriodThreshold,
     SizeThreshold,
-    Threshold,
 )
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
@@ -110,7 +110,7 @@ def _read_table(body: BlockRows | bytes, params: BlocksParams, stop: StopFlag) -
         if len(body.blocks) > MAX_BLOCKS:
             raise TooLargeError("blocks", len(body.blocks), f"at most {MAX_BLOCKS}")
         problems = [
-            BlockProblem(
+            Problem.of(
                 Block(row.width, row.height),
                 params.pulse,
                 row.peak_acceleration,
@@ -146,47 +146,29 @@ def _blocks(
 
 
 def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse | BodyResponse:
-    block = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
-    if isinstance(block, RigidBody):
-        return _body(service, params, block, stop)
-    problem = BlockProblem(block, params.pulse, params.peak_acceleration, params.period, params.restitution)
-    found = _point(service, params, problem, stop)
+    body = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
+    problem = Problem.of(body, params.pulse, params.peak_acceleration, params.period, params.restitution)
+    if not problem.is_block:
+        if params.method == "cube":
+            raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")
+        service.metrics.points("solver", 1)
+        found = respond(problem, stop=stop)
+        said: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
+        return BodyResponse(query=params, **said)
+    point, bounded = _point(service, params, problem, stop)
     seconds = SEARCH_SHARE * service.settings.max_seconds
-    assessment = assess(problem, seconds=seconds, stop=stop, served=(FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper))
-    peak = None if found.peak_rotation is None else found.peak_rotation * block.alpha
-    return BlockResponse(
-        query=params,
-        response=found,
-        overturned=found.overturned,
-        peak_rotation_deg=None if peak is None else math.degrees(peak),
-        top_displacement=None if peak is None else block.top_displacement(peak),
-        alpha_deg=math.degrees(block.alpha),
-        half_diagonal=block.half_diagonal,
-        frequency_parameter=block.frequency_parameter,
-        restitution=found.query.restitution,
-        uplift_acceleration=block.uplift_acceleration,
-        friction_at_uplift=block.half_width / block.half_height,
-        notes=[*([BY_SOLVER] if found.source == "solver" else []), *assessment.notes],
-        data_version=found.data_version,
-        **_assessed(assessment),
-    )
+    served = FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
+    found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
+    about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
+    about["notes"] = [*([BY_SOLVER] if point.source == "solver" else []), *about["notes"]]
+    margins = None if found.margins is None else _margins(found.margins)
+    return BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
 
 
-def _body(service: Service, params: BlockParams, body: RigidBody, stop: StopFlag) -> BodyResponse:
-    if params.method == "cube":
-        raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")
-    motion = params.model_dump(include={"peak_acceleration", "period", "restitution"})
-    found = body.response(params.pulse, **motion, stop=stop)
-    service.metrics.points("solver", 1)
-    return BodyResponse(query=params, thresholds=_thresholds(found.thresholds), **found.summary())
-
-
-def _thresholds(found: BodyThresholds) -> list[Threshold]:
-    return [Threshold(peak_acceleration=one.value, overturns_above=one.overturns_above) for one in found]
-
-
-def _point(service: Service, params: BlockParams, problem: BlockProblem, stop: StopFlag) -> PointResponse:
-    """The response in groups, by a data set or by the solver."""
+def _point(
+    service: Service, params: BlockParams, problem: Problem, stop: StopFlag
+) -> tuple[PointResponse, BoundedResponse]:
+    """The response in groups, by a data set or by the solver, as a model too."""
     groups = problem.groups
     dimensionless = ResponseParams(
         pulse=params.pulse,
@@ -198,29 +180,14 @@ def _point(service: Service, params: BlockParams, problem: BlockProblem, stop: S
         restitution=groups["restitution"],
     )
     points = {name: getattr(dimensionless, name) for name in ("slenderness", "frequency_ratio", "restitution")}
-    (point,) = point_results(*evaluate(service.cubes, dimensionless, **points, stop=stop))
+    found, versions = evaluate(service.cubes, dimensionless, **points, stop=stop)
+    if not found.from_cube:
+        found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres
+    (point,) = point_results(found, versions)
     service.metrics.points(point.source, 1)
     answer = point_response(dimensionless, point)
     answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
-    return answer
-
-
-def _assessed(found: Assessment) -> dict[str, Any]:
-    """The fields of a response that come from the assessment."""
-    thresholds = found.thresholds
-    return {
-        "rocking_model_applies": found.rocking_model_applies,
-        "meaning": found.sentence,
-        "margin": found.margin,
-        "thresholds": None if thresholds is None else _thresholds(thresholds),
-        "largest_safe_acceleration": found.largest_safe_acceleration,
-        "largest_safe_friction_demand": found.largest_safe_friction_demand,
-        "margins": None if found.margins is None else _margins(found.margins),
-        "friction_demand": finite(found.contact.largest_friction_demand),
-        "friction_at_impact": found.contact.impulse_ratio,
-        "smallest_normal_reaction": found.contact.smallest_normal_reaction,
-        "warnings": found.warnings,
-    }
+    return answer, found
 
 
 def _margins(found: FoundMargins) -> Margins:

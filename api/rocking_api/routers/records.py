@@ -11,9 +11,9 @@ from fastapi import APIRouter, Request, Response
 
 from rocking._base.errors import InvalidArgumentError, finite
 from rocking._dimensional.block import Block
-from rocking._dimensional.problem import BlockProblem, record_groups, restitution_of, search_range
+from rocking._dimensional.problem import Problem, record_groups, restitution_of, search_range
 from rocking._dimensional.response import respond
-from rocking._dimensional.rigid_body import RigidBody, body_of_size
+from rocking._dimensional.rigid_body import body_of_size
 from rocking._dimensional.thresholds import BodyThresholds, scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
@@ -155,56 +155,18 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
 def _response(
     service: Service, params: RecordResponseParams, record: Record, stop: StopFlag
 ) -> RecordResponse | RecordBodyResponse:
-    block = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
-    if isinstance(block, RigidBody):
-        return _body(params, block, record, stop)
-    problem = BlockProblem(block, record, scale=params.scale, restitution=params.restitution)
-    found = respond(problem, thresholds=params.thresholds, stop=stop)
-    assessment = found.assess(seconds=SEARCH_SHARE * service.settings.max_seconds, stop=stop)
-    refined, changes, contact = assessment.resampled, assessment.thresholds, assessment.contact
-    return RecordResponse(
-        query=params,
-        record=_description(record),
-        overturned=found.overturned,
-        exceeded_alpha=found.exceeded_alpha,
-        outcome=found.outcome.name,
-        rocking_model_applies=assessment.rocking_model_applies,
-        meaning=assessment.sentence,
-        margin=assessment.margin,
-        overturning_scale=assessment.overturning_scale,
-        impacts=found.impacts,
-        peak_rotation=finite(found.peak_rotation),
-        amplification=finite(assessment.amplification),
-        peak_is_determined=assessment.peak_is_determined,
-        peak_rotation_deg=finite(math.degrees(found.rotation)),
-        top_displacement=finite(found.displacement),
-        alpha_deg=math.degrees(block.alpha),
-        half_diagonal=block.half_diagonal,
-        frequency_parameter=block.frequency_parameter,
-        restitution=found.restitution,
-        uplift_acceleration=block.uplift_acceleration,
-        slenderness=found.slenderness,
-        overturned_resampled=None if refined is None else bool(refined.overturned),
-        peak_rotation_resampled=None if refined is None else finite(float(refined.peak_rotation)),
-        thresholds=None if changes is None else _thresholds(changes, record),
-        friction_at_uplift=block.half_width / block.half_height,
-        friction_demand=finite(contact.largest_friction_demand),
-        friction_at_impact=finite(contact.impulse_ratio),
-        smallest_normal_reaction=finite(contact.smallest_normal_reaction),
-        pulse=_fitted(fit_pulse(record, blocks=block, stop=stop)) if params.fit else None,
-        warnings=assessment.warnings,
-    )
-
-
-def _body(params: RecordResponseParams, body: RigidBody, record: Record, stop: StopFlag) -> RecordBodyResponse:
-    if params.fit:
+    body = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
+    problem = Problem.of(body, record, scale=params.scale, restitution=params.restitution)
+    if params.fit and not problem.is_block:
         raise InvalidArgumentError("fit", params.fit, "a block whose centre of mass is in its middle")
-    found = body.response(record, scale=params.scale, restitution=params.restitution, stop=stop)
-    return RecordBodyResponse(
-        query=params,
-        record=_description(record),
-        thresholds=_thresholds(found.thresholds, record) if params.thresholds else None,
-        **found.summary(thresholds=params.thresholds),
+    seconds = SEARCH_SHARE * service.settings.max_seconds
+    found = respond(problem, stop=stop, thresholds=params.thresholds, seconds=seconds)
+    about = {"query": params, "record": _description(record), "thresholds": found.changes}
+    said: dict[str, Any] = about | found.summary()
+    if not problem.is_block:
+        return RecordBodyResponse(**said)
+    return RecordResponse(
+        **said, pulse=_fitted(fit_pulse(record, blocks=problem.block, stop=stop)) if params.fit else None
     )
 
 
@@ -212,7 +174,7 @@ def _history(params: RecordHistoryParams, request: Request, record: Record, form
     block = Block(params.width, params.height, params.gravity)
     motion = time_history(
         record,
-        **BlockProblem(block, record, scale=params.scale, restitution=params.restitution).groups,
+        **Problem.of(block, record, scale=params.scale, restitution=params.restitution).groups,
         samples=params.samples,
         contact=params.contact,
         stop=stop,

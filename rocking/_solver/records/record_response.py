@@ -49,11 +49,12 @@ def record_response(
     vertical_scale: ArrayLike | None = 1.0,
     threads: int | None = None,
     stop: StopFlag | None = None,
+    body: Any = None,
 ) -> Response:
     """`rocking.peak_response` under a record, whose arguments and errors it has, for arguments that are not labelled.
 
     "pulse" in the descriptions of the fields stands for the motion. Impacts are counted until the outcome and the peak
-    are certain.
+    are certain. `body` as of `Response`.
     """
     cores = AVAILABLE_CORES if threads is None else integer("threads", threads, 1, math.inf)
     given = {
@@ -73,7 +74,7 @@ def record_response(
     if motion.vertical is None:
         del named["vertical_scale"]
     dims, index = dimensions_of(*given.values()), index_of(*given.values())
-    return Response(**found, pulse=motion.name, groups=named, dims=dims, index=index)
+    return Response(**found, pulse=motion.name, groups=named, dims=dims, index=index, motion=motion, body=body)
 
 
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:

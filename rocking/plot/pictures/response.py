@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.amplitude import thresholds
-from rocking._dimensional.response import BlockResponse
+from rocking._dimensional.response import BodyResponse
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.outcome import Outcome
 from rocking._model.response import Response
@@ -24,7 +24,7 @@ BESIDE = 1e-7
 """Relative distance from a threshold of the points on either side of it [-]."""
 
 
-def response(found: BlockResponse | Response, ax: Axes | None = None, **style: Any) -> Axes:
+def response(found: BodyResponse | Response, ax: Axes | None = None, **style: Any) -> Axes:
     """Draw the peak rotation against the amplitude of the pulse, and the response in question as a point on it.
 
     The curve ranges from zero to twice the amplitude in question, or to the lowest one at which the block overturns if
@@ -33,7 +33,7 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
 
     Parameters
     ----------
-    found : BlockResponse or Response
+    found : BodyResponse or Response
         Result of `rocking.Block.response` under a pulse, drawn in SI units and degrees, or of `rocking.peak_response`
         for one block.
     ax : matplotlib.axes.Axes, optional
@@ -48,7 +48,7 @@ def response(found: BlockResponse | Response, ax: Axes | None = None, **style: A
     """
     groups: dict[str, Any]
     pulse: str | AbstractPulse
-    if isinstance(found, BlockResponse) and "pulse" in found.motion:
+    if isinstance(found, BodyResponse) and found.problem.kinds == {"pulse", "block"}:
         pulse, groups = found.problem.pulse, dict(found.problem.groups)
         # in m/s2 and degrees
         unit, angle = found.block.uplift_acceleration, np.degrees(found.block.alpha)
