@@ -19,7 +19,7 @@ print(blocks)
 
 # %%
 # Inside the closed curve a block overturns after an impact, above the other one without impact. Between the
-# two is the upper safe region, in which the ground brings the block back after it has passed alpha. The thin
+# two is the upper surviving region, in which the ground brings the block back after it has passed alpha. The thin
 # curves at the bottom left belong to overturning after several impacts, which the closed forms of the paper
 # do not cover.
 

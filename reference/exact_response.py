@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from flint import arb, ctx
 
-NO_UPLIFT, SAFE, OVERTURNED_DIRECTLY, OVERTURNED_AFTER_IMPACT, CAPPED = 0, 1, 2, 3, -1
+NO_UPLIFT, RECOVERS, OVERTURNED_DIRECTLY, OVERTURNED_AFTER_IMPACT, CAPPED = 0, 1, 2, 3, -1
 
 
 @dataclass

@@ -18,7 +18,7 @@ from reference.exact_response import (
     NO_UPLIFT,
     OVERTURNED_AFTER_IMPACT,
     OVERTURNED_DIRECTLY,
-    SAFE,
+    RECOVERS,
     ExactResponse,
 )
 from reference.polynomial_roots import bernstein_bounds, roots
@@ -79,13 +79,13 @@ class _Integration:
         if response.uplift_time is None:
             return self._close(NO_UPLIFT)
         response.margin = arb(-1)
-        return self._close(SAFE)
+        return self._close(RECOVERS)
 
     def _close(self, outcome: int) -> ExactResponse:
         response = self.response
         response.outcome = outcome
         response.exceeded_alpha = response.overturned or bool(self.peak > 1)
-        if outcome in (NO_UPLIFT, SAFE):
+        if outcome in (NO_UPLIFT, RECOVERS):
             response.peak_rotation = self.peak
         return response
 
@@ -232,7 +232,7 @@ class _Integration:
             response.impacts += 1
             return self._close(OVERTURNED_AFTER_IMPACT)
         self._raise_peak(motion.turning_point(arb(0), speed))
-        return self._close(SAFE)
+        return self._close(RECOVERS)
 
     def _raise_peak(self, z: arb) -> None:
         if z.mid() > self.peak:

@@ -21,7 +21,7 @@ from reference.exact_response import (
     NO_UPLIFT,
     OVERTURNED_AFTER_IMPACT,
     OVERTURNED_DIRECTLY,
-    SAFE,
+    RECOVERS,
     ExactResponse,
     working_precision,
 )
@@ -86,7 +86,7 @@ def response_and_amplification(
         moved = integrate_record(acceleration, time_step, **groups, scale=1 + arb(RELATIVE_CHANGE))
         if response.outcome != moved.outcome:
             return response, math.inf
-        if response.outcome != SAFE:
+        if response.outcome != RECOVERS:
             return response, math.nan
         change = abs(moved.peak_rotation / response.peak_rotation - 1) / arb(RELATIVE_CHANGE)
         return response, float(change.mid())
@@ -143,14 +143,14 @@ class _Integration:
             if not rests:
                 return self._free_rocking()
             response.chatter = True
-        return self._close(NO_UPLIFT if response.uplift_time is None else SAFE)
+        return self._close(NO_UPLIFT if response.uplift_time is None else RECOVERS)
 
     def _close(self, outcome: int) -> ExactResponse:
         response = self.response
         response.outcome = outcome
         highest = max((self.peaks[side] / edge.ratio for side, edge in self.edges.items()), key=float)
         response.exceeded_alpha = response.overturned or bool(highest > 1)
-        if outcome in (NO_UPLIFT, SAFE):
+        if outcome in (NO_UPLIFT, RECOVERS):
             response.peak_rotation, response.peaks = highest, (self.peaks[1], self.peaks[-1])
         return response
 
@@ -283,7 +283,7 @@ class _Integration:
                 response.impacts += impact
                 return self._close(OVERTURNED_AFTER_IMPACT)
             self._reach(edge.block.turning_point(arb(0), speed))
-        return self._close(SAFE)
+        return self._close(RECOVERS)
 
     def _reach(self, z: arb) -> None:
         """A peak on the present edge, in its units."""

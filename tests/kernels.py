@@ -4,7 +4,7 @@ import rocking
 from rocking._excitation.pulses import AbstractPulse
 from rocking._numba.compilation import Record
 from rocking._solver.kernels.event_loop import init_state, start_flight
-from rocking._solver.rules import SAFE, final_outcome, set_block, set_sign
+from rocking._solver.rules import RECOVERS, final_outcome, set_block, set_sign
 from rocking._solver.state import pulse_state
 
 
@@ -39,8 +39,8 @@ def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, flo
     """From z and w at the end of the motion: impacts until it overturns plus one, or 0; peak; impacts before it."""
     state = cell("sine", 2.0, 1.0, alpha, eta)
     set_sign(state, 1.0)
-    state["outcome"], state["uplifts"] = SAFE, 1
+    state["outcome"], state["uplifts"] = RECOVERS, 1
     final_outcome(state, z, w, False)
-    overturns = int(state["outcome"]) > SAFE
+    overturns = int(state["outcome"]) > RECOVERS
     after = 0 if overturns else max(int(state["peak_mode"]), 0) // 2
     return int(state["impacts"]) + 1 if overturns else 0, float(state["peak_rotation"]), after

@@ -22,7 +22,7 @@ from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._solver.kernels.event_loop import end_flight, init_state, start_flight
 from rocking._solver.peak_response import peak_response
 from rocking._solver.records.state import BLOCK_STATE
-from rocking._solver.rules import SAFE, set_block
+from rocking._solver.rules import RECOVERS, set_block
 from rocking._solver.state import pulse_state, step_state
 from rocking._solver.taylor.flight import flight_by_steps
 from rocking._solver.taylor.step import take_step
@@ -123,7 +123,7 @@ def follow_block(
             impact_times,
             stop,
         )
-        counts[WRONG_OUTCOMES] += (steps.z0[0] >= farthest) != (flight.outcome > SAFE)
+        counts[WRONG_OUTCOMES] += (steps.z0[0] >= farthest) != (flight.outcome > RECOVERS)
 
 
 @entry

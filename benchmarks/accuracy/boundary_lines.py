@@ -35,7 +35,7 @@ class Chords:
         points = np.stack([curves.slenderness.values, np.log(curves.frequency_ratio.values)])
         first = np.delete(np.arange(points.shape[1]), np.cumsum(sizes) - 1)
         self.start, self.end = points[:, first], points[:, first + 1]
-        self.to_safety = np.repeat(curves.neighbour_outcome.values <= Outcome.SAFE, sizes)[first]
+        self.to_safety = np.repeat(curves.neighbour_outcome.values <= Outcome.RECOVERS, sizes)[first]
 
     def distance(self, x: float, y: float) -> float:
         """Distance of a point from the nearest chord."""

@@ -115,7 +115,7 @@ def _case_1_1(data: xr.Dataset) -> Iterator[Reading]:
 
 def _overturning(data: xr.Dataset) -> Iterator[Reading]:
     eta = float(data.restitution[-1])
-    for name, wanted in (("falls_from", 3.0), ("safe_again", 3.5), ("direct", 4.0)):
+    for name, wanted in (("overturns_from", 3.0), ("survives_again", 3.5), ("direct", 4.0)):
         j = int(np.abs(data.frequency_ratio.values - wanted).argmin())
         column = data[name].isel(frequency_ratio=j)
         a = float(column.sel(restitution=eta)) if "restitution" in column.dims else float(column)

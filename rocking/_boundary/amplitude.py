@@ -121,9 +121,9 @@ def thresholds(
     Thresholds
         Under a pulse each is good to `RESOLUTION` in 1/a, or to `ELASTIC_RESOLUTION` where an elastic block overturns
         after more than `MOST_COUNTED` impacts. A region of one way of overturning narrower than 1/2000 of the range and
-        surrounded by a single other outcome can be missed; a safe band between two ways of overturning, of which all
-        with more than `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`. Under a record
-        the lowest is that of `rocking._boundary.scan.lowest_overturning`; above it amplitudes that differ by 0.2 % are
+        surrounded by a single other outcome can be missed; a surviving band between two ways of overturning, of which
+        all with more than `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`. Under a
+        record the lowest is that of `rocking._boundary.scan.lowest_overturning`; above it amplitudes that differ by 0.2 % are
         tried. Changes are bisected to 1e-6.
 
     Raises

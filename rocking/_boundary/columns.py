@@ -31,7 +31,7 @@ class Column:
     bottom, top : float
         1/a at the two ends [-].
     thinnest : float
-        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
+        As `THINNEST`, for overturning after many impacts and for the bands of surviving blocks within it [-].
     middle : float array (thresholds,)
         1/a of each threshold, halfway between its two regions [-].
     regions : int array (thresholds + 1,)
@@ -102,7 +102,7 @@ class Lines:
     classify : Classify
         The solver, with layer codes or region codes.
     thinnest : float array (lines,)
-        As `THINNEST`, for overturning after many impacts and for the bands of safe blocks within it [-].
+        As `THINNEST`, for overturning after many impacts and for the bands of surviving blocks within it [-].
     """
 
     def __init__(self, points: Floats, classify: Classify, thinnest: Floats) -> None:
@@ -128,7 +128,7 @@ class Lines:
         codes = without_layers(codes)
         start, end = _runs(line, codes)
         line, codes, low, high = line[start], codes[start], x[start], x[end]
-        for many in (False, True):  # first the safe bands between two regions of many impacts, then such regions
+        for many in (False, True):  # first the surviving bands between two regions of many impacts, then such regions
             thinnest = np.full(codes.size, THINNEST)
             uncounted = codes == UNCOUNTED
             coarse = uncounted if many else _between(uncounted)

@@ -72,8 +72,8 @@ def critical_frequency_ratio(
     FrequencyThresholds
         Each good to a relative `RESOLUTION`, or to `ELASTIC_RESOLUTION` where an elastic block overturns after more
         than `MOST_COUNTED` impacts. A region narrower than 1/1000 of a decade that lies between equal outcomes can be
-        missed; a safe band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are one,
-        is not, unless it is narrower than `RESOLUTION`.
+        missed; a surviving band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are
+        one, is not, unless it is narrower than `RESOLUTION`.
 
     Raises
     ------

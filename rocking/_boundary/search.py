@@ -317,12 +317,12 @@ def _distance(margin: Floats) -> Floats:
 
 
 def _next_share(a: Floats, b: Floats, c: Floats, fa: Floats, fb: Floats, fc: Floats) -> Floats:
-    """Where the next point lies between a and b: by inverse quadratic interpolation if it is safe, else halfway."""
+    """Where the next point lies between a and b: by inverse quadratic interpolation if well inside, else halfway."""
     with np.errstate(divide="ignore", invalid="ignore"):
         xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
-        safe = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        inside = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
         share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    return np.where(safe & np.isfinite(share), share, 0.5)
+    return np.where(inside & np.isfinite(share), share, 0.5)
 
 
 def refine_lines(

@@ -43,7 +43,7 @@ times the work.
 LAYERED = 3.5
 """Ends of regions of many impacts that the nodes of one line show, on average, above which the same holds [-].
 
-Under the pulse c2 thin safe bands divide such a region, each with thinner ones beside it, down to the finest scale.
+Under the pulse c2 surviving bands divide such a region, each with thinner ones beside it, down to the finest scale.
 """
 
 UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD = 3e-4, 3e-3, 3e-4

@@ -74,15 +74,15 @@ def overturning_boundary(
         Polylines in the contiguous ragged representation of CF: slenderness(point), frequency_ratio(point), each
         vertex good to `RESOLUTION` in 1/a (to `ELASTIC_RESOLUTION` for elastic blocks, where one of the two regions
         has uncounted impacts); row_size(curve); outcome(curve), impacts(curve) of the overturning region
-        that the curve bounds; neighbour_outcome(curve), neighbour_impacts(curve) on the other side (SAFE, 0, or
+        that the curve bounds; neighbour_outcome(curve), neighbour_impacts(curve) on the other side (RECOVERS, 0, or
         another way of overturning). An outline is cut into curves where its neighbour changes, the point before the
         cut being repeated; outline(curve) numbers it. `impacts` is -1 for overturning after more than `MANY_IMPACTS`
         impacts or after impacts that accumulate to rest: that is one region. Attributes: chord_error [-], the largest
         distance of a chord from its curve, at the middles of the chords; uncounted_chord_error, the same for the
         curves of regions whose `impacts` are -1; thinnest_region [-], the width in 1/a below which a region is not
         resolved and its two neighbours are taken to meet; thinnest_uncounted_region [-], the width below which a region
-        whose `impacts` are -1, or a safe band beside one, may be missing; end_distance [-], the distance in log omega
-        within which the ends of these regions are known, and below which they are not resolved (`END` for all
+        whose `impacts` are -1, or a surviving band beside one, may be missing; end_distance [-], the distance in log
+        omega within which the ends of these regions are known, and below which they are not resolved (`END` for all
         others); node_distance [-], the largest distance of the nodes in 1/a; unmeasured_chords, the number of chords at
         whose middle the curve was not found; open_ends, the number of ends of regions that are known to a step of the
         nodes only.

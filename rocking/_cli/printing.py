@@ -166,7 +166,7 @@ _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
 
 _FIRST_LINES = (
     *("edge", "rotation_left_deg", "rotation_right_deg"),
-    *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_safe_acceleration", "thresholds"),
+    *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_surviving_acceleration", "thresholds"),
     *("nearest_acceleration", "nearest_period", "period", "pulse_duration", "overturning_scale"),
     *("peak_rotation", "impacts", "restitution", "friction_demand"),
     *("pulse", "pulse_peak_acceleration", "pulse_cycles", "pulse_phase", "pulse_explained", "pulse_scale_ratio"),
@@ -211,7 +211,7 @@ def _words(name: str, result: Mapping[str, Any]) -> Any:
     if name in _NEAREST:
         overturns_above = (value > result[_NEAREST[name]]) != result["overturned"]
         return threshold_text(value, 6, overturns_above=overturns_above)
-    if name in ("largest_safe_acceleration", "overturning_scale"):
+    if name in ("largest_surviving_acceleration", "overturning_scale"):
         return threshold_text(value, 6)
     return value
 

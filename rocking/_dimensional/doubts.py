@@ -144,7 +144,7 @@ def _of_safety(found: BodyResponse) -> list[str]:
     needs = f"it needs a coefficient of friction of {below.largest_friction_demand:.3g}"
     why = "the block lifts off" if below.lifts_off else needs
     lowest = f"{found.thresholds[0].text()} m/s2, the lowest acceleration at which it overturns"
-    return [f"no largest safe acceleration is given: just below {lowest} by the rocking model, {why}"]
+    return [f"no largest surviving acceleration is given: just below {lowest} by the rocking model, {why}"]
 
 
 def _of_search(found: BodyResponse) -> list[str]:

@@ -187,9 +187,9 @@ def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: A
         overturned = records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
         return np.where(overturned, BALANCED, records["peak_rotation"]), overturned, margin, records["impacts"]
 
-    safe = np.clip(_certain_survival(motion, cells), 1.0, HIGHEST)
-    start = np.searchsorted(-GRID, -1.0 / safe, "right") - 1
-    nodes = _searched(solve, start, np.where(top > safe, count, 0))
+    certain = np.clip(_certain_survival(motion, cells), 1.0, HIGHEST)
+    start = np.searchsorted(-GRID, -1.0 / certain, "right") - 1
+    nodes = _searched(solve, start, np.where(top > certain, count, 0))
     found = np.full(top.size, np.nan)
     above = np.flatnonzero(nodes.overturned)
     if above.size:

@@ -177,11 +177,11 @@ JUDGED = dict((
             source=lambda found: found.block.half_width / found.block.half_height),
     _judged("pulse_duration", "duration of the pulse", unit="s", kinds=ONE - {"record"},
             source=lambda found: float(found.problem.duration)),
-    _judged("largest_safe_acceleration", "peak acceleration below which this block, of this size, does not overturn "
-            "under this pulse at this period; a smaller block of the same shape may", "no change of outcome was found, "
-            "or the rocking model does not apply just below the lowest of `thresholds`, see `warnings`",
+    _judged("largest_surviving_acceleration", "peak acceleration below which this block, of this size, does not "
+            "overturn under this pulse at this period; a smaller block of the same shape may",
+            "no change of outcome was found, or the rocking model does not apply just below the lowest of `thresholds`, see `warnings`",
             unit="m s-2", kinds=PULSES),
-    _judged("largest_safe_friction_demand", "coefficient of friction that it needs just below that acceleration",
+    _judged("largest_surviving_friction_demand", "coefficient of friction that it needs just below that acceleration",
             "that is null, or it is not known", kinds=PULSES),
     _judged("nearest_acceleration", "peak acceleration nearest in its logarithm at which the outcome changes",
             "none was found", unit="m s-2", kinds=PULSES,
@@ -423,7 +423,7 @@ class BodyResponse(ResponseFields, EqualByValue):
     def margin(self) -> str | None:
         """From which strength one body overturns, in words; None if that was not searched.
 
-        Of a block under a pulse below which acceleration it does not, as `largest_safe_acceleration`.
+        Of a block under a pulse below which acceleration it does not, as `largest_surviving_acceleration`.
         """
         self._need_one("margin")
         found = self.thresholds if self.searches_thresholds else None
@@ -434,12 +434,12 @@ class BodyResponse(ResponseFields, EqualByValue):
             return found.sentence
         if not found:
             return "no peak acceleration was found that overturns it at this period"
-        if not self._is_safe_below:
-            return "below which peak acceleration it is safe is not known: the rocking model does not apply"
+        if not self._survives_below:
+            return "below which peak acceleration it survives is not known: the rocking model does not apply"
         return f"it does not overturn below {found[0].text()} m/s2 at this period"
 
     @property
-    def _is_safe_below(self) -> bool:
+    def _survives_below(self) -> bool:
         return self.contact_below is not None and self.contact_below.rocking_applies
 
     @cached_property
@@ -452,19 +452,19 @@ class BodyResponse(ResponseFields, EqualByValue):
         return self._searched(lambda part: margins_of(self.problem, found, part, self.served))
 
     @property
-    def largest_safe_acceleration(self) -> float | None:
+    def largest_surviving_acceleration(self) -> float | None:
         """Peak acceleration [m/s2] below which a block does not overturn under this pulse at this period.
 
         None if no change of outcome was found, or if the rocking model does not apply just below the lowest.
         """
-        self._need_one("largest_safe_acceleration")
-        return self.thresholds[0].value if self._is_safe_below and self.thresholds else None
+        self._need_one("largest_surviving_acceleration")
+        return self.thresholds[0].value if self._survives_below and self.thresholds else None
 
     @property
-    def largest_safe_friction_demand(self) -> float | None:
+    def largest_surviving_friction_demand(self) -> float | None:
         """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
         below = self.contact_below
-        if below is None or not self._is_safe_below or not self.body.contact_is_known:
+        if below is None or not self._survives_below or not self.body.contact_is_known:
             return None
         return below.largest_friction_demand
 
@@ -590,7 +590,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         else:
             impacts += " during the pulse"
             under += f" of {strength} and {self.period:.4g} s"
-        if outcome == Outcome.SAFE:
+        if outcome == Outcome.RECOVERS:
             peak = f"peak rotation {math.degrees(self.rotation):.4g} deg{doubt}"
             happened += f": {peak}, top displacement {self.displacement:.4g} m, {impacts}"
         return f"{happened}{margin}; {self.body.description} under {under}"

@@ -29,7 +29,7 @@ from rocking._numba.compilation import FloatArray, entry, kernel
 UNKNOWN_IMPACTS = -1
 """Value of `impacts` where the nodes do not determine the number."""
 
-_SAFE = int(Outcome.SAFE)
+_RECOVERS = int(Outcome.RECOVERS)
 
 
 NODE = np.dtype(
@@ -183,7 +183,7 @@ def interpolate_many(
             if abs(peak - 1.0) <= bound:
                 continue
             found.peak_rotation[k], found.error_bound[k] = max(peak, 0.0), bound
-            found.outcome[k] = _SAFE
+            found.outcome[k] = _RECOVERS
             found.exceeded_alpha[k] = peak > 1.0
         found.impacts[k] = _impacts(slices, len(levels), place)
         found.known[k] = found.from_cube[k] = True

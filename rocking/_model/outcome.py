@@ -9,7 +9,7 @@ class Outcome(IntEnum):
     """Final outcome of a block. A block that passes theta = alpha need not overturn: the ground can bring it back."""
 
     NO_UPLIFT = 0
-    SAFE = 1
+    RECOVERS = 1
     OVERTURNED_DIRECTLY = 2
     OVERTURNED_AFTER_IMPACT = 3
 
@@ -26,14 +26,14 @@ class Outcome(IntEnum):
 
 _SENTENCES = {
     Outcome.NO_UPLIFT: "never uplifts",
-    Outcome.SAFE: "rocks and comes to rest",
+    Outcome.RECOVERS: "rocks and comes to rest",
     Outcome.OVERTURNED_DIRECTLY: "overturns without impact",
     Outcome.OVERTURNED_AFTER_IMPACT: "overturns after one or more impacts",
 }
 
 _PLURALS = {
     Outcome.NO_UPLIFT: "never uplift",
-    Outcome.SAFE: "rock and come to rest",
+    Outcome.RECOVERS: "rock and come to rest",
     Outcome.OVERTURNED_DIRECTLY: "overturn without impact",
     Outcome.OVERTURNED_AFTER_IMPACT: "overturn after one or more impacts",
 }

@@ -18,7 +18,7 @@ SURVIVES = 0
 """Code of a block that comes to rest or does not uplift."""
 
 _DIRECTLY = int(Outcome.OVERTURNED_DIRECTLY)
-_SAFE = int(Outcome.SAFE)
+_RECOVERS = int(Outcome.RECOVERS)
 
 
 @jitable
@@ -29,8 +29,8 @@ def overturning_code(outcome: Any, impacts: Any) -> Any:
 
 @jitable
 def outcome_of_code(code: Any) -> Any:
-    """Code of `Outcome`; SAFE where the block survives."""
-    return code % 4 + _SAFE * (code == SURVIVES)
+    """Code of `Outcome`; RECOVERS where the block survives."""
+    return code % 4 + _RECOVERS * (code == SURVIVES)
 
 
 @jitable
@@ -45,5 +45,5 @@ def outcome_codes(outcome: NDArray[np.int8], impacts: NDArray[np.int32]) -> NDAr
 
 
 def decode_outcomes(codes: NDArray[np.int64]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
-    """Outcomes (SAFE where the block survives) and impacts of codes."""
+    """Outcomes (RECOVERS where the block survives) and impacts of codes."""
     return outcome_of_code(codes).astype(np.int8), impacts_of_code(codes).astype(np.int32)

@@ -80,7 +80,7 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
         under = f" under {self.pulse}" if self.pulse else ""
         if self.peak_rotation.ndim == 0:
             outcome = Outcome(int(self.outcome))
-            rocked = outcome == Outcome.SAFE
+            rocked = outcome == Outcome.RECOVERS
             count = int(self.impacts)
             impacts = f", {count} impact{'' if count == 1 else 's'}" if outcome != Outcome.NO_UPLIFT else ""
             peak = f": peak rotation {float(self.peak_rotation):.6g} alpha" if rocked else ""

@@ -75,10 +75,10 @@ class BoundedResponse(ResponseFields, EqualByValue, declared=BOUNDED_FIELDS):
             )
             return f"<rocking.BoundedResponse of {shape} blocks: {', '.join(parts)}>"
         outcome = Outcome(int(self.outcome))
-        safe = outcome == Outcome.SAFE
+        survives = outcome == Outcome.RECOVERS
         peak = (
             f": peak rotation {float(self.peak_rotation):.6g} alpha within {float(self.error_bound):.2g}"
-            if safe
+            if survives
             else ""
         )
         return f"<rocking.BoundedResponse: {outcome.sentence}{peak}, from the {self.source.item()}>"

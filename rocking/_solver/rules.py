@@ -42,7 +42,7 @@ MODES_PER_UPLIFT = 65536
 MAX_UPLIFT_MODE = 32_767
 """Largest number of uplifts that the mode of a peak counts: it is an int32."""
 
-NO_UPLIFT, SAFE, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
+NO_UPLIFT, RECOVERS, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
 
 
@@ -91,7 +91,7 @@ def count_uplift(state: Record, time: float) -> None:
     """Count an uplift from rest at `time` since the start of the motion [tau]."""
     state.uplifts, state.impacts_before_uplift = state.uplifts + 1, state.impacts
     if state.outcome == NO_UPLIFT:
-        state.outcome, state.uplift_time = SAFE, time
+        state.outcome, state.uplift_time = RECOVERS, time
 
 
 @kernel

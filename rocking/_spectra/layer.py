@@ -73,9 +73,9 @@ class GridLayer:
             one.name: np.ascontiguousarray(getattr(nodes, one.name)[..., k]) for one in CUBE_FIELDS
         }
         outcome, impacts, mode = (stored[one.name] for one in (OUTCOME, IMPACTS, PEAK_MODE))
-        safe = outcome == Outcome.SAFE
-        codes = np.where(interpolated_cells(safe), PEAK, NO_STENCIL)
-        codes = np.where(interpolated_cells(safe & (mode % 2 == 1)), SQUARED, codes)
+        survives = outcome == Outcome.RECOVERS
+        codes = np.where(interpolated_cells(survives), PEAK, NO_STENCIL)
+        codes = np.where(interpolated_cells(survives & (mode % 2 == 1)), SQUARED, codes)
         codes = np.where(_same_overturning(outcome_codes(outcome, impacts), impacts), OVERTURNS, codes)
         if barred is not None:
             codes[barred] = NO_STENCIL
@@ -139,7 +139,7 @@ def largest_in_neighbourhood(errors: Array) -> Array:
 def _same_overturning(ways: NDArray[np.int64], impacts: NDArray[np.int32]) -> Flags:
     """Cells whose four corners overturn in the same way; after several impacts, the twelve nodes around them as well.
 
-    Where regions of overturning after many impacts meet, they form layers with safe bands between them that are
+    Where regions of overturning after many impacts meet, they form layers with surviving bands between them that are
     narrower than a cell.
     """
     n, m = ways.shape

@@ -431,11 +431,11 @@ def _excess(psi: Array, omega: Array, eta: Array) -> Array:
 class OverturningAmplitudes(NamedTuple):
     """Amplitudes a [-] at which the outcome changes.
 
-    The block overturns for falls_from < a < safe_again, but for the gap of the notes, and for a > direct.
+    The block overturns for overturns_from < a < survives_again, but for the gap of the notes, and for a > direct.
     """
 
-    falls_from: Array
-    safe_again: Array
+    overturns_from: Array
+    survives_again: Array
     direct: Array
 
 
@@ -445,8 +445,8 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     Returns
     -------
     OverturningAmplitudes
-        Of the broadcast shape. `falls_from` and `safe_again` are the limits of overturning after one impact (cases 1.1
-        and 1.2), nan where there is none; from `direct` on the block overturns without impact (case 2).
+        Of the broadcast shape. `overturns_from` and `survives_again` are the limits of overturning after one impact
+        (cases 1.1 and 1.2), nan where there is none; from `direct` on the block overturns without impact (case 2).
 
     Notes
     -----
@@ -454,9 +454,9 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     3.4336 to 3.4395, where a gap reaches into it (2.389 < a < 2.515 at 3.4372). `case_1_1_margin` and
     `case_1_2_margin` are negative there.
 
-    These curves are not complete, contrary to the paper. Near the tip of the safe region (1/a > 0.897, omega < 1.1)
-    there are islands in which the block overturns after three, five or more impacts (always an odd number), all within
-    the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000 random
+    These curves are not complete, contrary to the paper. Near the tip of the surviving region (1/a > 0.897,
+    omega < 1.1) there are islands in which the block overturns after three, five or more impacts (always an odd number), all
+    within the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000 random
     blocks with eta from 0.3 to 1.
     """
     during = case_1_1_amplitudes(frequency_ratio, restitution)

@@ -67,7 +67,7 @@ def test_golden_thresholds_of_the_rigid_block(client):
     found = [threshold["peak_acceleration"] / block.uplift_acceleration for threshold in response["thresholds"]]
     assert found == pytest.approx([1.45844, 3.97129, 4.07192], abs=1e-5)
     assert [threshold["overturns_above"] for threshold in response["thresholds"]] == [True, False, True]
-    assert response["largest_safe_acceleration"] == response["thresholds"][0]["peak_acceleration"]
+    assert response["largest_surviving_acceleration"] == response["thresholds"][0]["peak_acceleration"]
 
 
 def test_a_block_that_overturns(client):
@@ -150,23 +150,23 @@ def test_a_restitution_may_be_housner_or_a_number(client, odd):
     assert odd == "nan" or "momentum" in problem["allowed"]
 
 
-def test_the_largest_safe_acceleration_holds_for_this_size_only(client):
-    """A block of 0.6 m x 2.4 m is safe up to 0.496 g; under 0.45 g the same shape at 0.2 m x 0.8 m overturns."""
+def test_the_largest_surviving_acceleration_holds_for_this_size_only(client):
+    """A block of 0.6 m x 2.4 m survives up to 0.496 g; under 0.45 g the same shape at 0.2 m x 0.8 m overturns."""
     query = {"period": 0.6, "peak_acceleration": 0.45 * STANDARD_GRAVITY}
     large = get_response(client, width=0.6, height=2.4, **query).json()
     small = get_response(client, width=0.2, height=0.8, **query).json()
-    assert large["largest_safe_acceleration"] == pytest.approx(0.496 * STANDARD_GRAVITY, rel=1e-3)
+    assert large["largest_surviving_acceleration"] == pytest.approx(0.496 * STANDARD_GRAVITY, rel=1e-3)
     assert small["overturned"]
-    assert small["largest_safe_acceleration"] < 0.45 * STANDARD_GRAVITY < large["largest_safe_acceleration"]
+    assert small["largest_surviving_acceleration"] < 0.45 * STANDARD_GRAVITY < large["largest_surviving_acceleration"]
     said = client.get("/openapi.json").json()["components"]["schemas"]["BlockResponse"]["properties"]
-    assert "this block, of this size" in said["largest_safe_acceleration"]["description"]
+    assert "this block, of this size" in said["largest_surviving_acceleration"]["description"]
 
 
-def test_the_largest_safe_acceleration_comes_with_its_friction(client):
+def test_the_largest_surviving_acceleration_comes_with_its_friction(client):
     response = get_response(client).json()
-    just_below = get_response(client, peak_acceleration=response["largest_safe_acceleration"] * (1 - 1e-9)).json()
+    just_below = get_response(client, peak_acceleration=response["largest_surviving_acceleration"] * (1 - 1e-9)).json()
     assert not just_below["overturned"]
-    assert response["largest_safe_friction_demand"] == pytest.approx(just_below["friction_demand"], rel=1e-6)
+    assert response["largest_surviving_friction_demand"] == pytest.approx(just_below["friction_demand"], rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -187,13 +187,13 @@ def test_the_meaning_starts_with_the_rocking_model_not_applying(client, changes,
     assert demand is None or (demand > 1 and f"{demand:.3g}" in response["meaning"])
 
 
-def test_no_acceleration_is_called_safe_where_the_rocking_model_does_not_apply(client):
+def test_no_acceleration_is_called_surviving_where_the_rocking_model_does_not_apply(client):
     cube = {"width": 1.0, "height": 1.0, "peak_acceleration": 1.5 * STANDARD_GRAVITY}
     response = get_response(client, **cube).json()
     assert response["friction_demand"] == pytest.approx(17.9, abs=0.1)
     assert response["thresholds"][0]["peak_acceleration"] == pytest.approx(5.67 * STANDARD_GRAVITY, rel=1e-3)
-    assert response["largest_safe_acceleration"] is response["largest_safe_friction_demand"] is None
-    assert any("no largest safe acceleration" in warning for warning in response["warnings"])
+    assert response["largest_surviving_acceleration"] is response["largest_surviving_friction_demand"] is None
+    assert any("no largest surviving acceleration" in warning for warning in response["warnings"])
 
 
 def test_a_squat_block_that_does_not_uplift_has_a_response(client):
@@ -287,7 +287,11 @@ def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, 
     whole = get_response(client).json()
     monkeypatch.setattr(blocks, "SEARCH_SHARE", 0.0)
     response = get_response(client).json()
-    assert (response["thresholds"], response["largest_safe_acceleration"], response["margins"]) == (None, None, None)
+    assert (response["thresholds"], response["largest_surviving_acceleration"], response["margins"]) == (
+        None,
+        None,
+        None,
+    )
     assert [text for text in response["warnings"] if "not found in time" in text] == response["warnings"][-2:]
     for name in ("response", "peak_rotation_deg", "friction_demand"):
         assert response[name] == whole[name]

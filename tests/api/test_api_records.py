@@ -38,7 +38,7 @@ def test_the_response_is_that_of_the_library(client, motion):
     assert found["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
     assert found["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
     assert found["impacts"] == int(expected.dimensionless.impacts)
-    assert found["outcome"] == "SAFE"
+    assert found["outcome"] == "RECOVERS"
     assert not found["overturned"]
     assert found["meaning"] == "rocks and comes to rest"
     assert found["record"]["digest"] == motion.digest

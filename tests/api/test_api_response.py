@@ -26,7 +26,7 @@ def test_a_response_from_a_cube(client):
     expected = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
     assert result["source"] == "cube"
     assert abs(result["peak_rotation"] - expected.peak_rotation) <= result["error_bound"] <= 1e-4
-    assert result["outcome"] == Outcome(expected.outcome).name == "SAFE"
+    assert result["outcome"] == Outcome(expected.outcome).name == "RECOVERS"
     assert result["impacts"] == expected.impacts
     assert not result["overturned"]
     assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
@@ -195,7 +195,7 @@ BATCH = {
     "frequency_ratio": np.array([6.0, 2.0, 1.0, 20.0]),
     "restitution": np.array([0.85, 0.85, 0.85, 0.7]),
 }
-TRUTH = [Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY, Outcome.NO_UPLIFT, Outcome.SAFE]
+TRUTH = [Outcome.RECOVERS, Outcome.OVERTURNED_DIRECTLY, Outcome.NO_UPLIFT, Outcome.RECOVERS]
 
 
 def test_a_json_batch_equals_single_requests(client):
@@ -211,7 +211,7 @@ def test_a_json_batch_equals_single_requests(client):
 
 def test_numbers_broadcast_against_arrays(client):
     body = {"pulse": "sine", "slenderness": [0.5, 0.6], "frequency_ratio": 6.0, "restitution": 0.85}
-    assert client.post("/v1/response", json=body).json()["outcome"] == ["SAFE", "SAFE"]
+    assert client.post("/v1/response", json=body).json()["outcome"] == ["RECOVERS", "RECOVERS"]
     body["slenderness"] = []
     assert client.post("/v1/response", json=body).json()["outcome"] == []
 
@@ -248,7 +248,7 @@ def test_netcdf_batch_in_and_out(client):
     np.testing.assert_array_equal(found.outcome, expected.outcome)
     assert np.all(np.abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound)
     assert found.attrs["pulse"] == "sine"
-    assert found.outcome.attrs["flag_meanings"].split()[1] == "safe"
+    assert found.outcome.attrs["flag_meanings"].split()[1] == "recovers"
 
 
 def test_the_accept_header_selects_the_format(client):

@@ -16,7 +16,7 @@ def test_golden_thresholds(client):
     )
     assert [one["overturns_above"] for one in response["thresholds"]] == [True, False, True]
     assert response["thresholds"][-1]["outcome"] == "OVERTURNED_DIRECTLY"
-    assert response["largest_safe_amplitude"] == response["thresholds"][0]["amplitude"]
+    assert response["largest_surviving_amplitude"] == response["thresholds"][0]["amplitude"]
 
 
 @pytest.mark.parametrize("alpha_deg", [None, 0, 20])
@@ -33,7 +33,7 @@ def test_thresholds_equal_those_of_the_package(client, alpha_deg):
 def test_thresholds_above_the_highest_are_not_listed(client):
     response = client.get(URL, params=QUERY | {"highest": 2.0}).json()
     assert response["thresholds"] == []
-    assert response["largest_safe_amplitude"] is None
+    assert response["largest_surviving_amplitude"] is None
 
 
 @pytest.mark.parametrize(

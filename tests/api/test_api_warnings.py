@@ -42,7 +42,7 @@ PULSES = [
     (0.4, 1.6, 4.0, 0.5, []),
     (0.4, 1.6, 4.65, 0.5, ["within 5 % of this peak acceleration", "within 5 % of this period"]),
     (2.0, 1.0, 2.1 * 9.80665, 0.5, ["the block may slide", "restitution (2.4)", "wider than high"]),
-    (1.0, 1.0, 1.5 * 9.80665, 0.5, ["the block may slide", "no largest safe acceleration"]),
+    (1.0, 1.0, 1.5 * 9.80665, 0.5, ["the block may slide", "no largest surviving acceleration"]),
 ]
 
 

@@ -28,7 +28,7 @@ def expected():
 
 def test_rows_equal_peak_response(client, expected):
     result = client.get("/v1/map", params=QUERY).json()
-    assert {Outcome.NO_UPLIFT, Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY} <= set(expected.outcome.ravel().tolist())
+    assert {Outcome.NO_UPLIFT, Outcome.RECOVERS, Outcome.OVERTURNED_DIRECTLY} <= set(expected.outcome.ravel().tolist())
     assert [Outcome[result["outcomes"][code]] for code in result["outcome"]] == expected.outcome.ravel().tolist()
     peaks = np.array([np.nan if peak is None else peak for peak in result["peak_rotation"]])
     np.testing.assert_allclose(peaks, expected.peak_rotation.ravel(), rtol=0, atol=0.5001e-4)

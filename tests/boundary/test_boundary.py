@@ -73,18 +73,18 @@ def test_sine_against_the_closed_forms():
     after_one = (own == Outcome.OVERTURNED_AFTER_IMPACT + 4) & (neighbour == 0)
     assert after_one.sum() > 40
     gap = np.fmin(
-        np.abs(s[after_one] - 1 / closed.falls_from[after_one]),
-        np.abs(s[after_one] - 1 / closed.safe_again[after_one]),
+        np.abs(s[after_one] - 1 / closed.overturns_from[after_one]),
+        np.abs(s[after_one] - 1 / closed.survives_again[after_one]),
     )
     # where the curve turns over in omega, 1/a is a square root of the distance: compare along omega there
-    steep = np.abs(closed.safe_again / closed.falls_from - 1)[after_one] < 0.2
+    steep = np.abs(closed.survives_again / closed.overturns_from - 1)[after_one] < 0.2
     assert gap[~steep].max() < 1e-10
     assert np.nan_to_num(gap[steep]).max(initial=0) < 1e-5
 
 
 @pytest.mark.parametrize("alpha", [None, 0.05])
-def test_the_thin_safe_band_between_two_ways_of_overturning_is_seen(alpha):
-    # between case 1.1 or 1.2 and case 2 a slow sine leaves a band of safe blocks of relative width 1e-3 and less
+def test_the_thin_band_of_survival_between_two_ways_of_overturning_is_seen(alpha):
+    # between case 1.1 or 1.2 and case 2 a slow sine leaves a band of surviving blocks of relative width 1e-3 and less
     boundary = rocking.overturning_boundary(
         "sine", restitution=0.85, alpha=alpha, frequency_ratio=(0.5, 1.0), slenderness=(0.6, 1.0), nodes=61
     )
@@ -96,9 +96,9 @@ def test_the_thin_safe_band_between_two_ways_of_overturning_is_seen(alpha):
     if alpha is None:
         closed = paper.overturning_amplitudes(omega, 0.85)
         np.testing.assert_allclose(s[directly], 1 / closed.direct[directly], rtol=0, atol=1e-10)
-        width = 1 / closed.safe_again - 1 / closed.direct
+        width = 1 / closed.survives_again - 1 / closed.direct
         assert 0 < np.nanmin(width) < 1e-4
-        middle = 0.5 * (1 / closed.safe_again + 1 / closed.direct)
+        middle = 0.5 * (1 / closed.survives_again + 1 / closed.direct)
         response = rocking.peak_response("sine", slenderness=middle, frequency_ratio=omega, restitution=0.85)
         assert not response.overturned[np.isfinite(middle)].any()
 
@@ -125,7 +125,7 @@ def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse
     assert boundary.unmeasured_chords <= 2
     s, log_omega = boundary.slenderness.values, np.log(boundary.frequency_ratio.values)
     first = np.delete(np.arange(s.size), np.cumsum(boundary.row_size.values) - 1)  # of each chord
-    to_safety = np.repeat(boundary.neighbour_outcome.values <= Outcome.SAFE, boundary.row_size.values)
+    to_safety = np.repeat(boundary.neighbour_outcome.values <= Outcome.RECOVERS, boundary.row_size.values)
     limits = 1.5 * (boundary.chord_error + END), 1.5 * (boundary.uncounted_chord_error + boundary.end_distance)
     rng = np.random.default_rng(4)
     unlisted = crossings = wrong = 0

@@ -64,12 +64,12 @@ def test_a_region_that_divides_keeps_its_outer_ends():
     assert ends(join_sides(left, right)) == {
         frozenset({(0.0, 0, 1), (STEP, 0, 1)}),
         frozenset({(0.0, 1, 0), (STEP, 3, 0)}),
-        frozenset({(STEP, 1, 0), (STEP, 2, 1)}),  # the tip of the safe band between the two parts
+        frozenset({(STEP, 1, 0), (STEP, 2, 1)}),  # the tip of the surviving band between the two parts
     }
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_safe_band_between_two_regions_ends(mirrored):
+def test_a_surviving_band_between_two_regions_ends(mirrored):
     left, right = column([0.4, 0.41], [2, 0, 7]), column([0.405], [2, 7], STEP)
     if mirrored:
         left, right = (column(c.middle, c.codes, STEP - c.log_omega) for c in (right, left))

@@ -52,7 +52,7 @@ def test_response_in_three_formats():
     expected = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
     result = json.loads(run("response", *GROUPS, "--format=json"))
     assert result["peak_rotation"] == expected.peak_rotation
-    assert result["outcome"] == "SAFE"
+    assert result["outcome"] == "RECOVERS"
     assert 0 < result["error_bound"] < 1e-10
     (row,) = read_csv(run("response", *GROUPS, "--format=csv"))
     assert float(row["peak_rotation"]) == result["peak_rotation"]
@@ -94,7 +94,7 @@ def test_first_line_states_that_the_rocking_model_does_not_apply():
     first = run(*options).splitlines()[0]
     assert first.startswith("would slide: the rocking model does not apply")
     result = json.loads(run(*options, "--format=json"))
-    assert (result["outcome"], result["rocking_model_applies"]) == ("SAFE", False)
+    assert (result["outcome"], result["rocking_model_applies"]) == ("RECOVERS", False)
     assert result["friction_demand"] == pytest.approx(17.9, abs=0.1)
     assert json.loads(run("response", *UNITS, "--format=json"))["rocking_model_applies"]
     assert "rocking_model_applies" not in json.loads(run("response", *GROUPS, "--format=json"))  # the slender limit
@@ -134,7 +134,7 @@ def test_response_of_a_block_in_si_units():
     found = BLOCK.response("sine", peak_acceleration=4.0, period=0.5)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(found.rotation), rel=1e-9)
     assert result["top_displacement"] == pytest.approx(found.displacement, rel=1e-9)
-    assert result["largest_safe_acceleration"] == pytest.approx(found.thresholds[0].value, rel=1e-9)
+    assert result["largest_surviving_acceleration"] == pytest.approx(found.thresholds[0].value, rel=1e-9)
     assert result["nearest_period"] == pytest.approx(found.margins.nearest_period, rel=1e-9)
     assert [one["overturns_above"] for one in result["thresholds"]] == [True, False, True]
     assert result["warnings"] == []

@@ -27,7 +27,7 @@ def test_a_constant_vertical_acceleration_is_another_gravity(scale: float) -> No
     heavier = rocking.Block(0.2, 1.0, gravity=STANDARD_GRAVITY * (1.0 + scale * c))
     found = BLOCK.response(lifted, scale=scale, thresholds=False)
     other = heavier.response(rocking.Record(f, 0.005, "g"), scale=scale, thresholds=False)
-    assert found.outcome == other.outcome == rocking.Outcome.SAFE
+    assert found.outcome == other.outcome == rocking.Outcome.RECOVERS
     assert found.rotation == pytest.approx(other.rotation, rel=1e-11)
     history = BLOCK.history(lifted, scale=scale)
     inside = history.time < lifted.duration
@@ -54,7 +54,7 @@ def test_the_scale_multiplies_both_components_under_any_gravity() -> None:
 
 def test_uplift_depends_on_both_components() -> None:
     scale = uplift_scale(MOTION, BLOCK)
-    for factor, outcome in ((1.0 - 1e-9, rocking.Outcome.NO_UPLIFT), (1.0 + 1e-6, rocking.Outcome.SAFE)):
+    for factor, outcome in ((1.0 - 1e-9, rocking.Outcome.NO_UPLIFT), (1.0 + 1e-6, rocking.Outcome.RECOVERS)):
         assert BLOCK.response(MOTION, scale=scale * factor, thresholds=False).outcome == outcome
     held = rocking.Record([0.0, 1.0, 0.0], 0.1, "g", vertical=[1.0, 10.0, 1.0])
     assert uplift_scale(held, BLOCK) == 1e6

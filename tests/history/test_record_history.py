@@ -24,7 +24,7 @@ def test_the_peak_is_that_of_the_response(alpha: float | None) -> None:
     assert history.attrs["peak_rotation"] == pytest.approx(float(response.peak_rotation), rel=1e-12)
     assert float(np.abs(history.rotation).max()) == pytest.approx(float(response.peak_rotation), rel=1e-6)
     assert history.attrs["impacts"] == response.impacts
-    assert history.attrs["outcome"] == "SAFE"
+    assert history.attrs["outcome"] == "RECOVERS"
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)

@@ -37,7 +37,7 @@ def make_variables(rng):
     return errors | {
         "peak_rotation": 0.5 + 0.6 * rng.random(shape),
         "stencil": stencil,
-        "outcome": np.where(overturns, int(Outcome.OVERTURNED_AFTER_IMPACT), int(Outcome.SAFE)),
+        "outcome": np.where(overturns, int(Outcome.OVERTURNED_AFTER_IMPACT), int(Outcome.RECOVERS)),
         "impacts": np.broadcast_to(1 + 4 * (columns // 12), shape) + (rng.random(shape) < 0.001),
         "peak_mode": np.broadcast_to(np.where(columns < 18, 0, 11), shape),
     }
@@ -150,7 +150,7 @@ def expected(cubes, point, tolerance):
     peak = peak_from(np.array(values), cells, (by_angle, by_slice))
     if bound > tolerance or abs(peak - 1.0) <= bound:
         return None
-    return int(Outcome.SAFE), impacts_of(flat), peak > 1.0, max(peak, 0.0), bound
+    return int(Outcome.RECOVERS), impacts_of(flat), peak > 1.0, max(peak, 0.0), bound
 
 
 def random_points(between, count):

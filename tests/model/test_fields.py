@@ -95,7 +95,7 @@ def test_overturning_codes_round_trip():
     assert codes.tolist() == [SURVIVES, SURVIVES, 2, 7, 11, 800_015]
     assert codes.dtype == np.int64
     decoded, counted = decode_outcomes(codes)
-    assert decoded.tolist() == [Outcome.SAFE, Outcome.SAFE, 2, 3, 3, 3]
+    assert decoded.tolist() == [Outcome.RECOVERS, Outcome.RECOVERS, 2, 3, 3, 3]
     assert counted.tolist() == [0, 0, 0, 1, 2, 200_003]
     assert (decoded.dtype, counted.dtype) == (outcome.dtype, impacts.dtype)
 

@@ -8,7 +8,7 @@ from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
 
 NONE = (np.nan, np.nan)
-# omega: direct, then (falls_from, safe_again) for eta 0.85, 0.90, 0.95, from an independent implementation
+# omega: direct, then (overturns_from, survives_again) for eta 0.85, 0.90, 0.95, from an independent implementation
 GOLDEN = {
     1: (1.418315, [(1.134352, 1.415149), (1.132047, 1.416384), (1.129869, 1.417427)]),
     2: (2.349903, [(1.231672, 2.291073), (1.225179, 2.314403), (1.219261, 2.333713)]),
@@ -25,7 +25,9 @@ def test_golden_thresholds_to_the_last_digit(omega):
     direct, pairs = GOLDEN[omega]
     found = cf.overturning_amplitudes(omega, [0.85, 0.90, 0.95])
     np.testing.assert_allclose(found.direct, direct, rtol=0, atol=LAST_DIGIT)
-    np.testing.assert_allclose(np.transpose([found.falls_from, found.safe_again]), pairs, rtol=0, atol=LAST_DIGIT)
+    np.testing.assert_allclose(
+        np.transpose([found.overturns_from, found.survives_again]), pairs, rtol=0, atol=LAST_DIGIT
+    )
 
 
 def test_thresholds_of_zhang_and_makris_2001():
@@ -223,7 +225,7 @@ def test_solver_and_closed_forms_agree_on_every_outcome_outside_the_islands():
     eta = rng.uniform(0.3, 1, n)
     found, a = peak_response("sine", slenderness=slenderness, frequency_ratio=omega, restitution=eta), 1 / slenderness
     curves = cf.overturning_amplitudes(omega, eta)
-    after_impact = (a > curves.falls_from) & (a < curves.safe_again)
+    after_impact = (a > curves.overturns_from) & (a < curves.survives_again)
     direct = a > curves.direct
     islands = found.overturned & (found.impacts >= 3)
     np.testing.assert_array_equal(found.overturned & ~islands, after_impact | direct)

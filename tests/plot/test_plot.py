@@ -123,7 +123,7 @@ def test_response_between_its_thresholds(ax):
     assert high == pytest.approx(8.0)
 
 
-def test_response_in_groups_shows_both_safe_ranges(ax):
+def test_response_in_groups_shows_both_surviving_ranges(ax):
     plot.response(rocking.peak_response("sine", **GROUPS), ax)
     ((low, high),) = shaded(ax)
     assert (low, high) == pytest.approx((3.980175, 5.356347), rel=1e-6)  # falls from, safe again
@@ -173,7 +173,7 @@ def test_map_of_any_orientation(ax):
     grid = {"slenderness": np.linspace(0.1, 1.1, 12)[:, None], "frequency_ratio": np.linspace(1.0, 6.0, 9)}
     data = rocking.peak_response("sine", **grid, restitution=0.85).to_xarray()
     peaks, classes = plot.control_map(data, ax).collections
-    assert peaks.get_array().count() == (data.outcome == rocking.Outcome.SAFE).sum()
+    assert peaks.get_array().count() == (data.outcome == rocking.Outcome.RECOVERS).sum()
     assert set(classes.get_array().compressed()) == {0, 1, 2}
     turned = plot.control_map(data.transpose(), key=False)
     np.testing.assert_array_equal(turned.collections[0].get_array(), peaks.get_array())

@@ -205,7 +205,7 @@ def test_service_works_with_the_system_calls_of_the_unit(unit, tmp_path):
     question = "slenderness=0.4&frequency_ratio=5&restitution=0.85"
     with serving(tmp_path, tmp_path / "log", command=(*filtered, "-m", "rocking._cli"), workers=2) as server:
         response = httpx2.get(f"{server.address}/v1/response?pulse=sine&{question}", timeout=120)
-        assert response.json()["outcome"] == "SAFE"
+        assert response.json()["outcome"] == "RECOVERS"
         assert "process_open_fds" in httpx2.get(server.address + "/metrics", timeout=120).text
         assert server.stop() == -signal.SIGTERM
     assert '"level":"error"' not in server.log.read_text()
@@ -250,13 +250,13 @@ def test_proxy_works_in_front_of_the_service(tmp_path):
         trust.set_alpn_protocols(["http/1.1"])
         with httpx2.Client(base_url=f"https://127.0.0.1:{port}", verify=trust, timeout=120) as client:
             question = "slenderness=0.4&frequency_ratio=5&restitution=0.85"
-            assert client.get(f"/v1/response?pulse=sine&{question}").json()["outcome"] == "SAFE"
+            assert client.get(f"/v1/response?pulse=sine&{question}").json()["outcome"] == "RECOVERS"
             assert client.get("/v1/response?pulse=none").headers["content-type"] == "application/problem+json"
             assert client.get("/metrics").status_code == 200  # from this machine
             body = b"slenderness\n" + b"0.4\n" * 250_000
             batch = "/v1/response?pulse=sine&frequency_ratio=5&restitution=0.85"
             rows = client.post(batch, content=body, headers={"content-type": "text/csv"})
-            assert rows.text.count("SAFE") == 250_000
+            assert rows.text.count("RECOVERS") == 250_000
             with closing(http.client.HTTPSConnection("127.0.0.1", port, context=trust, timeout=120)) as large:
                 large.request("POST", "/v1/response", headers={"content-length": str(2**26 + 1)})
                 assert large.getresponse().status == 413

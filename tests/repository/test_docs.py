@@ -35,7 +35,7 @@ PAGES = [
 
 PRINTED = {
     "ask_a_server": ["meaning: rocks and comes to rest", "OVERTURNED_AFTER_IMPACT", "1.85"],
-    "cube_without_package": ["safe 0.55", " nan]"],
+    "cube_without_package": ["recovers 0.55", " nan]"],
     "does_it_overturn": ["rocks and comes to rest", "overturns above 4.70006 m/s2"],
     "figure_8": [],
     "fragility": ["median 5.40 m/s2"],
@@ -189,7 +189,7 @@ def test_guide_builds_without_warning(tmp_path):
     )
     for text in ("/v1/blocks/response", "ROCKING_MAX_POINTS", "rocking plot fragility", "--peak-acceleration"):
         assert text in index, text
-    assert "largest_safe_acceleration number or null m/s2 peak acceleration below which" in " ".join(index.split())
+    assert "largest_surviving_acceleration number or null m/s2 peak acceleration below which" in " ".join(index.split())
     assert "surviving_from_half_diagonal" in index  # of a part of a response
     assert "restitution_error" in (target / "reference/files.html").read_text()
     assert (target / "reference/generated/rocking.peak_response.html").exists()

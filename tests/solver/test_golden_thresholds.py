@@ -153,4 +153,6 @@ def test_island_of_overturning_after_three_impacts():
     np.testing.assert_array_equal(found.overturned, [False, True, True, True, False])
     np.testing.assert_array_equal(found.impacts[1:4], 3)
     closed = paper.overturning_amplitudes(omega, 0.9)
-    assert not ((closed.falls_from < 1 / 0.9) & (closed.safe_again > 1 / 0.9)).any()  # not covered by the closed forms
+    assert not (
+        (closed.overturns_from < 1 / 0.9) & (closed.survives_again > 1 / 0.9)
+    ).any()  # not covered by the closed forms

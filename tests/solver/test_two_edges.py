@@ -43,7 +43,7 @@ def test_bodies_under_a_pulse_are_those_under_its_samples(name: str) -> None:
         other = edges[:, :2]
         same = found["outcome"] == exact["outcome"]
         assert np.count_nonzero(~same) <= 2
-        rocks = same & (exact["outcome"] == rocking.Outcome.SAFE)
+        rocks = same & (exact["outcome"] == rocking.Outcome.RECOVERS)
         assert np.count_nonzero(rocks) > 30
         errors.append(np.median(np.abs(other - sides)[rocks].max(axis=1)))
     assert errors[1] < 1e-5
@@ -60,7 +60,7 @@ def test_exchanged_edges_under_the_opposite_pulse_give_the_same_peaks() -> None:
     np.testing.assert_array_equal(there["outcome"], back["outcome"])
     np.testing.assert_array_equal(there["impacts"], back["impacts"])
     angles, mirrored = sides * given["alpha"][:, None], (other * behind["alpha"][:, None])[:, ::-1]
-    rocks = there["outcome"] == rocking.Outcome.SAFE
+    rocks = there["outcome"] == rocking.Outcome.RECOVERS
     assert np.count_nonzero(rocks) > 50
     np.testing.assert_allclose(angles[rocks], mirrored[rocks], rtol=1e-8, atol=1e-12)
 

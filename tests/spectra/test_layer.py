@@ -11,7 +11,7 @@ from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.layer import GridLayer
 
-WAYS = [(Outcome.SAFE, 0), (Outcome.SAFE, 2), (Outcome.OVERTURNED_DIRECTLY, 0)] + [
+WAYS = [(Outcome.RECOVERS, 0), (Outcome.RECOVERS, 2), (Outcome.OVERTURNED_DIRECTLY, 0)] + [
     (Outcome.OVERTURNED_AFTER_IMPACT, impacts) for impacts in (1, 2)
 ]
 
@@ -22,7 +22,7 @@ def overturns_alike(way, i, j):
     rows, columns = (np.clip(at + np.arange(-1, 3), 0, size - 1) for at, size in ((i, n), (j, m)))
     around = [way[row, column] for row, column in product(rows, columns)]
     corners = set(way[i : i + 2, j : j + 2].ravel())
-    alike = len(corners) == 1 and WAYS[corners.pop()][0] != Outcome.SAFE
+    alike = len(corners) == 1 and WAYS[corners.pop()][0] != Outcome.RECOVERS
     return alike and (len(set(around)) == 1 or all(WAYS[one][1] <= 1 for one in around))
 
 

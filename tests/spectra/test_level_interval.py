@@ -19,7 +19,7 @@ CELL_SHAPE = (5, 5)
 def layer(peak, kind=None, form=0):
     """A layer with the same peak at all nodes, or overturned in the way `kind` (outcome, impacts)."""
     nodes, overturned = np.full((6, 6), float(peak)), kind is not None
-    outcome, impacts = kind or (Outcome.SAFE, 1)
+    outcome, impacts = kind or (Outcome.RECOVERS, 1)
     stencil = np.full(CELL_SHAPE, OVERTURNS if overturned else form, np.int8)
     whole = {"outcome": np.full((6, 6), outcome, np.int8), "impacts": np.full((6, 6), impacts, np.int32)}
     return GridLayer(MESH, nodes, whole["outcome"], whole["impacts"], nodes > 1.0, whole["impacts"], stencil)

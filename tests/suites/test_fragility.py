@@ -61,7 +61,7 @@ def test_lognormal_answer_is_recovered_within_its_intervals(synthetic):
 
 
 def test_outcomes_are_those_of_the_pulse():
-    # a sine has a safe band above its first overturning (3.31); the solver for pulses has other steps
+    # a sine has a surviving band above its first overturning (3.31); the solver for pulses has other steps
     ratios = [3.0, 4.0, 5.0]
     records = [sampled("sine", ratio) for ratio in ratios]
     levels = np.linspace(1.05, 8.0, 60)

@@ -33,7 +33,7 @@ def by_key(claims: list[Claim]) -> dict[str, Claim]:
 def moved_curves() -> list[Claim]:
     """Traced points of all three modes, a millionth away from the closed forms."""
     closed = overturning_amplitudes(3.0, ETA)
-    amplitude = [float(closed.direct), float(closed.safe_again), float(closed.falls_from)]
+    amplitude = [float(closed.direct), float(closed.survives_again), float(closed.overturns_from)]
     curves = xr.Dataset(
         {
             "row_size": ("curve", [1, 1, 1]),
@@ -51,7 +51,7 @@ def moved_curves() -> list[Claim]:
 def cube(**replaced: np.ndarray | float) -> xr.Dataset:
     """Spectrum cube of slender blocks that overturn nowhere, with peaks that do not depend on anything."""
     shape = (1, SLENDERNESS.size, OMEGA.size)
-    values = {"outcome": Outcome.SAFE, "impacts": 1, "peak_rotation": 0.5, "peak_mode": 0} | replaced
+    values = {"outcome": Outcome.RECOVERS, "impacts": 1, "peak_rotation": 0.5, "peak_mode": 0} | replaced
     return xr.Dataset(
         {
             name: (("alpha", "slenderness", "frequency_ratio"), np.broadcast_to(value, shape))
@@ -64,8 +64,8 @@ def cube(**replaced: np.ndarray | float) -> xr.Dataset:
 def opposite_outcomes() -> xr.Dataset:
     """A cube in which a block overturns exactly where the closed forms say that it survives."""
     closed, a = overturning_amplitudes(OMEGA, ETA), 1 / SLENDERNESS[:, None]
-    falls = ((a > closed.falls_from) & (a < closed.safe_again)) | (a > closed.direct)
-    return cube(outcome=np.where(falls, Outcome.SAFE, Outcome.OVERTURNED_DIRECTLY))
+    falls = ((a > closed.overturns_from) & (a < closed.survives_again)) | (a > closed.direct)
+    return cube(outcome=np.where(falls, Outcome.RECOVERS, Outcome.OVERTURNED_DIRECTLY))
 
 
 def spectra_with(mode: int = 3, peak: Callable[..., np.ndarray] | None = None, **replaced: float) -> spectra.Spectra:
@@ -332,7 +332,7 @@ def test_dependence_on_alpha_increases_with_alpha() -> None:
 
 def test_tip_of_the_slender_loop_is_that_of_the_closed_forms() -> None:
     omega = np.linspace(2, 8, 6001)
-    falls_after_impact = np.isfinite(overturning_amplitudes(omega, ETA).falls_from)
+    falls_after_impact = np.isfinite(overturning_amplitudes(omega, ETA).overturns_from)
     assert non_slender.tips(ETA)["sine"][0.0] == pytest.approx(omega[falls_after_impact].max(), abs=0.051)
 
 

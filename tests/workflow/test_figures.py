@@ -152,23 +152,25 @@ def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
     assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
 
 
-def test_upper_safe_region_of_figure_9_is_above_the_overturning_region(smoke_results: Path) -> None:
+def test_upper_surviving_region_of_figure_9_is_above_the_overturning_region(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-09.nc")
     for k in range(2):
         found = data.isel(threshold=(data.threshold_pulse == k).values)
         omega, a = found.threshold_frequency_ratio.values, found.threshold_amplitude.values
-        safe_again = found.threshold_overturns_above.values == 0
+        survives_again = found.threshold_overturns_above.values == 0
         # halfway between standing again and falling without impact, the next threshold
-        chosen = safe_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)
+        chosen = survives_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)
         between, column = np.sqrt(a[:-1] * a[1:])[chosen], omega[:-1][chosen]
         assert between.size > 0
-        low, high = (np.interp(column, data.frequency_ratio, data[name][k]) for name in ("safe_from", "safe_to"))
+        low, high = (
+            np.interp(column, data.frequency_ratio, data[name][k]) for name in ("survives_from", "survives_to")
+        )
         assert np.all((low < between) & (between < high))
 
 
-def test_upper_safe_region_of_figure_9_is_bounded_where_the_outcome_changes() -> None:
+def test_upper_surviving_region_of_figure_9_is_bounded_where_the_outcome_changes() -> None:
     omega, alpha = np.array([2.5, 3.5, 5.0]), float(np.radians(20))
-    low, high = figure_09.upper_safe_region("sine", omega, 0.85, alpha)
+    low, high = figure_09.upper_surviving_region("sine", omega, 0.85, alpha)
 
     def recovers(amplitude: np.ndarray) -> np.ndarray:
         found = peak_response("sine", slenderness=1 / amplitude, frequency_ratio=omega, restitution=0.85, alpha=alpha)
@@ -220,7 +222,7 @@ def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> No
     known = np.isfinite(lines.amplitude) & (lines.frequency_ratio > 1.5)
     a, omega = lines.amplitude[known], lines.frequency_ratio[known]
     closed = overturning_amplitudes(omega, 0.85)
-    nearest = np.nanmin(np.abs(np.stack([closed.falls_from, closed.safe_again, closed.direct]) / a - 1), axis=0)
+    nearest = np.nanmin(np.abs(np.stack([closed.overturns_from, closed.survives_again, closed.direct]) / a - 1), axis=0)
     assert nearest.size > 100
     assert nearest.max() < 1e-9
 
@@ -293,7 +295,7 @@ def test_caption_of_figure_4_states_where_the_last_loop_closes() -> None:
     caption = " ".join(CAPTIONS.split("## Figure 4")[1].split("## Figure")[0].split())
     settings = yaml.safe_load((CONFIG / "paper.yaml").read_text(encoding="utf-8"))["figures"]["figure-04"]["ours"]
     tips = figure_04._tips(np.array(settings["restitution"]))
-    amplitude = overturning_amplitudes(tips, np.array(settings["restitution"])).falls_from
+    amplitude = overturning_amplitudes(tips, np.array(settings["restitution"])).overturns_from
     assert [tip > 8.5 for tip in tips] == [False, False, False, True]  # of the window
     assert (
         f"The loop of 0.96 leaves the window; it closes at omega = {tips[-1]:.1f}, a = {amplitude[-1]:.0f}" in caption

@@ -163,7 +163,7 @@ def test_caption_of_figure_13_states_the_largest_differences(figure_13_data: xr.
     s, pulse = points(data, "slenderness"), points(data, "pulse")
     difference = 100 * np.abs(data.spectrum.values / data.slender_spectrum.values - 1)
     shown = points(data, "alpha") < np.radians(21)
-    # where the slender block stays below alpha: beyond it the upper safe region
+    # where the slender block stays below alpha: beyond it the upper surviving region
     shown &= data.slender_spectrum.values < s
     worst = [{one: np.nanmax(difference[shown & (pulse == k) & (s == one)]) for one in np.unique(s)} for k in range(2)]
     above = [max((found[one], one) for one in found if one >= 0.45) for found in worst]

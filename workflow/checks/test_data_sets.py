@@ -32,7 +32,7 @@ VERTICES = 3000
 """Vertices that are tested for each angle of a file, about, evenly spaced along its curves."""
 
 TIP = 0.2
-"""Frequency ratio below which the safe region ends, near 1/a = 0.99, in layers that are not all resolved [-]."""
+"""Frequency ratio below which the surviving region ends, near 1/a = 0.99, in layers that are not all resolved [-]."""
 
 DATA_SETS: list[str] = json.loads(os.environ["ROCKING_DATA_SETS"])
 """Names of the files of the pulse, relative to `RESULTS`."""
@@ -128,7 +128,7 @@ def test_traced_boundaries_agree_with_the_closed_forms(name: str) -> None:
     curves = curves_at(read_dataset(RESULTS / name), 0.0)
     assert np.isfinite(curves.closed_form_difference).any()
     other = np.abs(curves.closed_form_difference.values) >= 1e-9
-    # the outer ends of overturning after one impact are stored; near its tip a gap of safe blocks has ends between them
+    # the outer ends of overturning after one impact are stored; near its tip a gap has ends between them
     assert other.sum() <= 0.01 * curves.sizes["point"]
     s, omega, eta = curves.slenderness.values[other], curves.frequency_ratio.values[other], float(curves.restitution)
     beside = [
@@ -140,7 +140,7 @@ def test_traced_boundaries_agree_with_the_closed_forms(name: str) -> None:
     # are none at this frequency
     frequency_ratio, restitution = 3.0, float(curves.restitution)
     middle = overturning_amplitudes(frequency_ratio, restitution)
-    a = 0.5 * (middle.falls_from + middle.safe_again)
+    a = 0.5 * (middle.overturns_from + middle.survives_again)
     if restitution < 0.63:
         assert np.isnan(a)
         a = 1.01 * middle.direct

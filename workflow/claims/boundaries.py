@@ -64,7 +64,7 @@ def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
         s, omega = one.slenderness.values, one.frequency_ratio.values
         closed = overturning_amplitudes(omega, float(cube.restitution))
         a = 1 / s[:, None]
-        predicted = ((a > closed.falls_from) & (a < closed.safe_again)) | (a > closed.direct)
+        predicted = ((a > closed.overturns_from) & (a < closed.survives_again)) | (a > closed.direct)
         wrong = predicted != (one.outcome.values >= Outcome.OVERTURNED_DIRECTLY)
         everywhere = np.ones_like(wrong)
         missed.append(share_of_area(wrong, everywhere, node_areas(s, omega)))
@@ -158,7 +158,7 @@ def time_near_equilibrium(restitution: Sequence[float]) -> Floats:
     for eta in restitution:
         closed = overturning_amplitudes(np.array([1.0, 2.0, 3.0, 4.0]), eta)
         for omega, low, high, direct in zip(
-            (1.0, 2.0, 3.0, 4.0), closed.falls_from, closed.safe_again, closed.direct, strict=True
+            (1.0, 2.0, 3.0, 4.0), closed.overturns_from, closed.survives_again, closed.direct, strict=True
         ):
             for a in (low * (1 + STEP), high * (1 - STEP), direct * (1 + STEP)):
                 history = time_history(

@@ -166,7 +166,7 @@ def _distances(angle: float, restitution: float) -> Iterator[float]:
     for omega in (3.0, 4.0):
         closed = overturning_amplitudes(omega, restitution)
         rigid = _thresholds("sine", omega, restitution, angle)
-        slender = np.array([closed.falls_from, closed.safe_again, closed.direct], dtype=np.float64)
+        slender = np.array([closed.overturns_from, closed.survives_again, closed.direct], dtype=np.float64)
         yield from np.abs(rigid.amplitude / slender - 1)
 
 

@@ -50,7 +50,7 @@ class Spectra(NamedTuple):
     @property
     def survives(self) -> Flags:
         """Where the block uplifts and survives."""
-        return np.asarray(self.outcome == Outcome.SAFE)
+        return np.asarray(self.outcome == Outcome.RECOVERS)
 
     @property
     def areas(self) -> Floats:

@@ -40,10 +40,12 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
     dims = ("restitution", "frequency_ratio")
     return xr.Dataset(
         {
-            "falls_from": plotted(
-                dims, closed.falls_from, "overturns after one impact from here", equation="3.18, 3.20, 3.21"
+            "overturns_from": plotted(
+                dims, closed.overturns_from, "overturns after one impact from here", equation="3.18, 3.20, 3.21"
             ),
-            "safe_again": plotted(dims, closed.safe_again, "overturns after one impact up to here", equation="3.18"),
+            "survives_again": plotted(
+                dims, closed.survives_again, "overturns after one impact up to here", equation="3.18"
+            ),
             "direct": plotted("frequency_ratio", closed.direct[0], "overturns without impact above", equation="3.10"),
             "limit": plotted(
                 "frequency_ratio", limit_amplitude(omega), "first impact at the end of the pulse", equation="3.31"
@@ -62,7 +64,7 @@ def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Data
             ),
             "tip_frequency_ratio": plotted("restitution", tips, "largest omega of overturning after one impact"),
             "tip_amplitude": plotted(
-                "restitution", overturning_amplitudes(tips, eta).falls_from, "amplitude a at that omega"
+                "restitution", overturning_amplitudes(tips, eta).overturns_from, "amplitude a at that omega"
             ),
         },
         coords={
@@ -99,7 +101,7 @@ def _islands(path: Path) -> Lines:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """The whole control plane on the left, the islands near the tip of the safe region on the right."""
+    """The whole control plane on the left, the islands near the tip of the surviving region on the right."""
     figure = Figure(figsize=(WIDTH, 3.9))
     left, right = figure.subplots(1, 2, width_ratios=[1.7, 1])
     _curves(left, data, islands=False)
@@ -113,8 +115,8 @@ def draw(data: xr.Dataset) -> Figure:
         (1.75, 6.0, "overturns without impact,\ncase 2"),
         (3.4, 2.85, "overturns,\ncase 1.2"),
         (2.65, 1.7, "overturns,\ncase 1.1"),
-        (6.6, 1.5, "safe, first impact\nwhile the pulse acts"),
-        (7.3, 4.0, "safe, first impact\nafter the pulse"),
+        (6.6, 1.5, "survives, first impact\nwhile the pulse acts"),
+        (7.3, 4.0, "survives, first impact\nafter the pulse"),
     ):
         left.text(x, y, text, ha="center", va="center", fontsize=7, color="#333333")
     left.annotate("(3.10)", (5.6, 8.9), ha="right", va="bottom", fontsize=7)
@@ -138,12 +140,12 @@ def _curves(ax: Axes, data: xr.Dataset, *, islands: bool) -> None:
     omega = data.frequency_ratio.values
     for colour, eta in zip(shades(data.restitution.size), data.restitution.values, strict=True):
         one = data.sel(restitution=eta)
-        known = np.isfinite(one.falls_from.values)
+        known = np.isfinite(one.overturns_from.values)
         # down one branch and back along the other, joined at the tip unless that lies outside the panel
         joint = [np.nan] if known[-1] else []
         ax.plot(
             np.concatenate([omega[known], joint, omega[known][::-1]]),
-            np.concatenate([one.falls_from.values[known], joint, one.safe_again.values[known][::-1]]),
+            np.concatenate([one.overturns_from.values[known], joint, one.survives_again.values[known][::-1]]),
             color=colour,
             label=rf"$\eta={eta:.2f}$",
         )

@@ -32,10 +32,10 @@ WIDEST = {"sine": 7.2, "cosine": 6.0}
 """Largest frequency ratio shown, beyond the tip of the overturning region [-]."""
 
 FEWEST, NODES = 0.2, 301
-"""Smallest frequency ratio shown, and number of grid nodes in each direction for `upper_safe_region` [-]."""
+"""Smallest frequency ratio shown, and number of grid nodes in each direction for `upper_surviving_region` [-]."""
 
 HALVINGS = 40
-"""Times that the distance of two nodes is halved to find a bound of the upper safe region [-]."""
+"""Times that the distance of two nodes is halved to find a bound of the upper surviving region [-]."""
 
 MAIN = 1
 """Thresholds of overturning after more impacts than this are marked in the inset only [-]."""
@@ -46,7 +46,7 @@ DETAIL = ((0.4, 2.0), (1.03, 1.38))
 STEP = 1e-6
 """Relative distance from a threshold at which the block is integrated in SI units [-]."""
 
-COLOURS, SAFE = (BLUE, VERMILION), "#D9D9D9"
+COLOURS, SURVIVES = (BLUE, VERMILION), "#D9D9D9"
 
 
 def data(
@@ -83,7 +83,7 @@ def data(
         for row in block_thresholds(pulse, block, one, restitution)
     ]
     frequency_ratio = np.geomspace(FEWEST, max(WIDEST.values()), NODES)
-    safe = np.array([upper_safe_region(pulse, frequency_ratio, restitution, alpha) for pulse in pulses])
+    survives = np.array([upper_surviving_region(pulse, frequency_ratio, restitution, alpha) for pulse in pulses])
     names = {
         "pulse": ("index of the pulse", "1"),
         "block": ("index of the block", "1"),
@@ -103,10 +103,10 @@ def data(
                 f"threshold_{name}": plotted("threshold", [row[name] for row in rows], text, units=units)
                 for name, (text, units) in names.items()
             },
-            "safe_from": plotted(
-                ("pulse", "frequency_ratio"), safe[:, 0], "amplitude from which it passes alpha and survives"
+            "survives_from": plotted(
+                ("pulse", "frequency_ratio"), survives[:, 0], "amplitude from which it passes alpha and survives"
             ),
-            "safe_to": plotted(("pulse", "frequency_ratio"), safe[:, 1], "amplitude up to which it does"),
+            "survives_to": plotted(("pulse", "frequency_ratio"), survives[:, 1], "amplitude up to which it does"),
             "frequency_parameter": plotted(
                 "block", [block.frequency_parameter for block in blocks], "frequency parameter p", units="rad s-1"
             ),
@@ -127,7 +127,9 @@ def data(
     )
 
 
-def upper_safe_region(pulse: str, frequency_ratio: Floats, restitution: float, alpha: float) -> tuple[Floats, Floats]:
+def upper_surviving_region(
+    pulse: str, frequency_ratio: Floats, restitution: float, alpha: float
+) -> tuple[Floats, Floats]:
     """The largest range of amplitudes, up to `HIGHEST`, in which a block passes alpha and survives, for each omega.
 
     Returns
@@ -247,7 +249,9 @@ def draw(data: xr.Dataset) -> Figure:
 def _in_groups(ax: Axes, data: xr.Dataset, pulse: int, lines: Lines) -> None:
     """The one curve of both blocks, and the region in which they pass alpha and survive."""
     draw_lines(ax, lines.frequency_ratio, lines.amplitude, lines, color=BLACK, linewidth=1.0)
-    ax.fill_between(data.frequency_ratio, data.safe_from[pulse], data.safe_to[pulse], color=SAFE, linewidth=0, zorder=0)
+    ax.fill_between(
+        data.frequency_ratio, data.survives_from[pulse], data.survives_to[pulse], color=SURVIVES, linewidth=0, zorder=0
+    )
 
 
 def _markers(top: Axes | None, bottom: Axes, data: xr.Dataset, pulse: int, *, detail: bool) -> None:
@@ -273,5 +277,5 @@ def _legend(figure: Figure, ax: Axes, data: xr.Dataset) -> None:
     marker = {"color": GREY, "linestyle": "", "marker": "o", "markersize": 5, "markerfacecoloralt": "white"}
     ax.plot([], [], fillstyle="top", label="in SI units: overturns above", **marker)
     ax.plot([], [], fillstyle="bottom", label="overturns below", **marker)
-    ax.fill_between([], [], color=SAFE, label=r"passes $\alpha$ and survives")
+    ax.fill_between([], [], color=SURVIVES, label=r"passes $\alpha$ and survives")
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)

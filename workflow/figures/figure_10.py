@@ -55,10 +55,10 @@ def data(*, sine: Path, cosine: Path, restitution: float, alpha_deg: Sequence[fl
     return xr.Dataset(
         {
             **line_variables(lines_of_files(list(files.values()), angles)),
-            "falls_from": plotted(
-                dims, closed.falls_from, "slender: overturns after one impact", equation="3.18, 3.20, 3.21"
+            "overturns_from": plotted(
+                dims, closed.overturns_from, "slender: overturns after one impact", equation="3.18, 3.20, 3.21"
             ),
-            "safe_again": plotted(dims, closed.safe_again, "slender: survives again", equation="3.18"),
+            "survives_again": plotted(dims, closed.survives_again, "slender: survives again", equation="3.18"),
             "direct": plotted(dims, closed.direct, "slender: overturns without impact", equation="3.10"),
         },
         coords={
@@ -98,7 +98,7 @@ def draw(data: xr.Dataset) -> Figure:
             inset.tick_params(labelsize=6, length=2, pad=1.5)
             ax.indicate_inset_zoom(inset, edgecolor=GREY, linewidth=0.6)
     pointer = {"fontsize": 7, "va": "center", "arrowprops": {"arrowstyle": "-", "linewidth": 0.5}}
-    axes[0].annotate("upper safe\nregion", (4.2, 5.2), (1.5, 4.2), **pointer)
+    axes[0].annotate("upper surviving\nregion", (4.2, 5.2), (1.5, 4.2), **pointer)
     axes[0].set_ylabel(r"amplitude $a=a_g/(g\tan\alpha)$ [-]")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     panel_letters(axes)
@@ -119,6 +119,6 @@ def _curves(ax: Axes, data: xr.Dataset, pulse: int, *, linewidth: float) -> None
         draw_lines(ax, lines.frequency_ratio, lines.amplitude, lines, **style)
     if data.attrs["pulse_names"].split()[pulse] == "sine":
         style = {"color": BLACK, "linewidth": 0.7 * linewidth, "linestyle": (0, (1, 2)), "zorder": 4}
-        for name in ("falls_from", "safe_again", "direct"):
+        for name in ("overturns_from", "survives_again", "direct"):
             label = {"label": "slender, closed forms"} if name == "direct" else {}
             ax.plot(data.frequency_ratio, data[name], **style, **label)

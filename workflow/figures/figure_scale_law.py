@@ -42,7 +42,7 @@ def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: floa
     peaks[:, ~survives] = np.nan
     closed = small_peak(1 / s[:, None], omega, eta[:, None, None])
     closed_curves = overturning_amplitudes(omega, eta[:, None])
-    lowest = np.fmin(closed_curves.falls_from, closed_curves.direct).min(axis=0)
+    lowest = np.fmin(closed_curves.overturns_from, closed_curves.direct).min(axis=0)
     dims = ("slenderness", "frequency_ratio")
     return xr.Dataset(
         {
@@ -62,7 +62,7 @@ def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: floa
         coords={
             "slenderness": plotted("slenderness", s, "dimensionless slenderness g alpha/a_g"),
             "frequency_ratio": plotted("frequency_ratio", omega, "frequency ratio omega_g/p"),
-            "falls_from": plotted(
+            "overturns_from": plotted(
                 "frequency_ratio",
                 lowest,
                 "smallest amplitude at which a block overturns for one eta",
@@ -107,8 +107,8 @@ def _map(ax: Axes, data: xr.Dataset, name: str, colours: str, norm: Normalize, l
     ax.set_facecolor("#DDDDDD")
     mesh = ax.pcolormesh(omega, a, data[name], cmap=colours, norm=norm, rasterized=True, shading="nearest")
     # overturns for one eta at least: above the first curve of the largest eta up to that without impact
-    ax.fill_between(omega, data.falls_from, LARGEST, color="#DDDDDD", linewidth=0)
-    ax.plot(omega, data.falls_from, color="#555555", linewidth=0.8)
+    ax.fill_between(omega, data.overturns_from, LARGEST, color="#DDDDDD", linewidth=0)
+    ax.plot(omega, data.overturns_from, color="#555555", linewidth=0.8)
     ax.plot(omega, 1 / data.limit, color="black", linewidth=1, linestyle=(0, (4, 2)))
     ax.text(
         omega[-1] * 0.99, 0.9 / float(data.limit[-1]), "(3.31)", ha="right", va="top", fontsize=7,

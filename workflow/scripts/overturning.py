@@ -112,7 +112,10 @@ def _closed_forms(traced: xr.Dataset, restitution: float, *, slender: bool) -> d
         from rocking.paper.overturning import overturning_amplitudes  # noqa: PLC0415  # 0.3 s, only for this block
 
         closed = overturning_amplitudes(omega, restitution)
-        once = [1 / closed.falls_from, 1 / closed.safe_again]  # one impact: a curve of two branches, the nearer one
+        once = [
+            1 / closed.overturns_from,
+            1 / closed.survives_again,
+        ]  # one impact: a curve of two branches, the nearer one
         nearer = np.where(np.abs(once[0] - s) <= np.abs(once[1] - s), once[0], once[1])
         nearer = np.where(np.isnan(once[0]), np.nan, nearer)
         directly = outcome == Outcome.OVERTURNED_DIRECTLY

@@ -53,7 +53,7 @@ class AmplitudeResponse(Answer):
 
     query: Annotated[SerializeAsAny[AmplitudeParams], ECHO] = QUERY
     thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
-    largest_safe_amplitude: float | None = Field(
+    largest_surviving_amplitude: float | None = Field(
         description="amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
     source: str = BY_SOLVER
@@ -91,7 +91,7 @@ def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
     )
     listed = _thresholds(found)
     lowest = listed[0].amplitude if listed else None
-    return AmplitudeResponse(query=params, thresholds=listed, largest_safe_amplitude=lowest)
+    return AmplitudeResponse(query=params, thresholds=listed, largest_surviving_amplitude=lowest)
 
 
 def _thresholds(found: Thresholds) -> list[AmplitudeThreshold]:

@@ -72,6 +72,6 @@ def record_amplification(
         for change in (-CHANGE, CHANGE)
     )
     middle = 0.5 * (more.peak_rotation + less.peak_rotation)
-    rocks = (less.outcome == Outcome.SAFE) & (more.outcome == Outcome.SAFE)
+    rocks = (less.outcome == Outcome.RECOVERS) & (more.outcome == Outcome.RECOVERS)
     relative = np.abs(more.peak_rotation - less.peak_rotation) / np.where(rocks, middle, 1.0) / (2.0 * CHANGE)
     return np.where(less.outcome != more.outcome, np.inf, np.where(rocks, relative, np.nan))

@@ -12,7 +12,7 @@ from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.memory import prefetch_for_write
 from rocking._numba.records import scatter_records
 from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
-from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, SAFE
+from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, RECOVERS
 from rocking._solver.stages.excitation import excitation_at_angles, set_angles
 from rocking._solver.stages.state import (
     AT_UPLIFT,
@@ -49,7 +49,7 @@ def end_flights(pulse: Record, group: Record, sign: float) -> None:
     ended = load(group.ended, 0)
     hits, over = ended == float(IMPACT), ended == float(PULSE_END)
     store(group.next, 0, splat(float(UNDECIDED)))
-    store(group.outcome, 0, splat(float(SAFE)))
+    store(group.outcome, 0, splat(float(RECOVERS)))
     store(group.free_z, 0, splat(0.0))
     store(group.free_w, 0, splat(0.0))
     update_peaks(group, hits | over, load(group.top, 0), load(group.columns, IMPACTS), splat(0.0))
@@ -87,14 +87,14 @@ def final_outcomes(group: Record, over: Any) -> None:
     peak = energy / (1.0 + square_root(maximum(gap, splat(0.0))))
     later = ~increases & (peak > z)
     peak = select(increases | later, peak, z)
-    safe = over & ~overturns
-    update_peaks(group, safe, peak, select(later, impacts + 1.0, impacts), splat(1.0))
+    survives = over & ~overturns
+    update_peaks(group, survives, peak, select(later, impacts + 1.0, impacts), splat(1.0))
     overturned = over & overturns
     store(group.columns, PEAK, select(overturned, splat(math.nan), load(group.columns, PEAK)))
     store(group.columns, MODE, select(overturned, splat(-1.0), load(group.columns, MODE)))
     directly = escapes & (impacts == 0.0)
     outcome = select(
-        overturns, select(directly, splat(float(DIRECTLY)), splat(float(AFTER_IMPACT))), splat(float(SAFE))
+        overturns, select(directly, splat(float(DIRECTLY)), splat(float(AFTER_IMPACT))), splat(float(RECOVERS))
     )
     store(group.outcome, 0, select(over, outcome, load(group.outcome, 0)))
     store(group.columns, IMPACTS, select(over & escapes_later, impacts + 1.0, impacts))

@@ -162,7 +162,7 @@ def test_a_busy_server_is_retried(open_page, service):
 
 def test_the_views_follow_the_sentence_while_it_is_typed(open_page):
     page = open_page(BLOCK)
-    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     settle(page)
     expect(page.locator("#spectrum-chart canvas")).to_be_visible()
     before = page.url
@@ -180,7 +180,7 @@ def test_the_views_follow_the_sentence_while_it_is_typed(open_page):
     page.locator("#width").press("Enter")
     page.go_back()
     expect(page.locator("#width")).to_have_value("0.4")
-    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
 
 
 def test_a_verdict_appears_only_with_its_block(open_page, service):
@@ -234,6 +234,6 @@ def test_a_block_outside_the_rocking_model_says_so_first(open_page):
     assert "5.67 g" not in said
     assert "Warnings" in said
     expect(page.locator("#motion-caption")).to_contain_text(
-        "The rocking model does not apply; held in place: It survives"
+        "The rocking model does not apply; held in place: It rocks and comes to rest"
     )
     expect(page.locator("#map-readout")).to_contain_text("The rocking model does not apply; held in place")

@@ -39,7 +39,7 @@ def test_the_sentence_gives_the_verdict_of_the_package(open_page, units, typed, 
         restitution=block.momentum_restitution,
         alpha=block.alpha,
     )
-    verdict = {0: "It does not uplift.", 1: "It survives (comes to rest)."}.get(int(found.outcome), "It overturns.")
+    verdict = {0: "It never uplifts.", 1: "It rocks and comes to rest."}.get(int(found.outcome), "It overturns.")
     expect(page.locator(".verdict")).to_have_text(verdict)
     text = page.locator("#answer").inner_text()
     if acceleration > block.uplift_acceleration and not found.overturned:
@@ -84,13 +84,13 @@ def test_samples_are_drawn_on_the_picture_of_the_pulse(open_page):
     found = rocking.Block(0.4, 1.6).response(
         rocking.SampledPulse(drawn), peak_acceleration=0.4 * STANDARD_GRAVITY, period=0.5
     )
-    verdict = "It overturns." if found.overturned else "It survives (comes to rest)."
+    verdict = "It overturns." if found.overturned else "It rocks and comes to rest."
     expect(page.locator(".verdict")).to_have_text(verdict)
 
 
 def test_the_address_restores_the_block(open_page):
     page = open_page(BLOCK)
-    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     assert page.locator("#width").input_value() == "0.4"
     settle(page)
     page.locator("#map-marks").press("ArrowDown")  # the same block under a weaker motion
@@ -169,7 +169,7 @@ def test_a_triangular_pulse_is_given_by_its_samples(open_page):
     block = rocking.Block(0.4, 1.6)
     triangle = rocking.SampledPulse([0.0, 1.0, 0.0])
     found = block.response(triangle, peak_acceleration=0.4 * STANDARD_GRAVITY, period=0.4)
-    verdict = "It overturns." if found.overturned else "It survives (comes to rest)."
+    verdict = "It overturns." if found.overturned else "It rocks and comes to rest."
     expect(page.locator(".verdict")).to_have_text(verdict)
     text = page.locator("#answer").inner_text()
     said = float(re.search(r"at most ([\d.]+)°", text)[1])

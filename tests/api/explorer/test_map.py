@@ -52,7 +52,7 @@ def test_a_click_opens_the_history_of_that_block(open_page):
     assert chosen["slenderness"] == pytest.approx(0.4, abs=0.005)
     expected = rocking.peak_response("sine", **chosen, restitution=0.85)
     expect(page.locator("#map-readout")).to_contain_text(f"{float(expected.peak_rotation):.4f} α")
-    expect(page.locator("#motion-caption")).to_contain_text("It survives (comes to rest)")
+    expect(page.locator("#motion-caption")).to_contain_text("It rocks and comes to rest")
     page.go_back()
     expect(page.locator("#rotation")).to_be_hidden()
     page.go_forward()

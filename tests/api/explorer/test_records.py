@@ -49,11 +49,11 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     page = open_page("/records")
     choose(page, "short.csv", content)
     expected = BLOCK.response(motion)
-    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     assert page.locator("#answer .margin").inner_text() == f"I{expected.margin[1:]}."
     assert page.locator("#answer ul li").all_inner_texts()[: len(expected.warnings)] == expected.warnings
     assert expected.thresholds.value[0] > 1.0
-    expect(page.locator(".verdict")).to_have_class("verdict safe")
+    expect(page.locator(".verdict")).to_have_class("verdict survives")
     said = float(re.search(r"at most ([\d.]+)°", page.locator("#answer").inner_text())[1])
     assert said == pytest.approx(math.degrees(expected.rotation), rel=0.006)
 
@@ -108,7 +108,7 @@ def test_another_factor_overturns_the_block(open_page, content, motion):
 def test_an_example_is_loaded_and_follows_the_slider_of_its_factor(open_page):
     page = open_page("/records")
     expect(page.locator("#dropped")).to_contain_text("South Napa 2014")
-    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     expect(page.locator("#scales-caption")).to_contain_text("overturns from")
     page.locator("#factor").fill("0.6")
     page.locator("#factor").dispatch_event("change")
@@ -162,7 +162,7 @@ def test_the_report_of_a_block_under_a_pulse_repeats_its_numbers(open_page):
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
-def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_safe(open_page, content, motion):
+def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_surviving(open_page, content, motion):
     block = rocking.Block(0.2, 1.0)
     factors = np.arange(0.5, 3.0, 0.01)
     outcomes = rocking.peak_response(
@@ -178,8 +178,8 @@ def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_safe(open_page, 
     for name, value in (("width", "0.2"), ("height", "1"), ("scale", f"{factor:.2f}")):
         page.locator(f"#{name}").fill(value)
     choose(page, "short.csv", content)
-    expect(page.locator(".verdict")).to_have_class("verdict unsafe")
-    expect(page.locator(".verdict")).to_have_text("It survives (comes to rest).")
+    expect(page.locator(".verdict")).to_have_class("verdict overturns")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     expect(page.locator("#answer .margin")).to_contain_text("It overturns from")
 
 

@@ -51,7 +51,7 @@ def test_outcome_and_peaks_of_each_case(row: dict[str, str]) -> None:
     body = cell(row, peak)
     found, edges = solve_bodies(sample_rows(horizontal / peak, None, vertical), body, 1, None, each_side=True)
     sides = edges[:, :2]
-    assert (found["outcome"][0] > rocking.Outcome.SAFE) == (row["overturned"] == "1")
+    assert (found["outcome"][0] > rocking.Outcome.RECOVERS) == (row["overturned"] == "1")
     if row["overturned"] == "1":
         assert np.isnan(sides).all()
         return
@@ -89,7 +89,7 @@ def test_exchanged_edges_under_the_opposite_motion_give_the_same_peaks() -> None
     back, other = solve_bodies(sample_rows(-f, None, w), exchanged(given), None, None, each_side=True)
     same = there["outcome"] == back["outcome"]
     assert np.count_nonzero(~same) == 0
-    assert 30 < np.count_nonzero(there["outcome"] == rocking.Outcome.SAFE) < 290
+    assert 30 < np.count_nonzero(there["outcome"] == rocking.Outcome.RECOVERS) < 290
     np.testing.assert_array_equal(sides[:, 2:], -other[:, 2:])
     angles = sides[:, :2] * given["alpha"][:, None]
     mirrored = (other[:, :2] * exchanged(given)["alpha"][:, None])[:, ::-1]
@@ -127,7 +127,7 @@ def test_constant_vertical_acceleration_is_another_gravity() -> None:
     other["slenderness"] = given["slenderness"] * 1.4
     heavier, _ = solve_bodies(sample_rows(f), other, None, None, each_side=True)
     np.testing.assert_array_equal(lifted["outcome"], heavier["outcome"])
-    rocks = lifted["outcome"] == rocking.Outcome.SAFE
+    rocks = lifted["outcome"] == rocking.Outcome.RECOVERS
     error = np.abs(lifted["peak_rotation"][rocks] / heavier["peak_rotation"][rocks] - 1.0)
     assert rocks.sum() > 5
     assert np.median(error) < 1e-12

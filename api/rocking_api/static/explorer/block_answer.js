@@ -15,7 +15,7 @@ export function showAnswer(found) {
   const { pulse, period, peak_acceleration: peak } = found.query;
   title.textContent = `Under one pulse: ${pulseName(pulse)}, ${number(period)} s, ${acceleration(peak)}`;
   answer.append(
-    element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
+    element("p", verdict(found), { class: `verdict ${survives(found) ? "survives" : "overturns"}` }),
     element("p", sentence(found)),
     facts(factsOf(found)),
   );
@@ -26,18 +26,18 @@ export function showAnswer(found) {
   answer.append(assumptions(found.metadata));
 }
 
-function safe(found) {
+function survives(found) {
   return found.rocking_model_applies && !found.overturned;
 }
 
 function verdict(found) {
   if (!found.rocking_model_applies) return "The rocking model does not apply.";
   if (found.overturned) return "It overturns.";
-  return found.response.outcome === "NO_UPLIFT" ? "It does not uplift." : "It survives (comes to rest).";
+  return found.response.outcome === "NO_UPLIFT" ? "It never uplifts." : "It rocks and comes to rest.";
 }
 
 function sentence(found) {
-  if (!safe(found) || found.response.outcome === "NO_UPLIFT") return `It ${found.meaning}.`;
+  if (!survives(found) || found.response.outcome === "NO_UPLIFT") return `It ${found.meaning}.`;
   return (
     `Under this one pulse it rocks by at most ${number(found.peak_rotation_deg)}°; its top moves ${length(found.top_displacement)} ` +
     "to the side. Then it comes to rest."
@@ -46,9 +46,9 @@ function sentence(found) {
 
 function factsOf(found) {
   const pairs = [["Uplifts at", acceleration(found.uplift_acceleration)]];
-  const { largest_safe_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
+  const { largest_surviving_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
   pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : acceleration(largest, threshold)]);
-  if (found.url && largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_safe_friction_demand, 2)]);
+  if (found.url && largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_surviving_friction_demand, 2)]);
   const margin = applies && marginOf(found);
   if (margin) pairs.push(margin);
   const all = applies ? (found.thresholds ?? []) : [];
@@ -60,7 +60,7 @@ function factsOf(found) {
   return pairs;
 }
 
-/** Why there is no largest safe acceleration. */
+/** Why there is no largest surviving acceleration. */
 function reasonForNone({ thresholds }) {
   if (thresholds === null) return "not found in time";
   return thresholds.length ? "not known: the rocking model does not apply" : "no limit found";

@@ -51,9 +51,9 @@ function resultOf(found) {
   return `${opening} Peak rotation ${number(found.peak_rotation_deg, 4)}° = ${number(peak, 4)} α${bound}; ${top}.`;
 }
 
-function marginsOf({ query, overturned, thresholds: found, margins, largest_safe_acceleration: safe }) {
+function marginsOf({ query, overturned, thresholds: found, margins, largest_surviving_acceleration: largest }) {
   const lines = [];
-  if (safe !== null) lines.push(`At this period the block does not overturn below ${acceleration(safe, threshold)}.`);
+  if (largest !== null) lines.push(`At this period the block does not overturn below ${acceleration(largest, threshold)}.`);
   const all = found ?? [];
   const texts = thresholds(all.map((one) => [one.peak_acceleration, one.overturns_above]), 4);
   all.forEach((one, at) => lines.push(`It ${one.overturns_above ? "overturns" : "survives"} from ${texts[at]} m/s² at this period.`));

@@ -3,10 +3,10 @@
 import { inShown, shown, written } from "./units.js";
 
 export const OUTCOMES = {
-  NO_UPLIFT: "does not uplift",
-  SAFE: "survives (comes to rest)",
-  OVERTURNED_DIRECTLY: "overturns without an impact",
-  OVERTURNED_AFTER_IMPACT: "overturns after impacts",
+  NO_UPLIFT: "never uplifts",
+  RECOVERS: "rocks and comes to rest",
+  OVERTURNED_DIRECTLY: "overturns without impact",
+  OVERTURNED_AFTER_IMPACT: "overturns after one or more impacts",
 };
 
 export const PULSES = {

@@ -18,8 +18,8 @@ export function drawPicture(context, frame, scales, grid, curves, ratio) {
 }
 
 function drawColours(context, scales, grid) {
-  const safe = grid.outcomes.indexOf("SAFE");
-  drawCells(context, scales, grid, (at) => (grid.outcome[at] === safe ? colourOfPeak(grid.peak_rotation[at]) : null));
+  const recovers = grid.outcomes.indexOf("RECOVERS");
+  drawCells(context, scales, grid, (at) => (grid.outcome[at] === recovers ? colourOfPeak(grid.peak_rotation[at]) : null));
 }
 
 function drawOutcome(context, scales, grid, outcome, ratio) {

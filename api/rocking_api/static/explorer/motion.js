@@ -44,7 +44,7 @@ async function* untilRest(params, signal) {
   for (let times = 2; times <= LONGEST && isMoving(probe); times *= 2) {
     probe = await ask("/v1/history", { ...params, samples: 2, duration: 2 * probe.tau.at(-1) }, signal);
   }
-  if (probe.outcome !== "SAFE" || isMoving(probe)) {
+  if (probe.outcome !== "RECOVERS" || isMoving(probe)) {
     yield await ask("/v1/history", params, signal);
     return;
   }
@@ -53,7 +53,7 @@ async function* untilRest(params, signal) {
 }
 
 function isMoving({ outcome, rotation }) {
-  return outcome === "SAFE" && rotation.at(-1) !== 0;
+  return outcome === "RECOVERS" && rotation.at(-1) !== 0;
 }
 
 function motionParams({ pulse, restitution, alpha_deg, point }) {

@@ -30,7 +30,7 @@ export function drawMotion(history, { size, alpha_deg, note = "" }) {
   drawCharts(history, units, Boolean(size));
   const notes = [note, `It ${OUTCOMES[history.outcome]}.`].filter(Boolean);
   if (!(alpha_deg > 0)) notes.push(`The slender limit has no shape; drawn with α = ${number((alpha * 180) / Math.PI)}°.`);
-  if (history.outcome === "SAFE" && history.rotation.at(-1) !== 0) notes.push("The time history ends before it is at rest.");
+  if (history.outcome === "RECOVERS" && history.rotation.at(-1) !== 0) notes.push("The time history ends before it is at rest.");
   if (history.overturned) notes.push("The end of the overturning is drawn without ground motion.");
   caption.textContent = notes.join(" ");
   const tell = (tau) => {

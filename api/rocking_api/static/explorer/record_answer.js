@@ -11,7 +11,7 @@ export function showRecordAnswer(found) {
   answer.hidden = found === null;
   if (found === null) return;
   answer.append(
-    element("p", verdict(found), { class: `verdict ${safe(found) ? "safe" : "unsafe"}` }),
+    element("p", verdict(found), { class: `verdict ${survives(found) ? "survives" : "overturns"}` }),
     element("p", marginOf(found), { class: "margin" }),
     element("p", sentence(found)),
     facts([...ofBlock(found), ...ofRecord(found.record, found.query.scale)]),
@@ -24,7 +24,7 @@ export function showRecordAnswer(found) {
 }
 
 /** Whether it survives this factor of the record and, as far as it was searched, every smaller one. */
-function safe({ rocking_model_applies: applies, overturned, overturning_scale: from, query }) {
+function survives({ rocking_model_applies: applies, overturned, overturning_scale: from, query }) {
   return applies && !overturned && (from ?? Infinity) > query.scale;
 }
 
@@ -50,7 +50,7 @@ export function doubtOf({ peak_is_determined: determined, amplification }) {
 export function verdict(found) {
   if (!found.rocking_model_applies) return "The rocking model does not apply.";
   if (found.overturned) return "It overturns.";
-  return found.outcome === "NO_UPLIFT" ? "It does not uplift." : "It survives (comes to rest).";
+  return found.outcome === "NO_UPLIFT" ? "It never uplifts." : "It rocks and comes to rest.";
 }
 
 function sentence(found) {

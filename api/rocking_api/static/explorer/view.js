@@ -4,7 +4,7 @@ const WHOLE = { frequency_ratio_min: 0.5, frequency_ratio_max: 12, slenderness_m
 const MOST_SLENDER = 2;
 const LEAST_SPAN = 1e-3;
 
-/** The four borders as numbers; `point` (or null) lies inside unless it never uplifts by far. */
+/** The four borders as numbers; `point` (or null) lies inside unless it is far from uplift. */
 export function windowOf(state, point) {
   const found = { ...WHOLE };
   if (point && !asked(state)) {
