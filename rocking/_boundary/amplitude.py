@@ -123,8 +123,8 @@ def thresholds(
         after more than `MOST_COUNTED` impacts. A region of one way of overturning narrower than 1/2000 of the range and
         surrounded by a single other outcome can be missed; a surviving band between two ways of overturning, of which
         all with more than `MOST_COUNTED` impacts are one, is not, unless it is narrower than `RESOLUTION`. Under a
-        record the lowest is that of `rocking._boundary.scan.lowest_overturning`; above it amplitudes that differ by 0.2 % are
-        tried. Changes are bisected to 1e-6.
+        record the lowest is that of `rocking._boundary.scan.lowest_overturning`; above it amplitudes that differ by 0.2
+        % are tried. Changes are bisected to 1e-6.
 
     Raises
     ------

@@ -454,10 +454,10 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     3.4336 to 3.4395, where a gap reaches into it (2.389 < a < 2.515 at 3.4372). `case_1_1_margin` and
     `case_1_2_margin` are negative there.
 
-    These curves are not complete, contrary to the paper. Near the tip of the surviving region (1/a > 0.897,
-    omega < 1.1) there are islands in which the block overturns after three, five or more impacts (always an odd number), all
-    within the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000 random
-    blocks with eta from 0.3 to 1.
+    These curves are not complete, contrary to the paper. Near the tip of the surviving region (1/a > 0.897, omega <
+    1.1) there are islands in which the block overturns after three, five or more impacts (always an odd number), all
+    within the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000
+    random blocks with eta from 0.3 to 1.
     """
     during = case_1_1_amplitudes(frequency_ratio, restitution)
     after = case_1_2_amplitudes(frequency_ratio, restitution)
