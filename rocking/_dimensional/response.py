@@ -179,8 +179,8 @@ JUDGED = dict((
             source=lambda found: float(found.problem.duration)),
     _judged("largest_surviving_acceleration", "peak acceleration below which this block, of this size, does not "
             "overturn under this pulse at this period; a smaller block of the same shape may",
-            "no change of outcome was found, or the rocking model does not apply just below the lowest of `thresholds`, "
-            "see `warnings`",
+            "no change of outcome was found, or the rocking model does not apply just below the lowest of "
+            "`thresholds`, see `warnings`",
             unit="m s-2", kinds=PULSES),
     _judged("largest_surviving_friction_demand", "coefficient of friction that it needs just below that acceleration",
             "that is null, or it is not known", kinds=PULSES),
