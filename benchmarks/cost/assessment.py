@@ -6,13 +6,13 @@ of made-up records at 0.3 g; both use all cores. Kernels are compiled before.
 
 from __future__ import annotations
 
-import argparse
 import time
 
 import numpy as np
 
 import rocking
 from benchmarks.cost.made_up_records import made_up_record
+from benchmarks.measure import arguments
 from rocking._assessment.objects import Bodies
 from rocking._assessment.search import factors_of
 
@@ -30,12 +30,9 @@ def made_up_objects(count: int) -> list[rocking.Object]:
     ]
 
 
-def main(arguments: list[str] | None = None) -> None:
+def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--objects", type=int, default=2000)
-    parser.add_argument("--records", type=int, default=40)
-    options = parser.parse_args(arguments)
+    options = arguments(__doc__, objects=2000, records=40)
     suite = [made_up_record(seed, SAMPLES, STEP) for seed in range(options.records)]
     body = Bodies.of(made_up_objects(options.objects)).scaled()
     for site in (rocking.Site(pga="0.3 g", pgv="0.3 m/s"), rocking.Site(pga="0.3 g", records=suite)):
