@@ -116,10 +116,10 @@ def arguments(about: str | None, given: Sequence[str] | None = None, **options: 
     for name, default in options.items():
         if isinstance(default, type):
             parser.add_argument(name, type=default)
-        elif isinstance(default, list):
-            parser.add_argument(f"--{name.replace('_', '-')}", type=type(default[0]), nargs="+", default=default)
-        else:
-            parser.add_argument(f"--{name.replace('_', '-')}", type=type(default), default=default)
+            continue
+        several = {"type": type(default[0]), "nargs": "+"} if isinstance(default, list) else {"type": type(default)}
+        option = f"--{name.replace('_', '-')}"
+        parser.add_argument(option, default=default, help="default: %(default)s", metavar="VALUE", **several)
     return parser.parse_args(given)
 
 

@@ -51,9 +51,9 @@ def draw(records: list[dict[str, Any]], measure: str, path: Path) -> None:
     for ax, record in zip(axes.flat, records, strict=True):
         panel(ax, record, measure)
     panel_letters(list(axes.flat))
-    figure.supxlabel(MEASURES[measure])
-    figure.supylabel("processor time of a cell, one core [µs]")
+    figure.supxlabel(MEASURES[measure], size="medium")
+    figure.supylabel("processor time of a cell, one core [µs]", size="medium")
     handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    figure.legend(handles, labels, loc="outside upper center", ncols=4)
     figure.savefig(path)
     plt.close(figure)
