@@ -66,7 +66,7 @@ docs: .venv/project | results/manifest.json ## build the guide in build/docs; it
 	GUIDE_URL=$(GUIDE_URL) sphinx-build -W --keep-going -q -b html docs build/docs
 	@echo 'open build/docs/index.html, or make serve and http://$(HOST):$(PORT)/guide/'
 
-bench: .venv/project ## run the benchmarks: run time, error, interpolation, service, ablations; about 13 minutes
+bench: .venv/project ## run the benchmarks: run time, error, first call, records, service; about ten minutes
 	$(RUN) $(if $(CONFIG),--configfile '$(CONFIG)' --) bench
 
 stress: .venv/project ## compare 3,800 hard cases with 192-bit references; one to two minutes
@@ -74,7 +74,7 @@ stress: .venv/project ## compare 3,800 hard cases with 192-bit references; one t
 
 slurm: .venv/project ## make data sets through a Slurm cluster of one node and compare all bytes with a local run; needs root
 	@.venv/bin/python -m pip install --quiet --no-deps --upgrade --target build/slurm $(SLURM_PLUGIN)
-	python -m stress.slurm
+	stress/slurm.sh
 
 # Besides these the plugin needs what is locked; it is not installed into .venv.
 SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin-slurm-jobstep==0.6.1

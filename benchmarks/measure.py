@@ -1,13 +1,14 @@
-"""Shared by all benchmarks: times in alternating rounds, errors against the reference, versions, JSON records."""
+"""Shared by all benchmarks: options, times in alternating rounds, errors against the reference, JSON records."""
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import platform
 import sys
 import time
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -98,14 +99,31 @@ def save(record: dict[str, Any], path: Path) -> None:
     path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
-def publish(
-    record: dict[str, Any],
-    path: Path,
-    draw: Callable[[dict[str, Any], list[Path]], object],
-    table: Callable[[dict[str, Any]], str],
-) -> None:
-    """Write a record and its figures (png, svg), and print it as a table."""
+def arguments(about: str | None, given: Sequence[str] | None = None, **options: Any) -> argparse.Namespace:
+    """Read a command line whose help is the docstring of a module.
+
+    Parameters
+    ----------
+    about : str
+        The docstring.
+    given : sequence of str, optional
+        The command line; that of the process if omitted.
+    options
+        An option for each name, with its default, whose type it has; a list takes several values of the type of its
+        first one. A type in place of a default: an argument that must be given, by its place.
+    """
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name, default in options.items():
+        if isinstance(default, type):
+            parser.add_argument(name, type=default)
+            continue
+        several = {"type": type(default[0]), "nargs": "+"} if isinstance(default, list) else {"type": type(default)}
+        option = f"--{name.replace('_', '-')}"
+        parser.add_argument(option, default=default, help="default: %(default)s", metavar="VALUE", **several)
+    return parser.parse_args(given)
+
+
+def finish(record: dict[str, Any], path: Path, table: Callable[[dict[str, Any]], str]) -> None:
+    """Write a record and print it as a table."""
     save(record, path)
-    draw(record, [path.with_suffix(f".{kind}") for kind in ("png", "svg")])
-    print(table(record))
-    print(f"\nwritten to {path}, and figures with the same name")
+    print(f"{table(record)}\n\nwritten to {path}")

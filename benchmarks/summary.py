@@ -1,11 +1,10 @@
-"""Summary of all measurements: `python -m benchmarks.summary` writes results/benchmarks/summary.md.
+"""All measurements on one page: `python -m benchmarks.summary` writes summary.md and the figures of time against error.
 
 The numbers of docs/benchmarks.md are taken from this page. Missing measurements are omitted.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import platform
@@ -13,27 +12,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from benchmarks.ablations import suite as ablations
-from benchmarks.accuracy import grid_size, tolerance
-from benchmarks.cells import DIAGRAMS
-from benchmarks.cost import bodies, first_call, growth, solver, stages, work_precision
-from benchmarks.cost import records as recorded_motions
-from benchmarks.service import performance
-
-GOALS = {"slender": 1000.0, "rigid": 10.0}
-"""Intended time of the fastest baseline over that of the package, at every error."""
+from benchmarks.accuracy import tolerance
+from benchmarks.cost import first_call, records, service, solver, work_precision
+from benchmarks.figures.work_precision import draw
+from benchmarks.measure import arguments
+from benchmarks.tables import DIAGRAMS
 
 TABLES = {
-    "solver": ("Time of a cell", lambda record: solver.table(record["rows"])),
-    "growth": ("Cost against the number of cells", growth.table),
-    "grid-size": ("Interpolation", grid_size.table),
+    "solver": ("Time of a cell", solver.table),
     "tolerance": ("Tolerance", tolerance.table),
-    "records": ("Recorded motions", recorded_motions.table),
-    "bodies": ("Bodies with two edges", bodies.table),
+    "records": ("Recorded motions", records.table),
     "first-call": ("After the installation", first_call.table),
-    "service": ("Service", performance.table),
-    "ablations": ("Ablations", ablations.table),
-    "stages": ("Stages of the reproduction", lambda record: stages.table(record["stages"])),
+    "service": ("Service", service.table),
 }
 CLASSES = {"any": "", "scipy": "scipy"}
 """Groups of baselines that are compared: a name and the prefix of the baselines in it."""
@@ -53,7 +43,7 @@ def ratio(best: tuple[str, dict[str, float]] | None) -> str:
     if best is None:
         return "not reached"
     name, found = best
-    return f"{digits(found['median'])} ({digits(found['smallest'])} to {digits(found['largest'])}), {name}"
+    return f"{name} {digits(found['median'])} ({digits(found['smallest'])} to {digits(found['largest'])})"
 
 
 def digits(value: float) -> str:
@@ -61,38 +51,17 @@ def digits(value: float) -> str:
     return f"{value:.1f}" if value < 100.0 else f"{float(f'{value:.3g}'):,.0f}"
 
 
-def verdict(records: list[dict[str, Any]], measure: str, prefix: str) -> Iterator[str]:
-    """Yield whether the fastest baseline of a class reaches the intended ratio."""
-    for kind, goal in GOALS.items():
-        best = [
-            one["median"]
-            for record in records
-            if record["diagram"].startswith(kind)
-            for _, one in filter(None, work_precision.fastest_baselines(record, measure, prefix).values())
-        ]
-        if best:
-            met = sum(value >= goal for value in best)
-            yield f"- {kind}: {goal:,.0f} times reached at {met} of {len(best)} errors; smallest {digits(min(best))}"
-
-
-def page(folder: Path) -> Iterator[str]:
-    """Yield the lines of the page."""
-    read = {path.stem: json.loads(path.read_text()) for path in sorted(folder.glob("*.json"))}
+def page(read: dict[str, dict[str, Any]]) -> Iterator[str]:
+    """Yield the lines of the page from the records by name."""
     yield "# Benchmarks"
     yield f"\n{os.cpu_count()} cores, {platform.machine()}, {platform.system()}, Python {platform.python_version()}"
-    records = [read[f"work-precision-{name}"] for name in DIAGRAMS if f"work-precision-{name}" in read]
-    if records:
-        yield ", ".join(f"{name} {version}" for name, version in records[0]["versions"].items() if name != "python")
-    for measure in work_precision.MEASURES if records else ():
+    diagrams = [read[f"work-precision-{name}"] for name in DIAGRAMS if f"work-precision-{name}" in read]
+    for measure in work_precision.MEASURES if diagrams else ():
         for class_name, prefix in CLASSES.items():
             yield f"\n## Fastest baseline ({class_name}) over rocking, {measure.replace('_', ' ')}\n"
-            yield from comparison(records, measure, prefix)
-            yield ""
-            yield from verdict(records, measure, prefix)
-    for record in records:
-        yield f"\n## {record['diagram']}, {record['cells']['all']} cells\n\n```"
-        yield work_precision.table_of(record)
-        yield "```"
+            yield from comparison(diagrams, measure, prefix)
+    for record in diagrams:
+        yield f"\n## {record['diagram']}, {record['cells']['all']} cells\n\n```\n{work_precision.table(record)}\n```"
     for name, (title, table) in TABLES.items():
         if name in read:
             yield f"\n## {title}\n\n```\n{table(read[name])}\n```"
@@ -100,11 +69,15 @@ def page(folder: Path) -> Iterator[str]:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="folder of the measurements")
-    folder = parser.parse_args().folder
-    text = "\n".join(page(folder)) + "\n"
+    folder = arguments(__doc__, folder=Path("results/benchmarks")).folder
+    read = {path.stem: json.loads(path.read_text()) for path in sorted(folder.glob("*.json"))}
+    text = "\n".join(page(read)) + "\n"
     (folder / "summary.md").write_text(text)
+    if all(f"work-precision-{name}" in read for name in DIAGRAMS):
+        for measure in work_precision.MEASURES:
+            draw(
+                [read[f"work-precision-{name}"] for name in DIAGRAMS], measure, folder / f"work-precision-{measure}.png"
+            )
     print(text)
 
 

@@ -1,50 +1,42 @@
-"""Compare all hard cases with their reference: `python -m stress`, or `make stress`; reports violated requirements."""
+"""Compare all hard cases with their reference: `python -m stress`, or `make stress`; reports violated requirements.
+
+`--family NAME ...` selects some of the families, besides "ordinary".
+"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
 
-from benchmarks.measure import progress, save, versions
-from stress.evaluate import evaluate_family
-from stress.families import BY_NAME, select_families
+from benchmarks.measure import arguments, progress, save, versions
+from stress.families import BY_NAME, read_family
 from stress.figure import draw
-from stress.report import markdown, violations
+from stress.report import evaluate_family, markdown, violations
 from stress.speed import relative_times, single_times, time_summary
-from stress.tables import read_table
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("family", nargs="*", help=f"in addition to ordinary; default: all of {', '.join(BY_NAME)}")
-    parser.add_argument("--out", type=Path, default=Path("results/stress/stress.json"))
-    options = parser.parse_args()
-    out, selected = options.out, select_families(options.family, parser)
+    options = arguments(__doc__, family=[*BY_NAME], out=Path("results/stress/stress.json"))
+    out = options.out
     records: dict[str, dict[str, Any]] = {}
     parts: dict[str, dict[str, NDArray[Any]]] = {}
-    for count, name in enumerate(dict.fromkeys(("ordinary", *selected)), start=1):
+    for count, name in enumerate(dict.fromkeys(("ordinary", *options.family)), start=1):
         progress(f"family {count}: {name}")
-        records[name], parts[name] = evaluate_family(read_table(name))
-    times, single = relative_times(parts), single_times(read_table("ordinary"))
+        records[name], parts[name] = evaluate_family(read_family(name))
+    times, single = relative_times(parts), single_times(read_family("ordinary"))
     for name, record in records.items():
-        record["time"] = time_summary(times[name], parts[name], single, read_table(name))
+        record["time"] = time_summary(times[name], parts[name], single)
     violated = violations(records)
     measured = {"rigid" if rigid else "slender": time for rigid, time in single.items()}
     found = {"families": records, "violations": violated, "single_ordinary_cell_us": measured}
     save(found | {"versions": versions("numpy", "numba")}, out)
     table = markdown(records)
     out.with_suffix(".md").write_text(table)
-    draw(
-        {name: part["error"] for name, part in parts.items()},
-        times,
-        {name: part["rigid"] for name, part in parts.items()},
-        out,
-    )
+    draw({name: part | {"time": times[name]} for name, part in parts.items()}, out)
     print(table)
     print(f"written to {out}, and .md, .png and .svg with the same name")
     if violated:

@@ -23,17 +23,12 @@ SPREAD = 0.28
 
 
 @mpl.rc_context(STYLE)
-def draw(
-    errors: Mapping[str, NDArray[np.float64]],
-    times: Mapping[str, NDArray[np.float64]],
-    rigid: Mapping[str, NDArray[np.bool_]],
-    path: Path,
-) -> None:
-    """Write the figure as .png and .svg: per family (cells,) errors over conditioning, times over an ordinary cell."""
-    figure, axes = plt.subplots(1, 2, sharey=True, figsize=(WIDTH, 0.27 * len(errors) + 0.9), width_ratios=(3, 2))
-    for row, name in enumerate(errors):
-        for ax, values, floor in ((axes[0], errors[name], FLOOR), (axes[1], times[name], 1e-1)):
-            _strip(ax, row, np.maximum(values, floor), rigid[name])
+def draw(parts: Mapping[str, Mapping[str, NDArray[Any]]], path: Path) -> None:
+    """Write the figure as .png and .svg: by family (cells,) errors over conditioning, times over an ordinary cell."""
+    figure, axes = plt.subplots(1, 2, sharey=True, figsize=(WIDTH, 0.27 * len(parts) + 0.9), width_ratios=(3, 2))
+    for row, part in enumerate(parts.values()):
+        _strip(axes[0], row, np.maximum(part["error"], FLOOR), part["rigid"])
+        _strip(axes[1], row, np.maximum(part["time"], 1e-1), part["rigid"])
     for label, colour in (("slender", BLUE), ("rigid", VERMILION)):
         axes[0].plot([], [], "o", color=colour, markersize=3, label=label)
     axes[0].plot([], [], "|", color=BLACK, markersize=9, markeredgewidth=1.5, label="median")
@@ -41,7 +36,7 @@ def draw(
         ax.axvline(1.0, color=GREY, linewidth=0.8, zorder=0)
         ax.set(xscale="log")
         ax.tick_params(axis="y", length=0)
-    axes[0].set(yticks=range(len(errors)), yticklabels=list(errors), ylim=(len(errors) - 0.5, -0.5))
+    axes[0].set(yticks=range(len(parts)), yticklabels=list(parts), ylim=(len(parts) - 0.5, -0.5))
     axes[0].set_xlabel("error of the peak over the effect of one ulp of the input [-]")
     axes[1].set_xlabel("time over the median ordinary cell [-]")
     axes[1].axvline(SLOW, color=GREY, linewidth=0.8, linestyle="--", zorder=0)

@@ -3,12 +3,12 @@
 A change replaces an operator, a comparison, `and`/`or`, a sign, a constant, `min`/`max` or `sin`/`cos`. It is drawn
 from a seed and made in a copy of the tracked files; the tests that import its module, directly or indirectly, run until
 the first failure. The log holds one JSON line for each change; a run with the same log continues where the last one
-ended.
+ended. Options: the folders whose modules are changed, the folder of the copy, the minutes after which no further change
+is tried, and the seconds of tests for each change (`--budget`), without it.
 """
 
 from __future__ import annotations
 
-import argparse
 import ast
 import json
 import math
@@ -30,6 +30,7 @@ import pytest
 import scipy.optimize  # noqa: F401
 import xarray  # noqa: F401
 
+from benchmarks.measure import arguments
 from stress.imports import ImportGraph
 
 ROOT = Path(__file__).parents[1]
@@ -290,17 +291,11 @@ def measure_tests(tree: Path, files: Iterable[str], limit: float) -> dict[str, f
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folders", nargs="*", default=["rocking", "api/rocking_api"], help="whose modules are changed")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--count", type=int, default=150, help="number of changes")
-    parser.add_argument(
-        "--tree", type=Path, default=ROOT / "build" / "mutants", help="folder of the copy; created if missing"
-    )
-    parser.add_argument("--log", type=Path, default=ROOT / "build" / "mutants.jsonl")
-    parser.add_argument("--minutes", type=float, default=math.inf, help="after which no further change is tried")
-    parser.add_argument("--budget", type=float, default=120.0, help="seconds of tests for each change, without it")
-    options = parser.parse_args()
+    folders, build = ["rocking", "api/rocking_api"], ROOT / "build"
+    options = arguments(
+        __doc__, folders=folders, seed=1, count=150, tree=build / "mutants", log=build / "mutants.jsonl",
+        minutes=math.inf, budget=120.0,
+    )  # fmt: skip
     tree = options.tree.resolve()
     lines = options.log.read_text().splitlines() if options.log.exists() else []
     done = {(record["path"], record["start"], record["new"]) for record in map(json.loads, lines)}

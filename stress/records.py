@@ -9,16 +9,14 @@ input decide there.
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
-import time
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.measure import arguments, progress
 from reference.exact_response import CAPPED
 from reference.records import response_and_amplification
 from rocking._excitation.records.record import Record
@@ -29,16 +27,14 @@ ALLOWED = 1000
 LARGEST_AMPLIFICATION = 1e9
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(NamedTuple):
     """A motion and the groups of a block."""
 
     motion: Record
     groups: dict[str, float | None]
 
 
-@dataclass(frozen=True)
-class Verdict:
+class Verdict(NamedTuple):
     """Comparison of one case; `error` is relative to what is allowed, nan where no peak is compared."""
 
     right: bool
@@ -119,18 +115,14 @@ def summary(verdicts: list[Verdict]) -> dict[str, Any]:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1, help="of the first case")
-    options = parser.parse_args()
+    options = arguments(__doc__, cases=1000, seed=1)
     verdicts = []
-    start = time.perf_counter()
     for seed in range(options.seed, options.seed + options.cases):
         verdicts.append(judge(random_case(seed)))
         if not verdicts[-1].right:
             print(f"seed {seed}: {verdicts[-1]}, {random_case(seed).groups}", flush=True)
         if len(verdicts) % 100 == 0:
-            print(f"{len(verdicts)} cases, {time.perf_counter() - start:.0f} s", file=sys.stderr, flush=True)
+            progress(f"{len(verdicts)} cases")
     found = summary(verdicts)
     for name, value in found.items():
         print(f"{name:28} {value:.6g}")

@@ -1,17 +1,78 @@
-"""Tables of the records of all families, and the requirements that they violate."""
+"""Records of the families: outcomes, errors, error bounds, symmetries, times; their tables; violated requirements."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+import rocking
+from benchmarks.tables import Table
+from rocking._solver.bounded_response import solve_with_bound
 from stress.families import BY_NAME
-from stress.speed import MAX_PER_IMPACT
+from stress.solver import EPS, errors, solve, ulps_that_explain, wrong_events, wrong_outcomes
+from stress.speed import MAX_PER_IMPACT, microseconds
+from stress.symmetries import symmetries
 
 MAX_ERROR_IN_ULPS = 1000.0
 """Maximum error of the peak over the effect of one ulp of the input: three of sixteen digits lost by rounding."""
 
 EXACT_SYMMETRIES = ("mirror", "neighbours", "size_4", "units_1024")
+
+
+def evaluate_family(table: Table) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """Return the record of a family, and the errors, kinds, times and impacts (cells,) [-, -, us, -] behind it."""
+    found = solve(table)
+    error = errors(table, found)
+    rigid = table["alpha"] > 0.0
+    times = microseconds(table)
+    record = {
+        "reason": BY_NAME[table.name].reason,
+        "cells": len(table),
+        "rigid": int(rigid.sum()),
+        "survive": int(np.isfinite(table["peak_rotation"]).sum()),
+        "max_impacts": int(table["impacts"].max()),
+        "wrong": wrong_cells(table, found),
+        "peak": summary(error.peak),
+        "largest_conditioning": float(np.max(table["peak_rotation_per_ulp"]) / EPS),
+        **{name: summary(values) for name, values in error._asdict().items() if name != "peak"},
+        "worst_cell": table.cell(int(np.argmax(np.nan_to_num(error.peak_in_ulps)))),
+        "beyond_error_bound": count_beyond_error_bound(table),
+        "symmetries": symmetries(table, found),
+    }
+    return record, {"error": error.peak_in_ulps, "rigid": rigid, "time": times, "impacts": found.impacts}
+
+
+def wrong_cells(table: Table, found: rocking.Response) -> list[dict[str, Any]]:
+    """Return every cell with a wrong outcome or wrong events, with the ulps of the input that explain it."""
+    outcomes, events = wrong_outcomes(table, found), wrong_events(table, found)
+    return [
+        table.cell(k)
+        | {"wrong": "outcome" if outcomes[k] else "events", "explained_by_ulps": ulps_that_explain(table, k, found)}
+        for k in map(int, np.flatnonzero(outcomes | events))
+    ]
+
+
+def count_beyond_error_bound(table: Table) -> int:
+    """Return the number of cells whose error exceeds the bound of `solve_with_bound`, which the service uses."""
+    beyond = 0
+    for pulse in np.unique(table.pulse):
+        rows = table.pulse == pulse
+        exact = table["peak_rotation"][rows]
+        response = solve_with_bound(str(pulse), **table.inputs(rows))
+        with np.errstate(invalid="ignore"):
+            beyond += int(np.sum(np.abs(response.peak_rotation - exact) > response.error_bound))
+    return beyond
+
+
+def summary(values: NDArray[np.float64]) -> dict[str, float]:
+    """Return the median and the largest of the finite values."""
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0:
+        return {"median": 0.0, "largest": 0.0}
+    return {"median": float(np.median(finite)), "largest": float(np.max(finite))}
 
 
 def markdown(records: Mapping[str, Mapping[str, Any]]) -> str:
@@ -25,7 +86,7 @@ def markdown(records: Mapping[str, Mapping[str, Any]]) -> str:
             *("error median", "largest", "conditioning up to", "over explained median", "largest"),
             *("uplift", "impact", "bound"),
         ),
-        symmetries: (
+        invariance: (
             *("mirror", "neighbours", "size x 4", "units x 1024"),
             *("size x 3.7 outcomes", "largest", "units mm and ms outcomes", "largest"),
         ),
@@ -60,7 +121,7 @@ def numbers(record: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def symmetries(record: Mapping[str, Any]) -> list[str]:
+def invariance(record: Mapping[str, Any]) -> list[str]:
     """Return cells identical in all bits; where the groups are rounded, other outcomes and the largest change."""
     found = record["symmetries"]
     rounded = [found[symmetry] for symmetry in ("size_3.7", "units_mm_ms")]

@@ -9,14 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
-from reference.exact_response import ExactResponse
+from benchmarks.tables import INPUTS, Cell, Table
+from reference.conditioning import MAX_IMPACTS
+from reference.exact_response import ExactResponse, working_precision
+from reference.multiprecision import integrate
 from rocking._model.fields import SOLVED_FIELDS
-from stress.cells import Cell, reference_response
-from stress.tables import INPUTS, Table
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
+
+BITS = 128
+"""Precision of the search for an explanation [bits]."""
 
 ULPS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 """Units in the last place by which inputs are changed in search of the outcome that was found."""
@@ -30,7 +34,7 @@ def solve(table: Table) -> rocking.Response:
     fields: dict[str, NDArray[np.generic]] = {}
     for pulse in np.unique(table.pulse):
         rows = table.pulse == pulse
-        response = rocking.peak_response(str(pulse), **{name: table[name][rows] for name in INPUTS})
+        response = rocking.peak_response(str(pulse), **table.inputs(rows))
         for field in SOLVED_FIELDS:
             name, values = field.name, getattr(response, field.name)
             fields.setdefault(name, np.empty(len(rows), values.dtype))[rows] = values
@@ -66,7 +70,7 @@ def errors(table: Table, found: rocking.Response) -> Errors:
 
 
 def _window(name: str) -> float:
-    pulse = rocking.pulse(name)
+    pulse = rocking.pulse(str(name))
     return float(pulse.end - pulse.start)
 
 
@@ -97,10 +101,15 @@ def ulps_that_explain(table: Table, k: int, found: rocking.Response) -> int | No
             if (
                 any(steps)
                 and moved["restitution"] <= 1.0
-                and _same_response(reference_response(cell, **moved), k, found)
+                and _same_response(_reference_response(cell | moved), k, found)
             ):
                 return ulps
     return None
+
+
+def _reference_response(cell: Cell) -> ExactResponse:
+    with working_precision(BITS):
+        return integrate(**cell, max_impacts=MAX_IMPACTS)
 
 
 def _changed_by(value: float, ulps: int) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
-from stress.tables import INPUTS, Table
+from benchmarks.tables import Table
 
 FEW, MANY = 8, 256
 """Copies of a cell in one call; few if a cell takes long."""
@@ -31,11 +31,10 @@ SINGLE_CELLS, SINGLE_ROUNDS = 24, 100
 def microseconds(table: Table, rounds: int = 5) -> NDArray[np.float64]:
     """Return the processor time (cells,) [us], the smallest of some rounds."""
     found = np.empty(len(table))
-    for k, pulse in enumerate(table.pulse):
-        cell = {name: float(table[name][k]) for name in INPUTS}
-        found[k] = _time_of_copies(str(pulse), cell, FEW, 2)
+    for k in range(len(table)):
+        found[k] = _time_of_copies(table, k, FEW, 2)
         if found[k] < LONG_CELL:
-            found[k] = _time_of_copies(str(pulse), cell, MANY, rounds)
+            found[k] = _time_of_copies(table, k, MANY, rounds)
     return found
 
 
@@ -48,13 +47,7 @@ def single_times(ordinary: Table) -> dict[bool, float]:
     for kind in (False, True):
         cells = np.flatnonzero((ordinary["alpha"] > 0.0) == kind)
         chosen = cells[np.linspace(0, cells.size - 1, SINGLE_CELLS).astype(int)]
-        times = []
-        for k in chosen:
-            cell: dict[str, Any] = {name: np.array([ordinary[name][k]]) for name in INPUTS}
-            pulse, idle = str(ordinary.pulse[k]), cell | {"slenderness": np.array([2.0])}
-            rounds = range(SINGLE_ROUNDS)
-            times.append(min(_seconds(pulse, cell) for _ in rounds) - min(_seconds(pulse, idle) for _ in rounds))
-        found[kind] = 1e6 * float(np.median(times))
+        found[kind] = float(np.median([_time_of_copies(ordinary, k, 1, SINGLE_ROUNDS) for k in chosen]))
     return found
 
 
@@ -66,7 +59,7 @@ def relative_times(parts: Mapping[str, Mapping[str, NDArray[Any]]]) -> dict[str,
 
 
 def time_summary(
-    times: NDArray[np.float64], part: Mapping[str, NDArray[Any]], single: Mapping[bool, float], table: Table
+    times: NDArray[np.float64], part: Mapping[str, NDArray[Any]], single: Mapping[bool, float]
 ) -> dict[str, Any]:
     """Summarise times over the ordinary (cells,) [-], of which slow ones have many impacts.
 
@@ -76,24 +69,24 @@ def time_summary(
     return {
         "median": float(np.median(times)),
         "largest": float(np.max(times)),
-        "slowest_cell": table.cell(int(np.argmax(times))),
         "slow_per_impact": float(np.max(per_impact[times > SLOW], initial=0.0)),
     }
 
 
-def _time_of_copies(pulse: str, cell: dict[str, float], copies: int, rounds: int) -> float:
-    """Return the time of one cell, from copies separated by blocks that never uplift.
+def _time_of_copies(table: Table, k: int, copies: int, rounds: int) -> float:
+    """Return the time of row `k` [us], from copies separated by blocks that never uplift.
 
     Equal neighbours would share their first flight.
     """
-    slenderness = np.full(2 * copies, 2.0)
-    idle = min(_seconds(pulse, cell | {"slenderness": slenderness}) for _ in range(rounds))
-    slenderness[::2] = cell["slenderness"]
-    busy = min(_seconds(pulse, cell | {"slenderness": slenderness}) for _ in range(rounds))
-    return 1e6 * max(busy - idle, 0.0) / copies
+    cell, slenderness = table.inputs(k), np.full(2 * copies, 2.0)
+    times = []
+    for first in (2.0, cell["slenderness"]):
+        slenderness[::2] = first
+        times.append(min(_seconds(str(table.pulse[k]), cell | {"slenderness": slenderness}) for _ in range(rounds)))
+    return 1e6 * max(times[1] - times[0], 0.0) / copies
 
 
-def _seconds(pulse: str, groups: dict[str, object]) -> float:
+def _seconds(pulse: str, groups: dict[str, Any]) -> float:
     began = time.process_time()
-    rocking.peak_response(pulse, threads=1, **groups)  # type: ignore[arg-type]  # the groups by name
+    rocking.peak_response(pulse, threads=1, **groups)
     return time.process_time() - began

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
+from benchmarks.tables import Table
 from rocking._model.block import STANDARD_GRAVITY
 from rocking.paper import GroupSet, groups_of, problem_of_block
 from stress.solver import EPS, solve
-from stress.tables import Table
 
 SLENDER_ANGLE = 0.01
 """Slenderness angle [rad] of the blocks that represent the slender limit, in the groups (4.10)."""
@@ -44,7 +44,7 @@ def symmetries(table: Table, found: rocking.Response) -> dict[str, Any]:
 
 def _mirrored(table: Table) -> Table:
     names = [name[1:] if name.startswith("-") else f"-{name}" for name in table.pulse]
-    return Table(table.family, np.array(names), table.columns)
+    return Table(table.name, np.array(names), table.columns)
 
 
 def in_units(table: Table, *, length: float, time: float, size: float) -> Table:
@@ -65,7 +65,7 @@ def in_units(table: Table, *, length: float, time: float, size: float) -> Table:
         groups = groups_of(problem, group_set)
         columns["slenderness"][k], columns["frequency_ratio"][k] = groups.slenderness, groups.frequency_ratio
         columns["alpha"][k] = block.alpha if rigid[k] else 0.0
-    return Table(table.family, table.pulse, columns)
+    return Table(table.name, table.pulse, columns)
 
 
 def identical(

@@ -1,6 +1,9 @@
 """Compares the responses of random cells between this tree and another checkout of the package.
 
     python -m stress.versions OTHER_TREE --cells 10_000_000
+    python -m stress.versions . --processor haswell
+
+With `--processor` the other tree is compiled for other instructions, by the name that LLVM has for them.
 
 Cells are drawn in chunks, for all named pulses and a record in turn, slender and rigid (`stress.tree_worker`), and
 solved by a process of each tree. A comparison that was interrupted is continued by the same command. Reported for each
@@ -15,7 +18,6 @@ kind of cell:
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import subprocess
@@ -28,7 +30,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.measure import progress, save
+from benchmarks.measure import arguments, progress, save
 from rocking._base.source_tree import PROJECT, SourceTree
 from rocking._excitation.pulses import PULSE_NAMES
 from stress.tree_worker import INPUTS, RESULT
@@ -51,9 +53,10 @@ MAX_ULPS = 256
 class Tree:
     """A process that solves chunks with the package of a checkout."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, processor: str = "") -> None:
         worker = Path(__file__).with_name("tree_worker.py")
         environment = os.environ | {"PYTHONPATH": str(root), "OMP_NUM_THREADS": "1"}
+        environment |= {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""} if processor else {}
         self._process = subprocess.Popen(
             [sys.executable, "-P", str(worker)], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
@@ -193,12 +196,8 @@ def markdown(rows: Sequence[dict[str, Any]]) -> str:
     for row in rows:
         cells = row["cells"]
         values = (
-            row["kind"],
-            f"{cells}",
-            f"{100.0 * row['equal_peaks'] / cells:.1f} %",
-            f"{row['largest_change']:.1e}",
-            f"{row['largest_over_conditioning']:.2g}",
-            *(f"{row[name]}" for name in ("outcomes", "impacts")),
+            *(row["kind"], f"{cells}", f"{100.0 * row['equal_peaks'] / cells:.1f} %", f"{row['largest_change']:.1e}"),
+            *(f"{row['largest_over_conditioning']:.2g}", f"{row['outcomes']}", f"{row['impacts']}"),
             f"{len(unexplained(row))}",
             *(f"{1e6 * row[name] / cells:.3g}" for name in ("seconds", "seconds_there")),
         )
@@ -213,22 +212,18 @@ def unexplained(row: dict[str, Any]) -> list[dict[str, Any]]:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("other", type=Path, metavar="OTHER_TREE", help="folder that holds another version of rocking/")
-    parser.add_argument("--cells", type=int, default=1_000_000, help="fewest cells; default: %(default)s")
-    parser.add_argument("--seed", type=int, default=0, help="of the cells; default: %(default)s")
-    parser.add_argument("--out", type=Path, default=Path("results/stress/versions.json"))
-    options = parser.parse_args()
+    out = Path("results/stress/versions.json")
+    options = arguments(__doc__, other=Path, cells=1_000_000, seed=0, processor="", out=out)
     roots = PROJECT, options.other.resolve()
     if not (roots[1] / "rocking/__init__.py").is_file():
-        parser.error(f"{options.other}: no folder rocking/ with the package")
+        sys.exit(f"{options.other}: no folder rocking/ with the package")
     digests = [SourceTree(root).digest_of(SourceTree(root).package()) for root in roots]
-    identity = {"seed": options.seed, "digests": digests, "kinds": kinds()}
+    identity = {"seed": options.seed, "processor": options.processor, "digests": digests, "kinds": kinds()}
     chunks: list[dict[str, Any]] = []
     if options.out.exists():
         former = json.loads(options.out.read_bytes())
         chunks = former["chunks"] if {name: former.get(name) for name in identity} == identity else []
-    trees, partial = [Tree(root) for root in roots], options.out.with_suffix(".partial")
+    trees, partial = [Tree(roots[0]), Tree(roots[1], options.processor)], options.out.with_suffix(".partial")
     done = sum(chunk["cells"] for chunk in chunks)
     while done < options.cells:
         seed = [options.seed, len(chunks)]

@@ -9,14 +9,15 @@ threshold to the next one, of the lines that have another one.
 
 from __future__ import annotations
 
-import argparse
 import time
+from itertools import product
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 import rocking
+from benchmarks.measure import arguments
 from rocking._boundary.search import MANY_IMPACTS
 from rocking._boundary.tracer import END
 from rocking._model.response import Outcome
@@ -94,19 +95,15 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
 
 def main() -> None:
     """Print one line for each pulse and angle."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--lines", type=int, default=400)
-    parser.add_argument("--restitution", type=float, default=0.85)
-    parser.add_argument("--nodes", type=int, default=301)
-    parser.add_argument("--pulses", nargs="+", default=["sine", "cosine"])
-    parser.add_argument("--degrees", nargs="+", type=float, default=[0.0, 10.0, 20.0, 30.0])
-    arguments = parser.parse_args()
-    for pulse in arguments.pulses:
-        for degrees in arguments.degrees:
-            alpha = float(np.radians(degrees)) or None
-            found = compare(pulse, alpha, arguments.nodes, arguments.lines, arguments.restitution)
-            row = ", ".join(f"{name} {value:.3g}" for name, value in found.items())
-            print(f"{pulse} {degrees:g} deg: {row}", flush=True)
+    options = arguments(
+        __doc__, lines=400, restitution=0.85, nodes=301, pulses=["sine", "cosine"], degrees=[0.0, 10.0, 20.0, 30.0]
+    )
+    for pulse, degrees in product(options.pulses, options.degrees):
+        alpha = float(np.radians(degrees)) or None
+        found = compare(pulse, alpha, options.nodes, options.lines, options.restitution)
+        print(
+            f"{pulse} {degrees:g} deg:", ", ".join(f"{name} {value:.3g}" for name, value in found.items()), flush=True
+        )
 
 
 if __name__ == "__main__":

@@ -8,11 +8,10 @@ Runge-Kutta steps, without the elliptic functions of the fit. With `--edges 2` a
 
 from __future__ import annotations
 
-import argparse
-
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.measure import arguments
 from rocking._base.errors import InvalidArgumentError
 from rocking._evidence.free_rocking import identify_free_rocking
 
@@ -91,11 +90,7 @@ def errors(traces: int, seed: int, edges: int = 1) -> tuple[Array, NDArray[np.bo
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--traces", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--edges", type=int, choices=(1, 2), default=1)
-    given = parser.parse_args()
+    given = arguments(__doc__, traces=200, seed=1, edges=1)
     found, within = errors(given.traces, given.seed, given.edges)
     print(f"{len(found)} edges" if given.edges == 2 else f"{len(found)} traces")
     print(f"{'':22}{'median':>10}{'95 %':>10}{'largest':>10}{'within':>10}")

@@ -7,14 +7,13 @@ the bound of the response, and the time per point.
 
 from __future__ import annotations
 
-import argparse
-import json
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.measure import arguments, finish, progress
 from rocking._lookup.cube import Cube, Points, open_cube
 from rocking._solver.peak_response import peak_response
 
@@ -87,34 +86,33 @@ def measure(folder: Path, count: int, tolerance: float, seed: int) -> dict[str, 
     return record
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--spectra", type=Path, default=Path("results/spectra"), help="folder with a folder per pulse")
-    parser.add_argument("--count", type=int, default=1_000_000, help="points of each kind and tolerance")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/lookup.json"))
-    options = parser.parse_args()
-    record: dict[str, Any] = {}
-    print(
-        f"{'':53}{'share':>8}{'counted':>9}{'outc.':>7}{'impacts':>9}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
-        "   errors in outcome, impacts, exceeded_alpha and bounds; largest share of a bound"
+def row_text(row: dict[str, Any]) -> str:
+    """Format a row."""
+    return (
+        f"{row['pulse']:25}{row['tolerance']:<8.0e}{row['kind']:20}{row['share']:8.4f}"
+        f"{row['share_with_impacts']:9.4f}{row['wrong_outcomes']:7.0f}{row['wrong_impacts']:9.0f}"
+        f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
+        f"{row['microseconds']:7.2f}"
     )
+
+
+def table(record: dict[str, Any]) -> str:
+    """Format all rows: errors in outcome, impacts, exceeded_alpha and bounds; largest share of a bound."""
+    titles = f"{'share':>8}{'counted':>9}{'outc.':>7}{'impacts':>9}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
+    return "\n".join([f"{'':53}{titles}", *map(row_text, record["rows"])])
+
+
+def main() -> None:
+    """Command line; `--spectra` holds a folder for each pulse, `--count` points of each kind and tolerance."""
+    out = Path("results/benchmarks/lookup.json")
+    options = arguments(__doc__, spectra=Path("results/spectra"), count=1_000_000, seed=1, out=out)
+    rows = []
     for folder in sorted(path for path in options.spectra.iterdir() if path.is_dir()):
         for tolerance in (1e-4, 1e-6):
-            found = measure(folder, options.count, tolerance, options.seed)
-            record.setdefault(folder.name, {})[str(tolerance)] = found
-            for kind, row in found.items():
-                print(
-                    f"{folder.name:25}{tolerance:<8.0e}{kind:20}{row['share']:8.4f}"
-                    f"{row['share_with_impacts']:9.4f}{row['wrong_outcomes']:7.0f}{row['wrong_impacts']:9.0f}"
-                    f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
-                    f"{row['microseconds']:7.2f}",
-                    flush=True,
-                )
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(json.dumps(record, indent=1) + "\n")
-    print(f"\nwritten to {options.out}")
+            for kind, found in measure(folder, options.count, tolerance, options.seed).items():
+                rows.append({"pulse": folder.name, "tolerance": tolerance, "kind": kind} | found)
+                progress(row_text(rows[-1]))
+    finish({"rows": rows}, options.out, table)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Effect of the sampling of a record on the answer: `python -m benchmarks.accuracy.record_sampling [FILE ...]`.
+"""Effect of the sampling of a record on the answer: `python -m benchmarks.accuracy.record_sampling [--files FILE ...]`.
 
 Between its samples a record is taken as linear. Here each record is compared with its band-limited interpolation at an
 eighth of the step: outcomes that change, and differences of the peak where the block survives both. Slender blocks of R
@@ -7,12 +7,12 @@ from 0.5 to 4 m, restitution 0.9, amplitudes PGA/(g tan(alpha)) from 1.1 to 5.
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.measure import arguments
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import read_record
 from rocking._excitation.records.record import Record
@@ -40,10 +40,8 @@ def changes(motion: Record) -> tuple[int, int, NDArray[np.float64]]:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="*", type=Path, default=FILES)
     print(f"{'record':20}{'runs':>6}{'other outcome':>15}{'median change':>15}{'large':>8}")
-    rows = [(path.stem, *changes(read_record(path))) for path in parser.parse_args().files]
+    rows = [(path.stem, *changes(read_record(path))) for path in arguments(__doc__, files=FILES).files]
     runs, changed = sum(row[1] for row in rows), sum(row[2] for row in rows)
     for name, *found in [*rows, ("all", runs, changed, np.concatenate([row[3] for row in rows]))]:
         count, outcomes, difference = found

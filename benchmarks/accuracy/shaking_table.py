@@ -8,7 +8,6 @@ the extra `sheets`; a sheet saved as CSV under the same name serves as well. doc
 
 from __future__ import annotations
 
-import argparse
 import re
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,7 @@ from scipy.signal import butter, sosfiltfilt
 
 import rocking
 from benchmarks.figures.shaking_table import draw
+from benchmarks.measure import arguments
 
 Flags = NDArray[np.bool_]
 
@@ -74,13 +74,9 @@ def predicted(found: xr.Dataset, motions: list[rocking.Record]) -> Flags:
     return np.array([bool(block.response(one, restitution=eta).overturned) for one in motions])
 
 
-def main(arguments: list[str] | None = None) -> None:
+def main(command_line: list[str] | None = None) -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--points", type=int, default=12, help="points along each parameter")
-    parser.add_argument("--figure", type=Path, help="file of a picture")
-    given = parser.parse_args(arguments)
+    given = arguments(__doc__, command_line, folder=Path, points=12, figure=Path("shaking-table.png"))
     motions, outcomes = read_tests(given.folder)
     print(f"{len(motions)} tests")
     rows = []
@@ -98,8 +94,7 @@ def main(arguments: list[str] | None = None) -> None:
             print(f"  {name:14} {found[name]:.1%}")
         for run, fallen in outcomes[specimen].drop(columns="measured").items():
             print(f"  {run!s:14} {(fallen == fell).mean():.1%}")
-    if given.figure is not None:
-        draw(pd.DataFrame(rows, columns=COLUMNS), given.figure)
+    draw(pd.DataFrame(rows, columns=COLUMNS), given.figure)
 
 
 if __name__ == "__main__":

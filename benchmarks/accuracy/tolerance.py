@@ -8,7 +8,6 @@ tolerance times condition number is as small as the effect of a relative change 
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import Any
 
@@ -16,42 +15,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
-from benchmarks.cells import Cells, read_table
-from benchmarks.figures.tolerance import draw
-from benchmarks.measure import progress, relative_error, save, versions
+from benchmarks.measure import arguments, finish, progress, relative_error, versions
+from benchmarks.tables import Table, read_table
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 14))
 EPS = float(np.finfo(float).eps)
 
 
-def peaks(cells: Cells, tolerance: float | None) -> NDArray[np.float64]:
+def peaks(cells: Table, tolerance: float | None) -> NDArray[np.float64]:
     """Return peak rotations (cells,) by the package, nan where overturned; a tolerance of None is the smallest."""
     found = np.empty(len(cells))
     for pulse in np.unique(cells.pulse):
         here = cells.pulse == pulse
         found[here] = rocking.peak_response(
-            str(pulse),
-            slenderness=cells.slenderness[here],
-            frequency_ratio=cells.frequency_ratio[here],
-            restitution=cells.restitution[here],
-            alpha=cells.alpha[here],
-            relative_tolerance=tolerance,
+            str(pulse), **cells.inputs(here), relative_tolerance=tolerance
         ).peak_rotation
     return found
 
 
-def summary(cells: Cells, found: NDArray[np.float64], tolerance: float | None) -> dict[str, Any]:
+def summary(cells: Table, found: NDArray[np.float64], tolerance: float | None) -> dict[str, Any]:
     """Return counts and quantiles at one tolerance; the smallest is compared with the resolution of doubles."""
-    error = relative_error(found, cells.peak_rotation)
+    error = relative_error(found, cells["peak_rotation"])
     allowed = EPS if tolerance is None else tolerance
-    explained = allowed * np.maximum(cells.peak_rotation_per_ulp / EPS, 1.0)
+    explained = allowed * np.maximum(cells["peak_rotation_per_ulp"] / EPS, 1.0)
     return {
         "tolerance": tolerance,
         "above": int(np.sum(error > allowed)),
         "above_tenfold": int(np.sum(error > 10.0 * allowed)),
         "above_and_unexplained": int(np.sum(error > explained)),
         "above_tenfold_and_unexplained": int(np.sum(error > 10.0 * explained)),
-        "wrong_outcomes": int(np.sum(np.isnan(found) != np.isnan(cells.peak_rotation))),
+        "wrong_outcomes": int(np.sum(np.isnan(found) != np.isnan(cells["peak_rotation"]))),
         "median_error": float(np.nanmedian(error)),
         "error_99": float(np.nanquantile(error, 0.99)),
         "largest_error": float(np.nanmax(error)),
@@ -78,26 +71,19 @@ def table(record: dict[str, Any]) -> str:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/tolerance.json"))
-    out = parser.parse_args().out
+    options = arguments(__doc__, out=Path("results/benchmarks/tolerance.json"))
     cells = read_table("random")
-    rows, errors = [], []
+    rows = []
     for tolerance in (*TOLERANCES, None):
         progress("tightest" if tolerance is None else f"tolerance {tolerance:.0e}")
-        found = peaks(cells, tolerance)
-        rows.append(summary(cells, found, tolerance))
-        errors.append(relative_error(found, cells.peak_rotation))
+        rows.append(summary(cells, peaks(cells, tolerance), tolerance))
     record = {
         "cells": len(cells),
-        "surviving": int(np.sum(~np.isnan(cells.peak_rotation))),
+        "surviving": int(np.sum(~np.isnan(cells["peak_rotation"]))),
         "tolerances": rows,
         "versions": versions("numpy", "numba"),
     }
-    save(record, out)
-    draw(np.array(TOLERANCES), np.array(errors[:-1]), out.with_suffix(".png"))
-    print(table(record))
-    print(f"\nwritten to {out} and {out.with_suffix('.png')}")
+    finish(record, options.out, table)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ them, in equal ratios, and prints in how many pairs of an object and a record th
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,6 +18,7 @@ from scipy.signal import butter, sosfiltfilt
 
 import rocking
 from benchmarks.cost.made_up_records import made_up_record
+from benchmarks.measure import arguments
 from rocking._assessment.objects import Bodies
 from rocking._assessment.search import factors_of, overturned_by
 from rocking._boundary.scan import RESOLUTION
@@ -73,15 +73,9 @@ def compare(name: str, suite: Sequence[rocking.Record], objects: int, count: int
     )
 
 
-def main(arguments: list[str] | None = None) -> None:
+def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--objects", type=int, default=2000)
-    parser.add_argument("--records", type=int, default=40)
-    parser.add_argument("--scan", type=int, metavar="FACTORS")
-    parser.add_argument("--resolution", type=float, default=RESOLUTION)
-    parser.add_argument("--seed", type=int, default=0)
-    options = parser.parse_args(arguments)
+    options = arguments(__doc__, objects=2000, records=40, scan=0, resolution=RESOLUTION, seed=0)
     if options.scan:
         suites = {
             "made-up records": [made_up_record(options.seed + k, SAMPLES, STEP) for k in range(8)],

@@ -7,7 +7,6 @@ disk. Then the bytes of the wheel, the packages and the kernels, and the memory 
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import shutil
@@ -18,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.installation import build_wheel, copy_source, install
-from benchmarks.measure import save, versions
+from benchmarks.measure import arguments, finish, versions
 
 SIZE = ("--width", "0.4m", "--height", "1.6m")
 README_COMMAND = ("response", "--pulse", "sine", *SIZE, "--peak-acceleration", "0.6g", "--period", "0.5s")
@@ -101,17 +100,14 @@ def table(found: dict[str, Any]) -> str:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/first-call.json"))
-    out = parser.parse_args().out
+    out = arguments(__doc__, out=Path("results/benchmarks/first-call.json")).out
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         copy_source(folder / "source")
         wheel = build_wheel(folder / "source", folder / "dist")
         packages = install(wheel, folder / "installed")
         found = measured(folder / "installed" / "bin", packages, folder) | {"wheel_bytes": wheel.stat().st_size}
-    save(found | {"versions": versions("numpy", "numba")}, out)
-    print(f"{table(found)}\n\nwritten to {out}")
+    finish(found | {"versions": versions("numpy", "numba")}, out, table)
 
 
 if __name__ == "__main__":

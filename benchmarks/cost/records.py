@@ -1,14 +1,13 @@
 """Cost of responses under recorded motions: `python -m benchmarks.cost.records`.
 
 A suite of made-up records of 2,000 to 18,000 samples, amplitudes PGA/(g tan(alpha)) from 0.5 to 10, blocks of R from
-0.5 to 4 m, restitution 0.9, on one thread: runs per second, the share of the samples that is stepped through, and what
-time and memory depend on. SciPy's DOP853 is restarted at every sample, with the events of the block, on a few of the
-same runs; both are measured in the same process.
+0.5 to 4 m, restitution 0.9, on one thread: runs per second, the share of the samples that is stepped through, and how
+time depends on the number of samples. SciPy's DOP853 is restarted at every sample, with the events of the block, on a
+few of the same runs; both are measured in the same process.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 import time
 from collections.abc import Callable
@@ -19,9 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from benchmarks.cost.growth import memory
 from benchmarks.cost.made_up_records import made_up_record, made_up_suite
-from benchmarks.measure import progress, save, spread, versions
+from benchmarks.measure import arguments, finish, progress, versions
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import NEVER_STOPPED
@@ -46,7 +44,7 @@ def blocks(scales: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return p.ravel(), s.ravel()
 
 
-def respond(motion: Record, kind: str, scales: int, threads: int = 1) -> NDArray[np.float64]:
+def respond(motion: Record, kind: str, scales: int) -> NDArray[np.float64]:
     """Return the peaks of all runs under one record."""
     p, s = blocks(scales)
     return record_response(
@@ -55,7 +53,7 @@ def respond(motion: Record, kind: str, scales: int, threads: int = 1) -> NDArray
         slenderness=s,
         restitution=RESTITUTION,
         alpha=ALPHA[kind],
-        threads=threads,
+        threads=1,
     ).peak_rotation
 
 
@@ -71,14 +69,14 @@ def stepped(motion: Record, kind: str, scales: int) -> int:
     return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, EDGE_COLUMNS))))
 
 
-def processor_time(call: Callable[[], Any], rounds: int) -> dict[str, float]:
-    """Return the processor time of a call [s] over some rounds."""
+def shortest(call: Callable[[], Any], rounds: int) -> float:
+    """Return the least processor time of a call [s]."""
     found = []
     for _ in range(rounds):
         start = time.process_time()
         call()
         found.append(time.process_time() - start)
-    return spread(found)
+    return min(found)
 
 
 def dop853_peak(motion: Record, p: float, slenderness: float, eta: float, alpha: float) -> float:
@@ -143,118 +141,66 @@ def _unit_crossing(left: float, rate: float, start: float, h: float) -> float | 
 def measure(records: int, scales: int, rounds: int, reference_runs: int) -> dict[str, Any]:
     """Measure everything; return one record."""
     suite = made_up_suite(records)
-    found: dict[str, Any] = {"records": records, "scales": scales, "versions": versions("numpy", "numba", "scipy")}
-    for kind, alpha in ALPHA.items():
-        respond(suite[0], kind, 2)  # load the kernels
-        before = memory()
-        runs = len(suite) * scales * len(HALF_DIAGONAL)
-        times = processor_time(lambda kind=kind: [respond(motion, kind, scales) for motion in suite], rounds)
-        peaks = np.array([respond(motion, kind, scales) for motion in suite])
-        total = sum(motion.samples - 1 for motion in suite) * scales * len(HALF_DIAGONAL)
-        progress(f"{kind}: {runs / times['smallest']:.0f} runs/s")
-        part = {
+    found: dict[str, Any] = {"versions": versions("numpy", "numba", "scipy")}
+    runs = records * scales * len(HALF_DIAGONAL)
+    total = sum(motion.samples - 1 for motion in suite) * scales * len(HALF_DIAGONAL)
+    for kind in ALPHA:
+        peaks = np.array([respond(motion, kind, scales) for motion in suite])  # loads the kernels
+        seconds = shortest(lambda kind=kind: [respond(motion, kind, scales) for motion in suite], rounds)
+        progress(f"{kind}: {runs / seconds:.0f} runs/s")
+        found[kind] = {
             "runs": runs,
-            "seconds": times,
-            "runs_per_second": runs / times["smallest"],
+            "runs a second, one core": runs / seconds,
             "overturned": float(np.isnan(peaks).mean()),
-            "no_uplift": float((peaks == 0.0).mean()),
-            "share_of_samples_stepped": sum(stepped(motion, kind, scales) for motion in suite) / total,
-            "memory_growth_bytes": memory() - before,
-            "samples": {
-                str(size): 1e6 * processor_time(lambda size=size, kind=kind: respond(
-                    made_up_record(1, size, 20.0 / size), kind, scales), rounds)["smallest"] / (4 * scales)
-                for size in (2_000, 6_000, 18_000)
-            },
-            "scales": {
-                str(count): 1e6 * processor_time(lambda count=count, kind=kind: respond(
-                    suite[len(suite) // 2], kind, count), rounds)["smallest"] / (4 * count)
-                for count in (10, 100, 1000)
-            },
-            "threads": {str(count): _wall(lambda count=count, kind=kind: respond(suite[0], kind, 2000, count), rounds)
-                        for count in (1, 2)},
-        }  # fmt: skip
-        part["reference"] = compare(suite, alpha, kind, reference_runs)
-        found[kind] = part
+            "no uplift": float((peaks == 0.0).mean()),
+            "share of samples stepped": sum(stepped(motion, kind, scales) for motion in suite) / total,
+        }
+        for size in (2_000, 6_000, 18_000):
+            motion = made_up_record(1, size, 20.0 / size)
+            seconds = shortest(lambda motion=motion, kind=kind: respond(motion, kind, scales), rounds)
+            found[kind][f"us a run, {size} samples"] = 1e6 * seconds / (4 * scales)
+        found[kind] |= compare(suite, kind, reference_runs)
     return found
 
 
-def _wall(call: Callable[[], Any], rounds: int) -> float:
-    found = []
-    for _ in range(rounds):
-        start = time.perf_counter()
-        call()
-        found.append(time.perf_counter() - start)
-    return min(found)
-
-
-def compare(suite: list[Record], alpha: float, kind: str, count: int) -> dict[str, Any]:
-    """Return the times per run of DOP853 and of the package on some surviving runs [s], and how the peaks differ."""
+def compare(suite: list[Record], kind: str, count: int) -> dict[str, float]:
+    """Compare the package with DOP853 on some surviving runs."""
     random = np.random.default_rng(5)
-    theirs, ours, errors = [], [], []
+    theirs, ratios, errors = [], [], []
     while len(theirs) < count:
         motion = suite[int(random.integers(len(suite) // 2))]
         p, s = float(random.choice(FREQUENCY_PARAMETER)), 1.0 / random.uniform(1.2, 3.0)
-        groups = {"frequency_parameter": p, "slenderness": s, "restitution": RESTITUTION, "alpha": alpha}
+        groups = {"frequency_parameter": p, "slenderness": s, "restitution": RESTITUTION, "alpha": ALPHA[kind]}
         exact = float(record_response(motion, **groups).peak_rotation)
         if not exact > 0.0:
             continue
         start = time.process_time()
-        peak = dop853_peak(motion, p, s, RESTITUTION, alpha)
+        errors.append(abs(dop853_peak(motion, *groups.values()) / exact - 1.0))
         theirs.append(time.process_time() - start)
-        many = groups | {"slenderness": np.full(200, s)}
-        ours.append(
-            processor_time(lambda many=many, motion=motion: record_response(motion, **many, threads=1), 3)["smallest"]
-            / 200
-        )
-        errors.append(abs(peak / exact - 1.0))
+        groups["slenderness"] = np.full(200, s)
+        ours = shortest(lambda groups=groups, motion=motion: record_response(motion, **groups, threads=1), 3) / 200
+        ratios.append(theirs[-1] / ours)
         progress(f"{kind}: DOP853 run {len(theirs)} of {count}")
     return {
-        "runs": count,
-        "dop853_seconds": spread(theirs),
-        "package_seconds": spread(ours),
-        "ratio": float(np.median(np.array(theirs) / np.array(ours))),
-        "median_difference_of_peak": float(np.median(errors)),
+        "DOP853, s a run": float(np.median(theirs)),
+        "DOP853 over package": float(np.median(ratios)),
+        "median difference of the peaks": float(np.median(errors)),
     }
 
 
 def table(found: dict[str, Any]) -> str:
     """Format the record as text."""
-    lines = [f"{'':28}{'slender':>12}{'rigid':>12}"]
-
-    def line(title: str, value: Callable[[dict[str, Any]], float], form: str) -> None:
-        lines.append(f"{title:28}" + "".join(f"{value(found[kind]):>12{form}}" for kind in ALPHA))
-
-    line("runs", lambda part: part["runs"], ",.0f")
-    line("runs a second, one core", lambda part: part["runs_per_second"], ",.0f")
-    line("overturned", lambda part: part["overturned"], ".0%")
-    line("no uplift", lambda part: part["no_uplift"], ".0%")
-    line("samples stepped", lambda part: part["share_of_samples_stepped"], ".1%")
-    line("memory growth, MB", lambda part: part["memory_growth_bytes"] / 1e6, ".1f")
-    for name in ("2000", "6000", "18000"):
-        line(f"us a run, {name} samples", lambda part, name=name: part["samples"][name], ".1f")
-    for name in ("10", "100", "1000"):
-        line(f"us a run, {name} scales", lambda part, name=name: part["scales"][name], ".1f")
-    for name in ("1", "2"):
-        line(f"s on {name} thread(s)", lambda part, name=name: part["threads"][name], ".3f")
-    line("DOP853, s a run", lambda part: part["reference"]["dop853_seconds"]["median"], ".2f")
-    line("DOP853 over package", lambda part: part["reference"]["ratio"], ",.0f")
-    line("their median difference", lambda part: part["reference"]["median_difference_of_peak"], ".1e")
+    lines = [f"{'':32}" + "".join(f"{kind:>12}" for kind in ALPHA)]
+    lines += [f"{name:32}" + "".join(f"{found[kind][name]:12.4g}" for kind in ALPHA) for name in found["slender"]]
     return "\n".join(lines)
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--records", type=int, default=72)
-    parser.add_argument("--scales", type=int, default=150)
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--reference-runs", type=int, default=6)
-    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/records.json"))
-    options = parser.parse_args()
+    out = Path("results/benchmarks/records.json")
+    options = arguments(__doc__, records=72, scales=150, rounds=3, reference_runs=6, out=out)
     found = measure(options.records, options.scales, options.rounds, options.reference_runs)
-    save(found, options.out)
-    print(table(found))
-    print(f"\nwritten to {options.out}")
+    finish(found, options.out, table)
 
 
 if __name__ == "__main__":

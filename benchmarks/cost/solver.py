@@ -8,7 +8,6 @@ for each of its points. Processor time of one thread; compilation is excluded.
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
@@ -17,7 +16,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks.measure import progress, save, spread, versions
+from benchmarks.measure import arguments, finish, progress, spread, versions
 from rocking._excitation.pulses import PULSE_NAMES
 
 ROOT = Path(__file__).parents[2]
@@ -49,6 +48,9 @@ for line in sys.stdin:
     rocking.peak_response(pulse, **grids[key], alpha=alpha, threads=1)
     print((time.process_time() - begin) / grids[key]["slenderness"].size, flush=True)
 """
+
+
+PIPES: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "cwd": "/"}
 
 
 class Case(NamedTuple):
@@ -85,18 +87,10 @@ def cases(scale: float) -> Iterator[Case]:
 
 def measure(folders: dict[str, Path], rounds: int, scale: float) -> list[dict[str, Any]]:
     """Return one row for each case: times of each checkout [ns], and their ratio where there are two."""
-    rows = []
+    rows, command = [], (sys.executable, "-c", WORKER)
     with ExitStack() as stack:
         workers = {
-            name: stack.enter_context(
-                subprocess.Popen(
-                    [sys.executable, "-c", WORKER, str(folder.resolve())],
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE,
-                    text=True,
-                    cwd="/",
-                )
-            )
+            name: stack.enter_context(subprocess.Popen([*command, str(folder.resolve())], **PIPES))
             for name, folder in folders.items()
         }
         for case in cases(scale):
@@ -129,8 +123,9 @@ def row_text(row: dict[str, Any]) -> str:
     return text
 
 
-def table(rows: list[dict[str, Any]]) -> str:
+def table(record: dict[str, Any]) -> str:
     """Format all rows as text: medians [ns], ratio of the medians and of the smallest times."""
+    rows = record["rows"]
     head = f"{'ns a cell':54}{'here':>10}"
     if rows and "baseline" in rows[0]:
         head += f"{'baseline':>10}{'ratio':>8}{'of min':>8}"
@@ -138,18 +133,11 @@ def table(rows: list[dict[str, Any]]) -> str:
 
 
 def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--baseline", type=Path, help="another checkout of the project")
-    parser.add_argument("--rounds", type=int, default=5, help="calls of each case and checkout")
-    parser.add_argument("--scale", type=float, default=1.0, help="factor of the points along each axis")
-    parser.add_argument("--out", type=Path, default=Path("results/benchmarks/solver.json"))
-    options = parser.parse_args()
-    folders = {"here": ROOT} | ({"baseline": options.baseline} if options.baseline else {})
+    """Command line; `--scale` multiplies the points along each axis."""
+    options = arguments(__doc__, baseline=Path(), rounds=5, scale=1.0, out=Path("results/benchmarks/solver.json"))
+    folders = {"here": ROOT} | ({"baseline": options.baseline} if options.baseline != Path() else {})
     rows = measure(folders, options.rounds, options.scale)
-    save({"rows": rows, "versions": versions("numpy", "numba")}, options.out)
-    print(table(rows))
-    print(f"\nwritten to {options.out}")
+    finish({"rows": rows, "versions": versions("numpy", "numba")}, options.out, table)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ million blocks as labelled arrays in ten chunks, by one and two processes of a `
 
 from __future__ import annotations
 
-import argparse
 import statistics
 import time
 from collections.abc import Callable, Iterator
@@ -19,6 +18,7 @@ from distributed import Client, LocalCluster
 
 import rocking
 from benchmarks.cost.made_up_records import made_up_suite
+from benchmarks.measure import arguments
 from rocking._base.constants import STANDARD_GRAVITY
 
 ANGLES = {"slender": None, "rigid": 0.25}
@@ -76,9 +76,7 @@ def seconds(call: Callable[[], Any], rounds: int) -> float:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rounds", type=int, default=5)
-    rounds = parser.parse_args().rounds
+    rounds = arguments(__doc__, rounds=5).rounds
     print(f"{'study':44}{'1 core [s]':>12}{'2 cores [s]':>12}")
     for kind, alpha in ANGLES.items():
         studies = {"1,000,000 blocks, sine": pulse_study(alpha), "100 records x 1,000 blocks": record_study(alpha)}

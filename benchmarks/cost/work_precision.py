@@ -8,9 +8,9 @@ them alike. Times are processor times without compilation. Errors are relative t
 
 from __future__ import annotations
 
-import argparse
 import math
 import time
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.baselines.methods import OPTIONAL, Method, methods
-from benchmarks.cells import DIAGRAMS, Cells, read_table
-from benchmarks.cost.equal_error import time_for
-from benchmarks.measure import Task, accuracy, in_rounds, progress, save, spread, versions
+from benchmarks.measure import Task, accuracy, arguments, finish, in_rounds, progress, spread, versions
+from benchmarks.tables import Table, read_table
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
 """Errors at which the methods are compared."""
@@ -32,17 +31,20 @@ MEASURES = ("median_error", "error_99")
 COPIES = 16
 """Copies of the cells in one call to the package, so that the overhead of the call is negligible."""
 
+MIN_ERROR = 1e-17
+"""Smaller errors are replaced by this one: doubles do not resolve them."""
+
 SLOW_CALL, SLOW_ROUNDS = 1.0, 2
 """A call that takes longer than this [s] is measured only in every so many rounds."""
 
 
-def sample(cells: Cells) -> Cells:
+def sample(cells: Table) -> Table:
     """Return every fourth row and column of the grid of one diagram."""
     side = math.isqrt(len(cells))
     return cells.select(np.arange(len(cells)).reshape(side, side)[2::4, 2::4].ravel())
 
 
-def measure_accuracy(method: Method, setting: float | None, cells: Cells) -> tuple[dict[str, Any], Task]:
+def measure_accuracy(method: Method, setting: float | None, cells: Table) -> tuple[dict[str, Any], Task]:
     """Return the accuracy of a method at a setting with its compilation time, and the task to be timed."""
     start = time.perf_counter()
     method.peaks(setting, cells.select(np.arange(min(2, len(cells)))))
@@ -50,38 +52,54 @@ def measure_accuracy(method: Method, setting: float | None, cells: Cells) -> tup
     row = {"setting": setting, "cells": len(cells), "first_call_s": first}
     copies = cells if method.name != "rocking" else cells.select(np.tile(np.arange(len(cells)), COPIES))
     start = time.perf_counter()
-    row |= accuracy(method.peaks(setting, cells), cells.peak_rotation)
+    row |= accuracy(method.peaks(setting, cells), cells["peak_rotation"])
     every = SLOW_ROUNDS if time.perf_counter() - start > SLOW_CALL else 1
     return row, Task(lambda: method.peaks(setting, copies), len(copies), every)
 
 
-def measure(diagram: str, rounds: int, cells: Cells) -> dict[str, Any]:
+def measure(diagram: str, rounds: int, cells: Table) -> dict[str, Any]:
     """Measure all methods; return one record."""
     sampled = sample(cells)
-    table: dict[str, list[dict[str, Any]]] = {}
+    rows_of: dict[str, list[dict[str, Any]]] = {}
     tasks = {}
-    for method in methods(DIAGRAMS[diagram][0]):
+    for method in methods(str(cells.pulse[0])):
         progress(f"{diagram}: accuracy of {method.name}")
-        table[method.name] = []
+        rows_of[method.name] = []
         for setting in method.settings:
             row, tasks[method.name, setting] = measure_accuracy(method, setting, sampled if method.slow else cells)
-            table[method.name].append(row)
+            rows_of[method.name].append(row)
     times = in_rounds(tasks, rounds, diagram)
-    for name, rows in table.items():
+    for name, rows in rows_of.items():
         for row in rows:
             row["us"] = times[name, row["setting"]]
     return {
         "diagram": diagram,
-        "cells": {"all": len(cells), "overturned": int(np.isnan(cells.peak_rotation).sum()), "sample": len(sampled)},
+        "cells": {"all": len(cells), "overturned": int(np.isnan(cells["peak_rotation"]).sum()), "sample": len(sampled)},
         "rounds": rounds,
-        "methods": table,
+        "methods": rows_of,
         "time_ratios": {
-            measure: {name: time_ratios(table, name, measure) for name in table if name != "rocking"}
+            measure: {name: time_ratios(rows_of, name, measure) for name in rows_of if name != "rocking"}
             for measure in MEASURES
         },
         "missing_baselines": [baseline for baseline in OPTIONAL if not find_spec(baseline)],
         "versions": versions("numpy", "scipy", "numba", *OPTIONAL),
     }
+
+
+def time_for(error: float, times: Sequence[float], errors: Sequence[float]) -> float:
+    """Return the least time in which a method reaches an error; nan if none of its settings does.
+
+    Between two settings log(time) is linear in log(error). A setting counts only if none with a smaller error is
+    faster. The result does not increase with the error, and it is constant above the largest measured error.
+    """
+    if not len(errors):
+        return math.nan
+    order = np.argsort(errors)
+    reached = np.maximum(np.asarray(errors, dtype=np.float64)[order], MIN_ERROR)
+    if not error >= reached[0]:
+        return math.nan
+    least = np.minimum.accumulate(np.asarray(times, dtype=np.float64)[order])
+    return float(np.exp(np.interp(math.log(error), np.log(reached), np.log(least))))
 
 
 def least_times(rows: list[dict[str, Any]], error: float, measure: str) -> NDArray[np.float64]:
@@ -92,11 +110,13 @@ def least_times(rows: list[dict[str, Any]], error: float, measure: str) -> NDArr
     return np.array([time_for(error, [row["us"][k] for row in correct], errors) for k in rounds])
 
 
-def time_ratios(table: dict[str, list[dict[str, Any]]], name: str, measure: str) -> dict[str, dict[str, float] | None]:
+def time_ratios(
+    rows_of: dict[str, list[dict[str, Any]]], name: str, measure: str
+) -> dict[str, dict[str, float] | None]:
     """Return the time of a baseline over that of the package at equal errors; None where one does not reach it."""
     found: dict[str, dict[str, float] | None] = {}
     for error in TARGETS:
-        ratio = least_times(table[name], error, measure) / least_times(table["rocking"], error, measure)
+        ratio = least_times(rows_of[name], error, measure) / least_times(rows_of["rocking"], error, measure)
         found[f"{error:.0e}"] = None if np.isnan(ratio).all() else spread(ratio)
     return found
 
@@ -116,7 +136,7 @@ def fastest_baselines(
     return found
 
 
-def table_of(record: dict[str, Any]) -> str:
+def table(record: dict[str, Any]) -> str:
     """Format the record as text."""
     columns = ("median", "smallest", "largest", "error", "99 %", "largest", "outcomes")
     lines = [f"{'one core, us a cell':24}{'setting':>9}" + "".join(f"{column:>10}" for column in columns)]
@@ -141,21 +161,13 @@ def table_of(record: dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("diagram", choices=DIAGRAMS)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--coarse", type=int, default=1, help="use only every n-th row and column of the grid")
-    parser.add_argument("--out", type=Path, help="default: results/benchmarks/work-precision-DIAGRAM.json")
-    options = parser.parse_args()
+    """Command line; `--coarse 4` uses only every fourth row and column of the grid."""
+    options = arguments(__doc__, diagram=str, rounds=5, coarse=1, out=Path("results/benchmarks"))
     cells = read_table(options.diagram)
     side = math.isqrt(len(cells))
     indices = np.arange(len(cells)).reshape(side, side)[:: options.coarse, :: options.coarse]
     record = measure(options.diagram, options.rounds, cells.select(indices.ravel()))
-    out = options.out or Path(f"results/benchmarks/work-precision-{options.diagram}.json")
-    save(record, out)
-    print(table_of(record))
-    print(f"\nwritten to {out}")
+    finish(record, options.out / f"work-precision-{options.diagram}.json", table)
 
 
 if __name__ == "__main__":

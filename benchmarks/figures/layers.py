@@ -5,7 +5,6 @@ Each panel enlarges the frame in the one before it.
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 import matplotlib as mpl
@@ -13,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import rocking
+from benchmarks.measure import arguments
 from rocking.plot.style import STYLE, WIDTH
 from workflow.figures.style import panel_letters
 
@@ -24,11 +24,8 @@ WINDOWS = (
 )
 """Ranges of the frequency ratio and of 1/a [-]."""
 
-NODES = 500
-"""Blocks in each direction."""
-
-MOST = 90
-"""Impacts from which on the colour stays."""
+NODES, MOST = 500, 90
+"""Blocks in each direction; impacts from which on the colour stays."""
 
 
 @mpl.rc_context(STYLE)
@@ -44,9 +41,7 @@ def draw(path: Path) -> None:
         ax.ticklabel_format(useOffset=False)
         ax.locator_params(axis="x", nbins=4)
         if frame:
-            ax.add_patch(
-                plt.Rectangle((frame[0], frame[2]), frame[1] - frame[0], frame[3] - frame[2], fill=False, color="red")
-            )
+            ax.plot(np.take(frame, (0, 1, 1, 0, 0)), np.take(frame, (2, 2, 3, 3, 2)), color="red")
     figure.colorbar(shown, ax=panels, label="impacts before overturning; white: survives")
     panel_letters(list(panels.flat))
     figure.savefig(path)
@@ -54,6 +49,4 @@ def draw(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("path", type=Path)
-    draw(parser.parse_args().path)
+    draw(arguments(__doc__, path=Path).path)

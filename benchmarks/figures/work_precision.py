@@ -1,9 +1,7 @@
-"""Run time against error, four diagrams: `python -m benchmarks.figures.work_precision` after the measurements."""
+"""Run time against error, four diagrams."""
 
 from __future__ import annotations
 
-import argparse
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,18 +9,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from benchmarks.cells import DIAGRAMS
 from benchmarks.measure import spread
 from rocking.plot.style import BLACK, BLUE, VERMILION, WIDTH
 from workflow.figures.style import panel_letters
 
-ORANGE, SKY, GREEN, PURPLE = "#E69F00", "#56B4E9", "#009E73", "#CC79A7"
+ORANGE, SKY, PURPLE = "#E69F00", "#56B4E9", "#CC79A7"
 STYLES: dict[str, dict[str, Any]] = {
     "rocking": {"color": BLACK, "marker": "*", "markersize": 7, "linewidth": 1.6},
     "heyoka": {"color": BLUE, "marker": "o"},
-    "numbalsoda DOP853": {"color": GREEN, "marker": "s"},
-    "numbalsoda LSODA": {"color": GREEN, "marker": "D", "linestyle": "--"},
-    "diffrax Dopri8": {"color": BLUE, "marker": "x", "linestyle": ":"},
     "RK4, fixed steps": {"color": VERMILION, "marker": "^"},
     "scipy RK45": {"color": ORANGE, "marker": "v"},
     "scipy DOP853": {"color": PURPLE, "marker": "s"},
@@ -51,33 +45,15 @@ def panel(ax: Axes, record: dict[str, Any], measure: str) -> None:
     ax.grid(visible=True, which="major", linewidth=0.3, alpha=0.5)
 
 
-def draw(records: list[dict[str, Any]], measure: str, paths: list[Path]) -> None:
+def draw(records: list[dict[str, Any]], measure: str, path: Path) -> None:
     """Draw four panels, slender blocks in the upper row."""
-    figure, axes = plt.subplots(2, 2, figsize=(WIDTH, 1.05 * WIDTH), sharex=True, sharey=True)
+    figure, axes = plt.subplots(2, 2, figsize=(WIDTH, 1.05 * WIDTH), sharex=True, sharey=True, layout="constrained")
     for ax, record in zip(axes.flat, records, strict=True):
         panel(ax, record, measure)
     panel_letters(list(axes.flat))
-    for ax in axes[1]:
-        ax.set_xlabel(MEASURES[measure])
-    for ax in axes[:, 0]:
-        ax.set_ylabel("processor time of a cell, one core [µs]")
+    figure.supxlabel(MEASURES[measure], size="medium")
+    figure.supylabel("processor time of a cell, one core [µs]", size="medium")
     handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=5)
-    for path in paths:
-        figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
+    figure.legend(handles, labels, loc="outside upper center", ncols=4)
+    figure.savefig(path)
     plt.close(figure)
-
-
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--folder", type=Path, default=Path("results/benchmarks"), help="folder of the measurements")
-    parser.add_argument("--measure", choices=MEASURES, default="error_99")
-    options = parser.parse_args()
-    records = [json.loads((options.folder / f"work-precision-{name}.json").read_text()) for name in DIAGRAMS]
-    name = "work-precision" if options.measure == "error_99" else "work-precision-median"
-    draw(records, options.measure, [options.folder / f"{name}.{kind}" for kind in ("png", "svg")])
-
-
-if __name__ == "__main__":
-    main()

@@ -244,7 +244,8 @@ def pulse(name: str, **parameters: float | str) -> AbstractPulse:
     InvalidArgumentError
         For an unknown name or parameter, or a parameter out of range.
     """
-    parts = _parts(name) if type(name) is str else None
+    text: object = name
+    parts = _parts(str(text)) if isinstance(text, str) else None
     if parts is None:
         allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
         raise InvalidArgumentError("pulse", name, allowed)

@@ -131,7 +131,7 @@ def test_the_start_takes_less_than_two_seconds_and_opens_no_cube(results, tmp_pa
     with serving(results, tmp_path / "log") as server:
         assert httpx2.get(server.address + "/health").status_code == 200
         took = time.monotonic() - began
-    assert took < 6  # two on a quiet machine: `python -m benchmarks.service.performance` measures it
+    assert took < 6  # two on a quiet machine: `python -m benchmarks.cost.service` measures it
 
 
 def test_each_line_of_the_log_is_json(server):

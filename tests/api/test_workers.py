@@ -22,7 +22,6 @@ from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.metrics import FOLDER
 from typer.testing import CliRunner
 
-from benchmarks.service import workers as benchmark
 from rocking._cli.app import app
 from rocking._datasets.checksum import sha256_of_file
 from rocking._datasets.cube import read_spectrum, write_dataset
@@ -165,27 +164,6 @@ def test_a_killed_worker_is_replaced(server):
     wait_for(lambda: ("process_open_fds", str(third)) in metrics_of(server))
     assert ("process_open_fds", str(first)) not in metrics_of(server)
     assert "a worker has ended" in server.log.read_text()
-
-
-def test_the_benchmark_compares_two_services(server, folder, monkeypatch, capsys):
-    """Twice this one; no time is asserted."""
-
-    @contextmanager
-    def service(_, workers, __):
-        yield benchmark.Service(server.process, server.port, workers)
-
-    monkeypatch.setattr(benchmark, "service", service)
-    out, results = folder / "workers.json", folder / "results"
-    few = ["--seconds", "0.3", "--connections", "4", "--rounds", "1"]
-    benchmark.main([*few, "--results", str(results), "--out", str(out)])
-    record = json.loads(out.read_text())
-    assert [(row["workers"], row["errors"]["largest"]) for row in record["loads"]] == [(1, 0), (2, 0)]
-    assert all(row["per_second"]["median"] > 50 for row in record["loads"])
-    for memory in record["memory"].values():
-        assert 10 < memory["largest_private_MB"] < memory["all_MB"] < 1000
-    (killed,) = record["killed"]
-    assert sum(killed["failed"].values()) <= 4 < killed["requests"]
-    assert "MB private in one process" in capsys.readouterr().out
 
 
 def test_running_requests_of_all_workers_are_finished_at_shutdown(server, folder):

@@ -199,6 +199,7 @@ def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(tex
     sign = "-" if "-m" in text else ""
     assert pulse == rocking.pulse(f"{sign}mavroeidis_papageorgiou", **given) == rocking.pulse(pulse.name)
     assert pulse.name.startswith(f"{sign}mavroeidis_papageorgiou{name}")
+    assert rocking.pulse(np.str_(text)) == pulse
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,8 @@ import xarray as xr
 
 import workflow.run
 from rocking._datasets.cube import read_dataset, write_dataset
-from stress.kills import KILLED, content, interrupt, project
-from stress.kills import reproduce as make_reproduce
+from tests.workflow.killed_runs import KILLED, content, interrupt, project
+from tests.workflow.killed_runs import reproduce as make_reproduce
 from tests.workflow_fixtures import PROJECT, rules_to_run, snakemake
 from workflow.parts import delete_former_parts, forget_damaged_parts
 from workflow.records import forget_false_records, processor, records_of

@@ -1,18 +1,7 @@
 # The benchmarks: `snakemake bench`, or `make bench`. A job is one command of `benchmarks`; one job runs at a time, so that
 # measurements do not disturb each other. Its output goes to its log, its progress to the terminal.
 DIAGRAMS = sorted(path.stem for path in (PROJECT / "benchmarks/data").glob("*-*.csv"))
-TIMED = [
-    "tolerance",
-    "solver",
-    "growth",
-    "grid-size",
-    "first-call",
-    "records",
-    "bodies",
-    "service",
-    "ablations",
-    "stages",
-]
+TIMED = ["tolerance", "solver", "first-call", "records", "service"]
 
 
 rule work_precision:
@@ -30,29 +19,11 @@ rule work_precision:
     params:
         code=benchmark_code("cost/work_precision"),
         baselines=installed_baselines,
+        folder=lambda wildcards, output: os.path.dirname(output.record),
     message:
         "Run time against error, {wildcards.diagram}"
     shell:
-        "python -m benchmarks.cost.work_precision {wildcards.diagram} --out {output.record} >{log}"
-
-
-rule work_precision_figure:
-    input:
-        records=expand(rules.work_precision.output.record, diagram=DIAGRAMS),
-    output:
-        expand("results/benchmarks/work-precision{kind}.{format}", kind=["", "-median"], format=["png", "svg"]),
-    log:
-        "logs/bench/work-precision-figure.log",
-    benchmark:
-        "logs/bench/work-precision-figure.tsv"
-    params:
-        code=benchmark_code("figures/work_precision"),
-        folder=lambda wildcards, input: os.path.dirname(input.records[0]),
-    message:
-        "Drawing run time against error"
-    shell:
-        "for measure in error_99 median_error; do"
-        " python -m benchmarks.figures.work_precision --folder {params.folder} --measure $measure >>{log}; done"
+        "python -m benchmarks.cost.work_precision {wildcards.diagram} --out {params.folder} >{log}"
 
 
 rule tolerance:
@@ -60,7 +31,6 @@ rule tolerance:
         cells=str(PROJECT / "benchmarks/data/random.csv"),
     output:
         record="results/benchmarks/tolerance.json",
-        figure="results/benchmarks/tolerance.png",
     log:
         "logs/bench/tolerance.log",
     benchmark:
@@ -88,42 +58,6 @@ rule solver:
         "Time of a cell for each pulse"
     shell:
         "python -m benchmarks.cost.solver --out {output.record} >{log}"
-
-
-rule growth:
-    output:
-        record="results/benchmarks/growth.json",
-        drawings=multiext("results/benchmarks/growth", ".png", ".svg"),
-    log:
-        "logs/bench/growth.log",
-    benchmark:
-        "logs/bench/growth.tsv"
-    threads: CORES
-    params:
-        code=benchmark_code("cost/growth"),
-    message:
-        "Cost against the number of cells"
-    shell:
-        "python -m benchmarks.cost.growth --out {output.record} >{log}"
-
-
-rule grid_size:
-    input:
-        config=str(PROJECT / "workflow/config/paper.yaml"),
-    output:
-        record="results/benchmarks/grid-size.json",
-        drawings=multiext("results/benchmarks/grid-size", ".png", ".svg"),
-    log:
-        "logs/bench/grid-size.log",
-    benchmark:
-        "logs/bench/grid-size.tsv"
-    threads: CORES
-    params:
-        code=benchmark_code("accuracy/grid_size"),
-    message:
-        "Error of interpolation against the size of the grid"
-    shell:
-        "python -m benchmarks.accuracy.grid_size --out {output.record} >{log}"
 
 
 rule first_call:
@@ -158,22 +92,6 @@ rule recorded_motions:
         "python -m benchmarks.cost.records --out {output.record} >{log}"
 
 
-rule bodies:
-    output:
-        record="results/benchmarks/bodies.json",
-    log:
-        "logs/bench/bodies.log",
-    benchmark:
-        "logs/bench/bodies.tsv"
-    threads: CORES
-    params:
-        code=benchmark_code("cost/bodies"),
-    message:
-        "Bodies with two edges beside blocks"
-    shell:
-        "python -m benchmarks.cost.bodies --out {output.record} >{log}"
-
-
 rule service:
     input:
         manifest=rules.manifest.output.manifest,
@@ -185,55 +103,20 @@ rule service:
         "logs/bench/service.tsv"
     threads: CORES
     params:
-        code=benchmark_code("service/performance"),
+        code=benchmark_code("cost/service"),
     message:
         "Load on the service"
     shell:
-        "python -m benchmarks.service.performance --out {output.record} >{log}"
-
-
-rule ablations:
-    input:
-        manifest=rules.manifest.output.manifest,
-    output:
-        record="results/benchmarks/ablations.json",
-    log:
-        "logs/bench/ablations.log",
-    benchmark:
-        "logs/bench/ablations.tsv"
-    threads: CORES
-    params:
-        code=benchmark_code("ablations/suite"),
-    message:
-        "Ablations"
-    shell:
-        "python -m benchmarks.ablations.suite --out {output.record} >{log}"
-
-
-rule stages:
-    input:
-        checks=rules.check_results.output.report,
-    output:
-        record="results/benchmarks/stages.json",
-    log:
-        "logs/bench/stages.log",
-    benchmark:
-        "logs/bench/stages.tsv"
-    params:
-        code=benchmark_code("cost/stages"),
-    message:
-        "Time of the stages of the reproduction"
-    shell:
-        "python -m benchmarks.cost.stages --out {output.record} >{log}"
+        "python -m benchmarks.cost.service --out {output.record} >{log}"
 
 
 rule bench:
     input:
-        diagrams=rules.work_precision_figure.input.records,
-        figures=rules.work_precision_figure.output,
+        diagrams=expand(rules.work_precision.output.record, diagram=DIAGRAMS),
         records=expand("results/benchmarks/{name}.json", name=TIMED),
     output:
         summary="results/benchmarks/summary.md",
+        figures=expand("results/benchmarks/work-precision-{measure}.png", measure=["median_error", "error_99"]),
     log:
         "logs/bench/summary.log",
     benchmark:

@@ -1,1 +1,0 @@
-"""Work and results of the package with one optimisation disabled at a time."""

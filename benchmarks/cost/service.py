@@ -1,0 +1,209 @@
+"""Load on the service: `python -m benchmarks.cost.service [--results FOLDER] [--workers 2]`.
+
+Measured are the start, requests for one block over 1, 16 and 64 connections, batches of a thousand to a million blocks
+in binary and to ten thousand in JSON, and the memory of all processes, pages that several share counted once (PSS). One
+worker is bound to the first core, the load to the last; several workers share all cores with the load. The blocks are
+random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85. wrk sends the requests for one block (apt-get install wrk):
+without it they are not measured.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.measure import arguments, finish, progress, spread, versions
+
+SERVER = "import os; os.sched_setaffinity(0, %s); from rocking._cli.app import app; app()"
+POINT = "/v1/response?pulse={}&restitution=0.85&alpha_deg={:g}&slenderness=%.9f&frequency_ratio=%.9f"
+LUA = """
+math.randomseed({seed})
+request = function()
+  local s = 0.05 + 0.9 * math.random()
+  local w = 0.5 * math.exp(3.178 * math.random())
+  return wrk.format("GET", string.format("{path}", s, w))
+end
+done = function(summary, latency, requests)
+  local e = summary.errors
+  io.write(string.format("RESULT %d %d %d %d %d\\n", summary.requests, summary.duration,
+    e.connect + e.read + e.write + e.status + e.timeout, latency:percentile(50), latency:percentile(99)))
+end
+"""
+
+
+class Service:
+    """A running service."""
+
+    def __init__(self, process: subprocess.Popen[bytes], port: int) -> None:
+        self.process = process
+        self.port = port
+
+    def ask(self, path: str, body: bytes | None = None, media_type: str = "application/json") -> bytes:
+        """GET, or POST with a body."""
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", body, {"Content-Type": media_type})
+        with urllib.request.urlopen(request, timeout=300) as answer:
+            content: bytes = answer.read()
+        return content
+
+    def processes(self) -> list[Path]:
+        """The folders in /proc of the main process and its workers."""
+        main = Path(f"/proc/{self.process.pid}")
+        return [main, *(main.with_name(child) for child in (main / f"task/{main.name}/children").read_text().split())]
+
+    def memory(self) -> dict[str, float]:
+        """Memory of all processes now, and the most that one has had [MB]."""
+        now, most = (
+            [int(re.findall(rf"{key}:\s+(\d+) kB", (one / file).read_text())[0]) / 1e3 for one in self.processes()]
+            for key, file in (("Pss", "smaps_rollup"), ("VmHWM", "status"))
+        )
+        return {"now_MB": sum(now), "most_MB": max(most)}
+
+    def processor_seconds(self) -> float:
+        """Processor time of all processes so far [s]."""
+        rows = [(one / "stat").read_text().rpartition(")")[2].split() for one in self.processes()]
+        return sum(int(row[11]) + int(row[12]) for row in rows) / os.sysconf("SC_CLK_TCK")
+
+
+@contextmanager
+def service(results: Path, workers: int, point: str) -> Iterator[tuple[Service, dict[str, float]]]:
+    """A service, and how long it took to listen and to give a first answer [s]."""
+    cores = sorted(os.sched_getaffinity(0))
+    server = SERVER % ({cores[0]} if workers == 1 else {*cores})
+    options = ["--port", "0", "--results", str(results), "--workers", str(workers)]
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "log"
+        began = time.perf_counter()
+        command = [sys.executable, "-c", server, "serve", *options]
+        with log.open("wb") as output, subprocess.Popen(command, stdout=output, stderr=output) as process:
+            try:
+                while not (listening := re.search(rb"running on http://127\.0\.0\.1:(\d+)", log.read_bytes())):
+                    if process.poll() is not None:
+                        raise SystemExit(log.read_text())
+                    time.sleep(0.005)
+                one = Service(process, int(listening[1]))
+                started = time.perf_counter() - began
+                one.ask(point % (0.6, 6.0))
+                yield one, {"listens_s": started, "first_answer_s": time.perf_counter() - began}
+            finally:
+                process.terminate()
+                process.wait(60)
+
+
+def load(one: Service, path: str, connections: int, seconds: float) -> dict[str, Any]:
+    """Send requests by wrk; every one has other groups, so that no response comes from a cache."""
+    before = one.processor_seconds()
+    with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".lua") as script:
+        script.write(LUA.format(seed=connections, path=path))
+        script.flush()
+        options = ["-t1", f"-c{connections}", f"-d{max(1, round(seconds))}s", "--timeout", "30s", "-s", script.name]
+        command = ["taskset", "-c", str(max(os.sched_getaffinity(0))), "wrk", *options, f"http://127.0.0.1:{one.port}"]
+        printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    match = re.search(r"RESULT (\d+) (\d+) (\d+) (\d+) (\d+)", printed)
+    assert match, printed
+    count, microseconds, errors, median, last = map(int, match.groups())
+    return {
+        "connections": connections,
+        "questions": count,
+        "per_second": 1e6 * count / microseconds,
+        "median_ms": median / 1e3,
+        "p99_ms": last / 1e3,
+        "processor_ms": 1e3 * (one.processor_seconds() - before) / count,
+        "errors": errors,
+    }
+
+
+def batches(one: Service, groups: dict[str, Any], sizes: dict[str, list[int]], rounds: int) -> list[dict[str, Any]]:
+    """Time of batches of several sizes [points], from the first byte sent to the last received [s]."""
+    query = "?" + "&".join(f"{name}={value}" for name, value in groups.items())
+    asked = {}
+    for form, points in [(one, points) for one in sizes for points in sizes[one]]:
+        blocks = random_blocks(points)
+        if form == "netcdf":
+            data = xr.Dataset({name: ("point", values) for name, values in blocks.items()})
+            asked[form, points] = query, bytes(data.to_netcdf(engine="scipy")), "application/x-netcdf"
+        else:
+            asked[form, points] = "", as_json(groups, blocks), "application/json"
+    times: dict[tuple[str, int], list[float]] = {key: [] for key in asked}
+    for _ in range(rounds):
+        for key, (options, body, media_type) in asked.items():
+            began = time.perf_counter()
+            one.ask("/v1/response" + options, body, media_type)
+            times[key].append(time.perf_counter() - began)
+    return [{"form": form, "points": points, "seconds": spread(times[form, points])} for form, points in asked]
+
+
+def random_blocks(points: int) -> dict[str, np.ndarray[Any, Any]]:
+    """Return groups of random blocks (points,)."""
+    random = np.random.default_rng(points)
+    omega = np.exp(random.uniform(np.log(0.5), np.log(12.0), points))
+    return {"slenderness": random.uniform(0.05, 0.95, points), "frequency_ratio": omega}
+
+
+def as_json(groups: dict[str, Any], blocks: dict[str, np.ndarray[Any, Any]]) -> bytes:
+    """Return the body of a batch."""
+    return json.dumps(groups | {name: values.tolist() for name, values in blocks.items()}).encode()
+
+
+def main(command_line: list[str] | None = None) -> None:
+    """Measure, print, write the record; `--seconds` of each load, `--rounds` of the batches."""
+    asked = arguments(
+        __doc__, command_line, results=Path("results"), pulse="sine", alpha_deg=0.0, workers=1, seconds=5.0,
+        connections=[1, 16, 64], points=[1_000, 10_000, 100_000, 1_000_000], json_points=[1_000, 10_000], rounds=3,
+        out=Path("results/benchmarks/service.json"),
+    )  # fmt: skip
+    groups = {"pulse": asked.pulse, "restitution": 0.85, "alpha_deg": asked.alpha_deg}
+    point = POINT.format(asked.pulse, asked.alpha_deg)
+    names = versions("rocking", "fastapi", "uvicorn", "uvloop", "httptools", "numpy")
+    record: dict[str, Any] = {"versions": names, "workers": asked.workers, "points": []}
+    with service(asked.results, asked.workers, point) as (one, start):
+        record |= {"start": start, "memory_at_first": one.memory()}
+        for connections in asked.connections if shutil.which("wrk") else ():
+            progress(f"{connections} connections")
+            record["points"].append(load(one, point, connections, asked.seconds))
+        record["memory_after_points"] = one.memory()
+        progress("batches")
+        sizes = {"netcdf": asked.points, "json": asked.json_points}
+        record["batches"] = batches(one, groups, sizes, asked.rounds)
+        answer = json.loads(one.ask("/v1/response", as_json(groups, random_blocks(max(asked.json_points)))))
+        record["share_by_data_sets"] = answer["source"].count("cube") / len(answer["source"])
+        record["memory_after_batches"] = one.memory()
+    finish(record, asked.out, table)
+
+
+def table(record: dict[str, Any]) -> str:
+    """All of it in lines."""
+    start = record["start"]
+    lines = [f"start       listens after {start['listens_s']:.2f} s, first answer {start['first_answer_s']:.2f} s"]
+    lines += [
+        f"{row['connections']:>3} connections  {row['per_second']:8.0f} requests/s   median {row['median_ms']:7.2f} ms "
+        f"  p99 {row['p99_ms']:7.2f} ms   processor {row['processor_ms']:.3f} ms a request   errors {row['errors']}"
+        for row in record["points"]
+    ]
+    lines += [
+        f"{row['form']:<7}{row['points']:>9} blocks  {row['seconds']['median']:8.4f} s "
+        f"({row['seconds']['smallest']:.4f} to {row['seconds']['largest']:.4f})"
+        for row in record["batches"]
+    ]
+    lines.append(f"by data sets {100 * record['share_by_data_sets']:.1f} %, the rest by the solver")
+    memory = [record[f"memory_{when}"] for when in ("at_first", "after_points", "after_batches")]
+    lines.append("memory      " + ", ".join(f"{m['now_MB']:.0f} MB" for m in memory) + " (first, points, batches)")
+    lines.append(f"at most     {memory[-1]['most_MB']:.0f} MB in one process")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-"""Load and batch measurements of the HTTP service."""
