@@ -7,7 +7,8 @@ from pathlib import Path
 
 from rocking._assessment.columns import INPUTS, REQUIRED, STAND_INS
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.table_reader import MAX_CHARACTERS, Schema, csv_of_sheet
+from rocking._dimensional.table_header import Schema
+from rocking._dimensional.table_reader import MAX_CHARACTERS, csv_of_sheet
 from rocking_api.limited_process import print_result
 
 SCHEMA: Schema[None] = Schema("table", (*INPUTS, *STAND_INS), REQUIRED, lambda *_: None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rocking._base.column import Column
-from rocking._dimensional.table_reader import HEIGHT, NAME, NUMBER, RESTITUTION, WIDTH
+from rocking._dimensional.table_header import HEIGHT, NAME, NUMBER, RESTITUTION, WIDTH
 
 INPUTS = (
     NAME,

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 from rocking._assessment.columns import INPUTS, REQUIRED, STAND_INS
 from rocking._assessment.objects import Object
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import (
     BadRow,
-    Schema,
     Table,
     TooManyRowsError,
     read_bytes,

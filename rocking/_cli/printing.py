@@ -16,7 +16,7 @@ from rocking._cli.arguments import Params, given_units
 from rocking._cli.options import OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
-from rocking._dimensional.response import FIELDS, JUDGED
+from rocking._dimensional.fields import FIELDS, JUDGED
 from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
 from rocking._model.outcome import Outcome

@@ -22,8 +22,9 @@ from rocking._dimensional.curves import (
     body_history,
     over_axis,
 )
+from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import HIGHEST_SCALE, STRENGTHS, Motion, Problem, are_numbers, checked_restitution
-from rocking._dimensional.response import FIELDS, BodyResponse, respond
+from rocking._dimensional.response import BodyResponse, respond
 from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, thresholds_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record

@@ -13,17 +13,8 @@ from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, finite
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.table_reader import (
-    HEIGHT,
-    NAME,
-    NUMBER,
-    RESTITUTION,
-    WIDTH,
-    Schema,
-    Table,
-    read_csv,
-    read_file,
-)
+from rocking._dimensional.table_header import HEIGHT, NAME, NUMBER, RESTITUTION, WIDTH, Schema
+from rocking._dimensional.table_reader import Table, read_csv, read_file
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.outcome import Outcome

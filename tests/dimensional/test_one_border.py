@@ -11,7 +11,7 @@ import xarray as xr
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.response import FIELDS, SHOWN
+from rocking._dimensional.fields import FIELDS, SHOWN
 
 ROOT = str(Path(rocking.__file__).parent)
 BLOCK = rocking.Block(width=0.4, height=1.6)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from rocking._base.errors import finite
-from rocking._dimensional.response import SHOWN
+from rocking._dimensional.fields import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model.fields import (
     COLUMN_FIELDS,

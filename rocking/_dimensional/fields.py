@@ -1,0 +1,212 @@
+"""The fields of a response in SI units, declared once: name, unit, equation, meaning, kinds of bodies and motions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking._dimensional.problem import STRENGTHS
+from rocking._model.fields import (
+    DERIVED_FIELDS,
+    ERROR_BOUND,
+    EXCEEDED_ALPHA,
+    IMPACTS,
+    KINDS,
+    OUTCOME,
+    OVERTURNED,
+    PEAK_ROTATION,
+    UPLIFT_TIME,
+    ResponseField,
+)
+from rocking._model.outcome import Outcome
+
+if TYPE_CHECKING:
+    pass
+
+Array = NDArray[np.float64]
+
+ONE, EDGES, BLOCK = KINDS - {"many"}, KINDS - {"block"}, KINDS - {"edges", "many"}
+
+PULSES, RECORDS = BLOCK - {"record"}, BLOCK - {"pulse"}
+
+
+def _rotation(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> Any:
+    if "over_right" not in known:
+        return known["peak_rotation"] * body.alpha
+    return np.max(np.stack(_rotations(known, body)), axis=0)
+
+
+def _rotations(known: Mapping[str, Any], body: Any) -> tuple[Array, Array]:
+    """Peak rotations about the right and the left edge [rad]: z has the scale of the right one."""
+    alpha = body.right.alpha
+    return known["over_right"] * alpha, known["over_left"] * alpha
+
+
+def _edge(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> Any:
+    right, left = _rotations(known, body)
+    larger = np.where(right / body.right.alpha >= left / body.left.alpha, 1, -1)
+    larger = np.where(known["outcome"] == Outcome.NO_UPLIFT, 0, larger)
+    return np.where(known["overturned"], known["last_edge"], larger)
+
+
+ROTATION = ResponseField(
+    "rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns", derive=_rotation,
+    shown="peak_rotation_deg",
+)  # fmt: skip
+
+DISPLACEMENT = ResponseField(
+    "displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", "the block overturns",
+    derive=lambda known, groups, motion, body: body.top_displacement(_rotation(known, groups, motion, body)),
+    shown="top_displacement",
+)  # fmt: skip
+
+ARGUMENTS = ("scale", "peak_acceleration", "period", "slenderness", "frequency_ratio", "restitution")
+"""Fields that are arguments or groups of the problem."""
+
+
+def _about(
+    name: str, unit: str, equation: str, meaning: str, kinds: frozenset[str], of_body: str = ""
+) -> ResponseField:
+    """A number that is an argument, a group or a property of the body."""
+
+    def derive(_known: Any, groups: Any, _motion: Any, body: Any) -> Any:
+        return groups[name] if name in ARGUMENTS else attrgetter(of_body or name)(body)
+
+    return ResponseField(name, "f8", unit, equation, meaning, derive=derive, kinds=kinds)
+
+
+FIELDS = (
+    ROTATION,
+    replace(ROTATION, name="rotation_left", meaning="peak rotation about the left edge", kinds=EDGES, shown="",
+            derive=lambda known, _groups, _motion, body: _rotations(known, body)[1]),
+    replace(ROTATION, name="rotation_right", meaning="peak rotation about the right edge", kinds=EDGES, shown="",
+            derive=lambda known, _groups, _motion, body: _rotations(known, body)[0]),
+    DISPLACEMENT,
+    OVERTURNED,
+    OUTCOME,
+    ResponseField("edge", "i1", "1", "2.2",
+                  "edge of the largest rotation over alpha, or of overturning: 1 right, -1 left, 0 without uplift",
+                  kinds=EDGES, derive=_edge),
+    IMPACTS,
+    EXCEEDED_ALPHA,
+    PEAK_ROTATION,
+    replace(UPLIFT_TIME, unit="s", meaning="time of the first uplift", kinds=EDGES,
+            derive=lambda known, _groups, _motion, body: known["uplift_time"] / body.right.frequency_parameter),
+    replace(ERROR_BOUND, kinds=PULSES),
+    *DERIVED_FIELDS,
+    _about("width", "m", "2.1", "width 2b of the block", BLOCK),
+    _about("height", "m", "2.1", "height 2h of the block", BLOCK),
+    _about("half_diagonal", "m", "2.2", "half-diagonal R of the block", BLOCK),
+    _about("alpha", "rad", "2.1", "slenderness angle", BLOCK),
+    _about("alpha_left", "rad", "2.1", "slenderness angle of the left edge", ONE - {"block"}, "left.alpha"),
+    _about("alpha_right", "rad", "2.1", "slenderness angle of the right edge", ONE - {"block"}, "right.alpha"),
+    _about("frequency_parameter", "rad s-1", "2.2", "frequency parameter p", BLOCK),
+    _about("uplift_acceleration", "m s-2", "2.1", "smallest ground acceleration that starts rocking", ONE),
+    _about("scale", "1", "2.2", "factor of the record", ONE - {"pulse"}),
+    _about("peak_acceleration", "m s-2", "3.2", "peak ground acceleration a_g", ONE),
+    _about("period", "s", "3.2", "period T_p of the pulse", ONE - {"record"}),
+    _about("slenderness", "1", "5.3", "dimensionless slenderness g tan(alpha)/a_g", BLOCK),
+    _about("frequency_ratio", "1", "5.3", "frequency ratio omega_g/p", PULSES),
+    _about("restitution", "1", "2.4", "coefficient of restitution eta", BLOCK),
+)  # fmt: skip
+"""Fields of a response in SI units, in order; each is an attribute of the responses of its kinds."""
+
+
+def _judged(
+    name: str, meaning: str, missing: str = "", *, dtype: str = "f8", unit: str = "1", kinds: frozenset[str] = ONE,
+    source: Callable[[Any], Any] | None = None,
+) -> tuple[ResponseField, Callable[[Any], Any]]:  # fmt: skip
+    """A value that is found only when it is asked for: an attribute of the response, or a function of it."""
+    return ResponseField(name, dtype, unit, "", meaning, missing, kinds=kinds), source or attrgetter(name)
+
+
+_UNKNOWN = "it lifts off, or the forces are not known"
+
+JUDGED = dict((
+    _judged("meaning", "the outcome in words; where the rocking model does not apply, first of all that and why",
+            dtype="U", source=lambda found: found.sentence),
+    _judged("margin", "from which strength of the motion it overturns, or below which it does not, in words",
+            "that was not asked for", dtype="U"),
+    _judged("rocking_model_applies", "false: pure rocking needs a coefficient of friction beyond 1, or the body lifts "
+            "off; what is said of its rocking and overturning then does not hold for a body that is free to do so",
+            dtype="?"),
+    _judged("friction_demand", "coefficient of friction that pure rocking needs, impacts excluded; if it overturns, "
+            "until it passes alpha for good", _UNKNOWN, source=lambda found: found.contact.largest_friction_demand),
+    _judged("friction_at_impact", "ratio of the horizontal to the vertical impulse at its impacts, 0 without impacts",
+            "it is not known", source=lambda found: found.contact.impulse_ratio),
+    _judged("smallest_normal_reaction", "normal reaction over the weight; 0 and below: it lifts off",
+            "it is not known", source=lambda found: found.contact.smallest_normal_reaction),
+    _judged("lifts_off", "whether pure rocking would need a tensile reaction of the ground", dtype="?",
+            source=lambda found: found.contact.lifts_off),
+    _judged("friction_at_uplift", "coefficient of friction below which it slides instead of rocking", kinds=BLOCK,
+            source=lambda found: found.block.half_width / found.block.half_height),
+    _judged("pulse_duration", "duration of the pulse", unit="s", kinds=ONE - {"record"},
+            source=lambda found: float(found.problem.duration)),
+    _judged("largest_surviving_acceleration", "peak acceleration below which this block, of this size, does not "
+            "overturn under this pulse at this period; a smaller block of the same shape may",
+            "no change of outcome was found, or the rocking model does not apply just below the lowest of "
+            "`thresholds`, see `warnings`",
+            unit="m s-2", kinds=PULSES),
+    _judged("largest_surviving_friction_demand", "coefficient of friction that it needs just below that acceleration",
+            "that is null, or it is not known", kinds=PULSES),
+    _judged("nearest_acceleration", "peak acceleration nearest in its logarithm at which the outcome changes",
+            "none was found", unit="m s-2", kinds=PULSES,
+            source=lambda found: found.margins and found.margins.nearest_acceleration),
+    _judged("nearest_period", "period nearest in its logarithm at which the outcome changes", "none was found",
+            unit="s", kinds=PULSES, source=lambda found: found.margins and found.margins.nearest_period),
+    _judged("overturning_scale", "lowest factor of the record found at which it overturns", "none was found, or it was "
+            "not asked for; narrower ranges than 0.2 % can be missed", kinds=ONE - {"pulse"}),
+    _judged("amplification", "relative change of the peak rotation over that of the amplitude of the record",
+            "it overturns or does not uplift, or the outcome changes within 1e-9 of the amplitude", kinds=RECORDS),
+    _judged("peak_is_determined", "false: the amplification exceeds 1e4, the record does not determine the peak, see "
+            "`warnings`", dtype="?", kinds=RECORDS),
+    _judged("overturned_resampled", "the outcome under the record interpolated band-limited at an eighth of its step",
+            "it is too long, or its step too small", dtype="?", kinds=RECORDS,
+            source=lambda found: found.resampled and bool(found.resampled.overturned)),
+    _judged("peak_rotation_resampled", "peak of |theta|/alpha likewise", "it overturns, or that was not computed",
+            kinds=RECORDS, source=lambda found: found.resampled and float(found.resampled.peak_rotation)),
+    _judged("warnings", "where the answer is in doubt", dtype="O"),
+    _judged("notes", "what else is worth knowing", dtype="O"),
+))  # fmt: skip
+"""What is found of one body when it is asked for, in order."""
+
+SHOWN = (*(one for one in FIELDS if one.name not in STRENGTHS), *JUDGED)
+"""What the command line and the service show of one body, in order: without the strength of the motion."""
+
+
+class ResponseFields:
+    """The fields of responses in SI units: a float, int or bool of one body, an array of several."""
+
+    if TYPE_CHECKING:  # those of `FIELDS`, which are set below
+        rotation: Any
+        rotation_left: Any
+        rotation_right: Any
+        displacement: Any
+        overturned: Any
+        outcome: Any
+        edge: Any
+        impacts: Any
+        exceeded_alpha: Any
+        peak_rotation: Any
+        uplift_time: Any
+        error_bound: Any
+        residual_energy: Any
+        width: Any
+        height: Any
+        half_diagonal: Any
+        alpha: Any
+        alpha_left: Any
+        alpha_right: Any
+        frequency_parameter: Any
+        uplift_acceleration: Any
+        scale: Any
+        peak_acceleration: Any
+        period: Any
+        slenderness: Any
+        frequency_ratio: Any
+        restitution: Any
