@@ -73,7 +73,7 @@ NUMBERS: dict[str, Any] = {
     "acceleration": [0.0, 1.0, -2.0, 0.5], "vertical": [0.1, -0.2, 0.0, 0.3], "time_step": 0.01, "order": 1,
     "vertical_scale": 1.0, "periods": [0.5, 0.1], "damping": 0.1, "participation": [1.3, -0.3], "tail": 1.0,
     "intensity": [3.0, 9.0], "demand": 0.5, "confidence": 0.9, "restitution_step": 0.05,
-    "years": 100.0, "probability": 0.9,
+    "years": 100.0, "probability": 0.9, "resolution": 0.01, "skip": 0,
     "mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0, "top_height": 2.0, "mass_ratio": 2.0,
     "stiffness": 500.0, "restoring": 100.0, "load": 200.0,
     "uplift_acceleration": 2.0, "radius": 4.0, "thickness": 0.6, "embrace": 2.7, "voussoirs": 8,
@@ -138,6 +138,7 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
     "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
+    "resolution": (0.01, ""), "skip": (0, ""),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -146,12 +147,13 @@ TEXTS = {
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
+    "column",
 }  # fmt: skip
 """Options and arguments that take none."""
 
 COMMON = {
     *("edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"),
-    *("seed", "friction", "damping", "participation", "confidence"),
+    *("seed", "friction", "damping", "participation", "confidence", "resolution", "skip"),
 }
 VARIANTS = (
     {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
@@ -185,7 +187,7 @@ SUITE: dict[str, Any] = {
 
 QUERY: dict[str, Any] = {
     "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
-    "mass_height": 0.8,
+    "mass_height": 0.8, "skip": 0,
     "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
     "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
 }  # fmt: skip
@@ -238,7 +240,7 @@ BODIES: dict[str, dict[str, Any]] = {
 }
 """Ordinary bodies of the routes by media type."""
 
-NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Restitution|Scalar|Any)\b")
+NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Hazard|Restitution|Scalar|Any)\b")
 
 
 class LateError(BaseException):
