@@ -418,7 +418,8 @@ def _row(layout: Layout, index: int, line: str) -> list[float]:
     wrong = next((part for part in fields if not NUMBER.fullmatch(part)), None)
     if wrong is not None:
         skip = "; or the argument `skip`: so many rows of numbers above are no samples"
-        more = skip if index < layout.first + 4 and not layout.skipped else ""
+        text = not any(NUMBER.fullmatch(part) for part in fields)
+        more = skip if text and index < layout.first + 4 and not layout.skipped else ""
         raise file.error(index, wrong or "an empty field", f"a number{more}")
     return [*map(to_float, fields)]
 
