@@ -11,10 +11,11 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
+from rocking._base.parameter import Parameter
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
 from rocking._model import parameters
 from rocking._model.checks import check
-from rocking._model.parameters import RESTITUTION, Parameter
+from rocking._model.parameters import RESTITUTION
 
 # Ranges of the service, far outside of practice and inside those of the library: searches around a point, and points
 # shifted by rounding for the error bound, stay in the latter.
