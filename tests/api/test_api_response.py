@@ -288,7 +288,8 @@ def post(client, content, media_type, **parameters):
     ],
 )  # fmt: skip
 def test_bodies_that_cannot_be_read_are_explained(client, content, media_type, parameters, parameter):
-    assert_problem(post(client, content, media_type, **parameters), 422, parameter)
+    status = 400 if content == b"{" else 422  # no JSON at all
+    assert_problem(post(client, content, media_type, **parameters), status, parameter)
 
 
 def test_unknown_media_type_of_a_body(client):
