@@ -264,8 +264,14 @@ def pulse(name: str, **parameters: float | str) -> AbstractPulse:
 
 
 def split_pulses(text: str) -> list[str]:
-    """The texts of several pulses, separated by commas."""
-    return [one.strip() for one in re.split(r",(?![^()]*\))", text)]
+    """The texts of several pulses, separated by commas; those within brackets separate parameters."""
+    found, depth, start = [], 0, 0
+    for place, sign in enumerate(text):
+        depth += (sign == "(") - (sign == ")")
+        if sign == "," and depth <= 0:
+            found.append(text[start:place].strip())
+            start = place + 1
+    return [*found, text[start:].strip()]
 
 
 _TEXT = re.compile(r"(-?)([A-Za-z_]\w{0,99})(?:\s*\(([^()]{0,200})\))?")

@@ -219,6 +219,13 @@ def test_a_text_of_a_pulse_that_is_not_understood_is_refused(text, message):
         rocking.pulse(text)
 
 
+def test_commas_separate_pulses_except_within_brackets():
+    assert split_pulses("sine, mavroeidis_papageorgiou(cycles=3,phase=1rad),c1") == [
+        "sine", "mavroeidis_papageorgiou(cycles=3,phase=1rad)", "c1",
+    ]  # fmt: skip
+    assert len(split_pulses("1," * 1_000_000)) == 1_000_001  # in linear time
+
+
 def test_parameters_belong_to_one_pulse():
     with pytest.raises(InvalidArgumentError, match=r"`cycles` = 2\.0 .* for sine: no parameters"):
         rocking.pulse("sine", cycles=2.0)
