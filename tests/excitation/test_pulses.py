@@ -16,6 +16,7 @@ from rocking._excitation.pulses import (
     AbstractPulse,
     SinusoidalPulse,
     WaveletPulse,
+    split_pulses,
 )
 from rocking._excitation.shapes import MAX_PIECES
 from rocking._excitation.sinusoids import MAX_SINUSOIDS
