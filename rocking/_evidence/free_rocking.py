@@ -84,6 +84,9 @@ NEGLIGIBLE = 1e-3
 LEAST_FREEDOM = 10.0
 """Fewest independent samples less unknowns of a trace that is free rocking [-]."""
 
+MAX_LOG = 700.0
+"""Largest logarithm of the end of an interval [-]: e^710 is infinite."""
+
 SIGNIFICANT = 4.0
 """Standard deviations beyond which a sum of correlations of the residual is no chance [-]."""
 
@@ -398,7 +401,8 @@ def _described(
     if correlated > 1.0:
         texts.append(f"errors follow each other over {correlated:.2g} samples")
     if texts:
-        wider = float(np.max(reach / (plain * np.sqrt((inverse**2).sum(axis=1)))))
+        alone = plain * np.sqrt((inverse**2).sum(axis=1))  # 0 at a confidence of almost 0
+        wider = float(np.max(np.divide(reach, alone, out=np.ones_like(reach), where=alone > 0.0)))
         texts = [f"{' and '.join(texts)}: the intervals are up to {wider:.2g} times wider for it"]
     if abs(fit.x[1]) > SIGNIFICANT * deviation[1]:
         texts.append(f"the sensor drifts by {fit.x[1]:.3g} rad/s, which is taken off")
@@ -437,5 +441,9 @@ def _described(
         for suffix, shift in (("", 0.0), ("_lower", -reach[own]), ("_upper", reach[own])):
             values = fit.x[own] + shift
             attributes = {"units": unit, "long_name": meaning + (", end of the interval" if suffix else "")}
-            result[name + suffix] = ("edge", values if name == "restitution" else np.exp(values), attributes)
+            result[name + suffix] = (
+                "edge",
+                values if name == "restitution" else np.exp(np.minimum(values, MAX_LOG)),
+                attributes,
+            )
     return result
