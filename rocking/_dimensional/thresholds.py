@@ -128,7 +128,7 @@ class BodyThresholds(EqualByValue):
         top = threshold_text(float(self.searched[1]))
         end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
         if self.resolution:
-            end = f", of factors at most {100.0 * self.resolution:g} % apart{end}"
+            end = f" (factors at most {100.0 * self.resolution:g} % apart were tried){end}"
         if not self.changes:
             return f"no {name} up to {top}{unit} was found to overturn it{end}"
         first, *others = self.changes

@@ -21,6 +21,7 @@ from typing import Annotated, get_type_hints
 
 from rocking._base.errors import InvalidArgumentError, number, one_of, plain_number
 from rocking._base.parameter import Parameter
+from rocking._base.units import Scalar
 from rocking._excitation.shapes import AbstractPulse
 from rocking._excitation.sinusoids import SinusoidalPulse
 from rocking._excitation.smooth import SmoothPulse
@@ -223,7 +224,7 @@ def pulse_parameters(name: str) -> Mapping[str, PulseParameter]:
     }
 
 
-def pulse(name: str, **parameters: float | str) -> AbstractPulse:
+def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
     """The pulse of that name; `"-sine"` is the mirrored sine.
 
     Parameters
@@ -250,7 +251,7 @@ def pulse(name: str, **parameters: float | str) -> AbstractPulse:
         allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
         raise InvalidArgumentError("pulse", name, allowed)
     sign, base, written = parts
-    given: dict[str, float | str] = {**written, **parameters}
+    given: dict[str, Scalar] = {**written, **parameters}
     if len(given) < len(written) + len(parameters):
         raise InvalidArgumentError("pulse", name, "each parameter once")
     registered = _REGISTERED.get(base)
@@ -260,6 +261,8 @@ def pulse(name: str, **parameters: float | str) -> AbstractPulse:
     for key, value in given.items():
         if key not in known:
             raise InvalidArgumentError(key, value, f"for {base}: {' and '.join(known) or 'no parameters'}")
+        if key in written and known[key].declared.unit == "-":
+            given[key] = plain_number(key, written[key])
     return _build_pulse(sign, base, **{key: _checked(known[key].declared, value) for key, value in given.items()})
 
 
@@ -292,10 +295,9 @@ def _parts(text: str) -> tuple[str, str, Mapping[str, str]] | None:
     return found[1], found[2], parameters
 
 
-def _checked(parameter: Parameter, value: float | str) -> float:
+def _checked(parameter: Parameter, value: Scalar) -> float:
     """A parameter of a pulse in the unit of its declaration; a text has its unit."""
-    given = plain_number(parameter.name, value) if isinstance(value, str) and parameter.unit == "-" else value
-    return number(parameter.name, given, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit)
+    return number(parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit)
 
 
 def _digits(value: float) -> str:

@@ -128,4 +128,4 @@ def test_a_block_that_is_not_overturned_says_up_to_which_factor():
     found = rocking.Block(0.8, 1.0).response(motion)
     assert found.thresholds.value.size == 0
     assert found.margin.startswith("no factor of the record up to ")
-    assert found.margin.endswith(" was found to overturn it, of factors at most 0.5 % apart")
+    assert found.margin.endswith(" was found to overturn it (factors at most 0.5 % apart were tried)")

@@ -53,7 +53,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "assess": (
         rocking.assess,
         [{"objects": rocking.Object("vase", width=0.4, height=1.6), "site": rocking.Site(3.0, 0.4, shapes=["sine"]),
-          "sensitivity": False, "samples": 64, "seed": 1}],
+          "sensitivity": False, "samples": 64, "seed": 1, "resolution": 0.01}],
     ),
     "overturning_probability": (
         rocking.overturning_probability,
@@ -123,7 +123,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "thresholds": (
         rocking.thresholds,
         [{"motion": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "alpha": 0.2, "highest": 20.0},
-         {"motion": UPWARDS, "vertical_scale": 1.0, "highest": 20.0}
+         {"motion": UPWARDS, "vertical_scale": 1.0, "highest": 20.0, "resolution": 0.01}
          | {key: value for key, value in OF_RECORD.items() if key != "slenderness"}],
     ),
     "floor_motion": (
@@ -178,7 +178,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         [{"name": "own", "start": -3.0, "end": 3.0, "stationary": (), "polynomial": (1.0, 0.0, -1.0), "spread": 1.0}],
     ),
     "SmoothPulse": (Hump, [{"name": "own", "start": 0.0, "end": 3.0}]),
-    "read_record": (rocking.read_record, [{"path": __file__, "time_step": 0.01}]),
+    "read_record": (rocking.read_record, [{"path": __file__, "time_step": 0.01, "skip": 0}]),
     "suites.record_amplification": (
         rocking.suites.record_amplification, [{"motion": RECORD, "threads": 1} | OF_RECORD]
     ),
@@ -195,7 +195,7 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         rocking.survival,
         [{"fragility": None, "hazard": ([1.0, 2.0], [1e-2, 1e-3]), "years": 10.0}],
     ),
-    "unexceeded": (rocking.unexceeded, [{"body": BLOCK, "motions": [RECORD], "probability": 0.9}]),
+    "unexceeded": (rocking.unexceeded, [{"body": BLOCK, "motions": [RECORD], "probability": 0.9, "resolution": 0.01}]),
 }  # fmt: skip
 """Public functions with arguments that they accept."""
 
@@ -207,7 +207,7 @@ for kind, body in (("Block", BLOCK), ("EquivalentBlock", FRAME)):
         f"{kind}.spectrum": (body.spectrum, [PULSE, SCALED | {"size": [1.0]}]),
         f"{kind}.thresholds": (
             body.thresholds,
-            [{"motion": "sine", "period": 0.5, "restitution": 0.9, "highest": 9.0}],
+            [{"motion": "sine", "period": 0.5, "restitution": 0.9, "highest": 9.0, "resolution": 0.01}],
         ),
     }
 
@@ -228,7 +228,10 @@ CALLS |= {
         [{"motion": "sine", "peak_acceleration": 4.0, "period": [0.5], "restitution": 0.9},
          {"motion": RECORD, "scale": 1.0, "size": [1.0]}],
     ),
-    "RigidBody.thresholds": (BODY.thresholds, [{"motion": "sine", "period": 0.5, "highest": 9.0}]),
+    "RigidBody.thresholds": (
+        BODY.thresholds,
+        [{"motion": "sine", "period": 0.5, "highest": 9.0, "resolution": 0.01}],
+    ),
 }  # fmt: skip
 
 RESULTS = {"suites.PulseFit", "paper.Quantity", "Block.top_displacement", "EquivalentBlock.top_displacement"}
@@ -238,7 +241,7 @@ OPTIONAL = {
     "alpha", "threads", "relative_tolerance", "absolute_tolerance", "time_step", "duration", "samples",
     "uplift_acceleration", "top_height", "restitution", "scale", "vertical_scale", "highest", "size",
     "peak_acceleration", "period", "depth", "diameter", "mass_height", "mass", "friction", "pgv",
-    "tail",
+    "tail", "skip",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 

@@ -208,5 +208,5 @@ def test_structures_that_would_bounce_are_refused():
         rocking.EquivalentBlock.linear_mechanism(
             mass=1.0, stiffness=1.0, restoring=2.0, load=1.0, restitution=0.9, top_height=1.0
         )
-    with pytest.raises(InvalidArgumentError, match=r"`mass` = '300 kg'.*a number in \[kg\]"):
-        rocking.EquivalentBlock.rigid_body(mass="300 kg", inertia=20.0, base=0.4, centre_height=0.8)
+    with pytest.raises(InvalidArgumentError, match=r"`inertia` = '20 kg m2'.*a number in \[kg m2\]"):
+        rocking.EquivalentBlock.rigid_body(mass="0.3 t", inertia="20 kg m2", base=0.4, centre_height=0.8)

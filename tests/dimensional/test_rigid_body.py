@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rocking
@@ -134,6 +134,7 @@ def test_the_summary_of_a_response_is_plain_and_searches_no_thresholds_where_non
     st.sampled_from(["sine", "cosine", "c1", "ricker"]),
 )
 def test_exchanged_edges_under_the_opposite_motion(left, right, height, strength, period, tilt, name):
+    assume(abs(tilt) < 0.9 * np.arctan(min(left, right) / height))  # it stands
     motion = {"peak_acceleration": strength, "period": period}
     there = rocking.RigidBody(left, right, height).tilted(tilt).response(name, **motion)
     back = rocking.RigidBody(right, left, height).tilted(-tilt).response("-" + name, **motion)

@@ -100,7 +100,7 @@ def test_cube_and_http_response(tmp_path):
     interpolated = open_cube(path).response(**GROUPS, absolute_tolerance=1e-2)
     assert abs(float(interpolated.peak_rotation) - solved) <= float(interpolated.error_bound)
     precompile.main()  # the service refuses requests while it compiles
-    with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
+    with TestClient(create_app(Settings(results=tmp_path))) as client:
         for method in ("solver", "auto"):
             response = client.get("/v1/response", params=GROUPS | {"pulse": "three_sines", "method": method})
             assert response.status_code == 200, response.text
@@ -168,7 +168,7 @@ def test_a_cube_of_a_sampled_pulse_and_http_by_its_name(ramp, tmp_path, monkeypa
     write_dataset(spectrum("ramp", restitution=0.85, **axes), path)
     solved = float(rocking.peak_response(ramp, **GROUPS).peak_rotation)
     precompile.main()
-    with TestClient(create_app(Settings(results=tmp_path, cache=tmp_path / "cache"))) as client:
+    with TestClient(create_app(Settings(results=tmp_path))) as client:
         listed = client.get("/v1/pulses").json()["pulses"][-1]
         assert (listed["name"], listed["duration"]) == ("ramp", 1.0)
         found = client.get("/v1/response", params=GROUPS | {"pulse": "ramp", "absolute_tolerance": 1e-2}).json()

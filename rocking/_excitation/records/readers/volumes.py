@@ -53,7 +53,7 @@ BLOCK = re.compile(
 MILLIMETRE = "mm/s2"
 
 
-@dataclass
+@dataclass(eq=False)
 class Channel:
     """One block of accelerations: name, step [s] and unit as stated, index of the line that states them."""
 
