@@ -127,10 +127,9 @@ class BodyThresholds(EqualByValue):
         name, unit, from_strength, up_to = WORDS[self.strength]
         top = threshold_text(float(self.searched[1]))
         end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
-        if self.resolution:
-            end = f" (factors at most {100.0 * self.resolution:g} % apart were tried){end}"
         if not self.changes:
-            return f"no {name} up to {top}{unit} was found to overturn it{end}"
+            tried = f" (factors at most {100.0 * self.resolution:g} % apart were tried)" if self.resolution else ""
+            return f"no {name} up to {top}{unit} was found to overturn it{tried}{end}"
         first, *others = self.changes
         more = f"; above that the outcome changes {len(others)} more times up to {top}{up_to}" if others else ""
         return f"it overturns from {from_strength.format(first.text())}{more}{end}"
