@@ -48,8 +48,8 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	ruff format --check .
 	ruff check .
 	snakefmt --check Snakefile workflow
+	@echo 'of long enumerations a sample is tried: make test-all tries all'
 	$(PYTEST)
-	@echo 'passed; of long enumerations a sample: make test-all runs all'
 
 test-all: .venv/project browser ## run all tests, with all of what `make test` tries a sample (SEED= for other random requests)
 	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) $(PYTEST)
