@@ -83,7 +83,7 @@ def test_every_command_has_a_test() -> None:
     [
         ("environment", ":"),
         ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
-        ("test", "echo 'passed"),
+        ("test", "pytest --numprocesses auto"),
         ("serve", "rocking serve --host 127.0.0.1 --port 8000 --results 'results'"),
     ],
 )
