@@ -35,13 +35,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import DatasetError
+from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
 from rocking._datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking._datasets.netcdf import open_netcdf, write_netcdf
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking._model.fields import CUBE_FIELDS, DERIVED_FIELDS
-from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
 """Dimensions of a spectrum cube, in order."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import number, positive
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
@@ -24,9 +25,8 @@ from rocking._history.sampling import (
     sample_free_rocking,
     sample_record,
 )
-from rocking._model.checks import check_number, check_one_alpha
+from rocking._model.checks import check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
@@ -373,8 +373,8 @@ def build_motion(
 ) -> BodyMotion:
     """The motion for given groups; arguments and errors as for `rocking.time_history`."""
     made = as_pulse(pulse)
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
-    omega, angle = check_number(FREQUENCY_RATIO, frequency_ratio), check_one_alpha(alpha)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
+    omega, angle = FREQUENCY_RATIO.number(frequency_ratio), check_one_alpha(alpha)
     if duration is None:
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
@@ -398,7 +398,7 @@ def build_record_motion(
 ) -> SamplesMotion:
     """The motion for given parameters; arguments and errors as for `rocking.time_history`."""
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
     angle = check_one_alpha(alpha)
     vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from rocking._lookup.collection import CubeCollection
-from rocking._model.checks import check
 from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, FROM_CUBE
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
@@ -71,8 +70,8 @@ def evaluate(
     """
     return cubes.response(
         options.pulse,
-        slenderness=check(SLENDERNESS, slenderness),
-        frequency_ratio=check(FREQUENCY_RATIO, frequency_ratio),
+        slenderness=SLENDERNESS.convert(slenderness),
+        frequency_ratio=FREQUENCY_RATIO.convert(frequency_ratio),
         restitution=restitution,
         alpha=alpha_of(options.alpha_deg),
         absolute_tolerance=options.absolute_tolerance,
