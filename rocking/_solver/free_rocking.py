@@ -24,21 +24,9 @@ def barrier_of(alpha: float) -> float:
 def release(z: float, w: float, alpha: float) -> tuple[bool, float, float]:
     """What follows from the rotation z >= 0 and the velocity w at the end of the motion, up to the next impact.
 
-    Parameters
-    ----------
-    z, w : float
-        |theta|/alpha, below pi/(2 alpha), and its rate with respect to tau [-].
-    alpha : float
-        Slenderness angle [rad], [0, pi/2); 0 is the slender limit.
-
-    Returns
-    -------
-    escapes : bool
-        Whether the block overturns without another impact, (3.8).
-    top : float
-        Largest z up to the impact [-].
-    squared : float
-        Square of the velocity at the impact, (3.15).
+    `z`, `w`: |theta|/alpha, below pi/(2 alpha), and its rate with respect to tau [-]. `alpha`: slenderness angle [rad],
+    [0, pi/2); 0 is the slender limit. Returns `escapes`: whether the block overturns without another impact, (3.8);
+    `top`: largest z up to the impact [-]; `squared`: square of the velocity at the impact, (3.15).
     """
     barrier = barrier_of(alpha)
     if alpha == 0.0:

@@ -226,18 +226,9 @@ def solve_cells(
 ) -> NDArray[np.void]:
     """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
 
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    cells : list of three or four float arrays (size,)
-        1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each as
-        `contiguous_array` gives it.
-    precision : float
-        Relative truncation error of a Taylor step [-].
-    threads : int or None
-        Number of threads, None: all cores.
-    stop : StopFlag or None
-        Cancels the work, which then raises `StoppedError`.
+    `cells` (size,): 1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each
+    as `contiguous_array` gives it. `precision`: relative truncation error of a Taylor step [-]. `threads`: number of
+    threads, None: all cores.
     """
     if pulse.samples is not None:
         return solve_pulse(pulse, cells, threads, stop)

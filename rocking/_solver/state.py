@@ -273,13 +273,8 @@ def aligned_record(layout: np.dtype[np.void]) -> Record:
 def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
     """Taylor steps for the pulse of a record of `pulse_state`.
 
-    Parameters
-    ----------
-    flight
-        The record.
-    precision : float
-        Largest ratio of the last terms of a step's series to the motion during the step [-], `FULL_PRECISION` to 1e-4.
-        It sets the degree: 1 - log(precision)/2 gives the longest steps for the work, Jorba and Zou (2005).
+    `precision`: largest ratio of the last terms of a step's series to the motion during the step [-], `FULL_PRECISION`
+    to 1e-4. It sets the degree: 1 - log(precision)/2 gives the longest steps for the work, Jorba and Zou (2005).
     """
     steps = aligned_record(STEP_STATE)
     for name, *_ in EXCITATION_FIELDS:

@@ -156,10 +156,8 @@ def follow_piece(
 ) -> tuple[float, float, float, float]:
     """Follow a piece from z >= 0 and w; `known` is a rotation that has been reached before.
 
-    Returns
-    -------
-    Time of the impact, -1 if there is none; z and w there or at the right end; the largest maximum of z inside, if it
-    exceeds `known`, else 0.
+    Returns the time of the impact, -1 if there is none; z and w there or at the right end; the largest maximum of z
+    inside if it exceeds `known`, else 0.
     """
     z1, w1 = piece_state(z, w, q0, r, length)
     impact = -1.0

@@ -150,18 +150,10 @@ CELLS_STATE = np.dtype(
 
 
 class StageState(NamedTuple):
-    """State of the stages of one thread.
+    """State of the stages of one thread."""
 
-    Attributes
-    ----------
-    group : record `GROUP_STATE`
-        The cells in work.
-    cells : record `CELLS_STATE`
-        All cells of a block.
-    """
-
-    group: Record
-    cells: Record
+    group: Record  # the cells in work
+    cells: Record  # all cells of a block
 
 
 def stage_state() -> StageState:
