@@ -21,21 +21,11 @@ STILL = 1e-9
 
 @dataclass(frozen=True)
 class Impulse:
-    """Integrals of f(phi); times a_g T_p/(2 pi) they are ground velocities.
+    """Integrals of f(phi); times a_g T_p/(2 pi) they are ground velocities."""
 
-    Attributes
-    ----------
-    largest : float
-        Largest absolute value of the integral of f from the start [-].
-    final : float
-        The integral over the whole window [-].
-    total : float
-        Integral of the absolute value [-].
-    """
-
-    largest: float
-    final: float
-    total: float
+    largest: float  # largest absolute value of the integral of f from the start [-]
+    final: float  # the integral over the whole window [-]
+    total: float  # integral of the absolute value [-]
 
     @property
     def ends_at_rest(self) -> bool:

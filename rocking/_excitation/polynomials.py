@@ -46,18 +46,10 @@ Curve = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Polynomials:
-    """Polynomials in x on consecutive pieces, x from -1 to 1 on each.
+    """Polynomials in x on consecutive pieces, x from -1 to 1 on each."""
 
-    Attributes
-    ----------
-    ends : float array (pieces + 1,)
-        Phases at which the pieces start, and the end of the last [rad], ascending.
-    coefficients : float array (pieces, `DEGREE` + 1)
-        Of 1, x, x^2, ... [-].
-    """
-
-    ends: Array
-    coefficients: Array
+    ends: Array  # (pieces + 1,) phases at which the pieces start, and the end of the last [rad], ascending
+    coefficients: Array  # (pieces, `DEGREE` + 1) of 1, x, x^2, ... [-]
 
     @property
     def middles(self) -> Array:
@@ -134,17 +126,8 @@ def turning_points(values: Array, least: float) -> list[int]:
 def fit_polynomials(curve: Curve, start: float, end: float) -> Polynomials:
     """Polynomials that equal `curve` between two phases [rad] to rounding.
 
-    Parameters
-    ----------
-    curve : function
-        From phases (n,) to as many numbers.
-    start, end : float
-        Window [rad], start < end.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `curve` gives anything else, only zeros, or more than `MAX_POLYNOMIALS` pieces are needed.
+    `curve`: from phases (n,) to as many numbers; `start`, `end`: window [rad], start < end. Raises
+    `InvalidArgumentError` if `curve` gives anything else, only zeros, or more than `MAX_POLYNOMIALS` pieces are needed.
     """
     values = partial(_checked_values, curve)
     scale = float(np.abs(values(np.linspace(start, end, 1025))).max())

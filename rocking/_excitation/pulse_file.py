@@ -27,21 +27,11 @@ MAX_TEXT = 60
 
 @dataclass(frozen=True)
 class PulseFile:
-    """What a file of a pulse holds.
+    """What a file of a pulse holds."""
 
-    Attributes
-    ----------
-    arguments : dict
-        Arguments of `rocking.SampledPulse`.
-    text : TextFile
-        The file.
-    first : int or None
-        Index of the line of the first sample; None for JSON.
-    """
-
-    arguments: dict[str, Any]
-    text: TextFile
-    first: int | None
+    arguments: dict[str, Any]  # arguments of `rocking.SampledPulse`
+    text: TextFile  # the file
+    first: int | None  # index of the line of the first sample; None for JSON
 
     def error(self, error: InvalidArgumentError) -> InvalidArgumentError:
         """An error about an argument as one about the file: with its name and the line."""
@@ -57,11 +47,8 @@ class PulseFile:
 def read_pulse_file(path: str | PathLike[str], most: int) -> PulseFile:
     """The arguments of a pulse of at most `most` samples from a file.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, with the parameter `path`; with the parameter `pulse`, naming the file and the line,
-        if it does not hold a pulse.
+    Raises `InvalidArgumentError` if the file cannot be read, with the parameter `path`; with the parameter `pulse`,
+    naming the file and the line, if it does not hold a pulse.
     """
     file = Path(path)
     try:

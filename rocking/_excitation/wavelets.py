@@ -27,19 +27,11 @@ Array = NDArray[np.float64]
 @final
 @dataclass(frozen=True)
 class WaveletSeries(ExcitationSeries):
-    """f = (sum of c_k phi^k) exp(-phi^2/spread).
-
-    Attributes
-    ----------
-    polynomial : tuple of float
-        Coefficients c_k [-].
-    spread : float
-        Of the Gaussian [rad2].
-    """
+    """f = (sum of c_k phi^k) exp(-phi^2/spread)."""
 
     family: ClassVar[Family] = Family.WAVELET
-    polynomial: tuple[float, ...]
-    spread: float
+    polynomial: tuple[float, ...]  # coefficients c_k [-]
+    spread: float  # of the Gaussian [rad2]
 
     @property
     def least_arc_frequency(self) -> float:

@@ -114,10 +114,7 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
 def read_samples(file: TextFile, most: int) -> tuple[int, Array | None, Array]:
     """Index of the first row, times if there are two columns, and accelerations, in any units; at most `most` rows.
 
-    Raises
-    ------
-    RecordFileError
-        If the file holds anything else.
+    Raises `RecordFileError` if the file holds anything else.
     """
     expected = "one column of accelerations, or two of times and accelerations"
     layout = find_layout(file, 0, expected=expected)
@@ -144,10 +141,7 @@ def read_rotations(
     another unit. A counter, such as the number of a frame, is no time: `time_step` [s], or a rate in the header, gives
     the times then.
 
-    Raises
-    ------
-    RecordFileError
-        If the file holds anything else, or rotations in another unit than `degrees` says.
+    Raises `RecordFileError` if the file holds anything else, or rotations in another unit than `degrees` says.
     """
     layout = find_layout(file, 0, "rad", "one column of rotations, or two of times and rotations")
     times = _time_columns(layout)
@@ -221,10 +215,7 @@ def _is_wrapped(layout: Layout, component: str | None) -> bool:
     The header may count the values, or the rows. Else neighbours along the rows, and from the end of a row to the start
     of the next one, have to differ less than those down the columns, and alike.
 
-    Raises
-    ------
-    RecordFileError
-        If both readings are possible.
+    Raises `RecordFileError` if both readings are possible.
     """
     file, width = layout.file, layout.width
     if component == WRAPPED:
@@ -346,10 +337,7 @@ def _agreed_step(layout: Layout, count: int, measured: float | None, given: floa
 def _check_leading(layout: Layout, values: Array, time_step: float | None) -> None:
     """Refuse one column whose first numbers are a count, a step or a factor, by their size and their form.
 
-    Raises
-    ------
-    RecordFileError
-        With the argument `skip`, which says how many of them are no samples, 0 included.
+    Raises `RecordFileError` with the argument `skip`, which says how many of them are no samples, 0 included.
     """
     texts = [row.strip() for row in layout.file.head[layout.first :] if row.strip()]
     forms, digits = zip(*map(_form, texts), strict=True)
@@ -436,10 +424,7 @@ def _time_factor(layout: Layout, column: Column) -> float:
 def _stated_unit(layout: Layout, column: Column, quantity: str) -> str | None:
     """The unit of times or rotations of a column; None if there is none.
 
-    Raises
-    ------
-    RecordFileError
-        If anything else is in brackets or after a slash.
+    Raises `RecordFileError` if anything else is in brackets or after a slash.
     """
     unit = column.unit(quantity)
     if unit is None and re.search(r"[(\[/]", column.shown):

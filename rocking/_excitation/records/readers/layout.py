@@ -85,33 +85,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Layout:
-    """How a file holds its numbers.
-
-    Attributes
-    ----------
-    first : int
-        Index of the line of the first sample.
-    separator : str or None
-        Of columns; None for blanks.
-    comma : bool
-        Whether commas are decimal signs.
-    line : int or None
-        Index of the line of the names; None if the columns have none.
-    columns : list of Column
-        From the left.
-    header : Header
-        What the lines above state.
-    counted : (count, step) or None
-        Of a line above the samples with these two numbers, which the number of values has to confirm.
-    """
+    """How a file holds its numbers."""
 
     file: TextFile
-    first: int
-    separator: str | None
-    comma: bool
-    line: int | None
-    columns: list[Column]
-    header: Header
+    first: int  # index of the line of the first sample
+    separator: str | None  # of columns; None for blanks
+    comma: bool  # whether commas are decimal signs
+    line: int | None  # index of the line of the names; None if the columns have none
+    columns: list[Column]  # from the left
+    header: Header  # what the lines above state
+    # (count, step) of a line above the samples with these two numbers, which the number of values has to confirm
     counted: tuple[int, float] | None = None
     skipped: bool = False
 
@@ -131,10 +114,7 @@ RECORDS = "the header of a known format (AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet,
 def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expected: str = RECORDS) -> Layout:
     """Decide how a file holds its numbers; `skip` rows of numbers are passed over, None: it may have to be asked for.
 
-    Raises
-    ------
-    RecordFileError
-        If there are no rows of numbers, or two readings.
+    Raises `RecordFileError` if there are no rows of numbers, or two readings.
     """
     rows = [k for k, line in enumerate(file.head) if is_row(line)]
     if not rows:
@@ -232,10 +212,7 @@ def _columns(
 ) -> tuple[int | None, list[Column]]:
     """Line of the names, and the columns: of the nearest line above the rows that names as many; else numbered.
 
-    Raises
-    ------
-    RecordFileError
-        If two lines name as many columns in different units.
+    Raises `RecordFileError` if two lines name as many columns in different units.
     """
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []

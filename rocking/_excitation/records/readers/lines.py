@@ -186,10 +186,7 @@ class TextFile:
     def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
         """The remark on a number of values that differs from the stated one; none if it does not.
 
-        Raises
-        ------
-        RecordFileError
-            If the difference is larger than headers are usually off: the file is damaged.
+        Raises `RecordFileError` if the difference is larger than headers are usually off: the file is damaged.
         """
         difference = abs(values.size - stated)
         if difference > COUNT_DIFFERENCE * stated:
@@ -200,10 +197,7 @@ class TextFile:
 def to_floats(fields: list[bytes]) -> list[float]:
     """Numbers that match `NUMBER`, with exponents of E.
 
-    Raises
-    ------
-    ValueError
-        For any other text.
+    Raises `ValueError` for any other text.
     """
     if b" ".join(fields).translate(None, b"0123456789+-.Ee "):
         raise ValueError("not only numbers")
@@ -238,10 +232,7 @@ def parse_unit(text: str) -> str | None:
 def agreed_unit(file: TextFile, line: int | None, stated: str | None, given: str | None) -> str:
     """The unit stated in the file, or given as an argument.
 
-    Raises
-    ------
-    RecordFileError
-        If there is none, or the two differ.
+    Raises `RecordFileError` if there is none, or the two differ.
     """
     if stated is None and given is None:
         raise file.error(line, "no unit of acceleration", "one in the header, or the argument `unit`")

@@ -68,10 +68,7 @@ class Channel:
 def format_of(file: TextFile) -> str | None:
     """The name of the format; None if it is none of these.
 
-    Raises
-    ------
-    RecordFileError
-        If it is one that is not read.
+    Raises `RecordFileError` if it is one that is not read.
     """
     start = file.head[:FIRST_LINES]
     for line in start:
