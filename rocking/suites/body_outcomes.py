@@ -42,13 +42,9 @@ def body_outcomes(
 ) -> xr.Dataset:
     """The response of bodies (bodies,) to every record and its mirror image at every level.
 
-    The arguments are those of `rocking.fragility`. The result is that of `rocking.suites.outcomes.suite_outcomes`, with
-    the mirror image of each record after it, and with other properties of the bodies.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument that is not as described, and for a measure that refers to one slenderness angle.
+    The arguments are those of `rocking.fragility`, without measures that refer to one slenderness angle. The result is
+    that of `rocking.suites.outcomes.suite_outcomes`, with the mirror image of each record after it, and with other
+    properties of the bodies.
     """
     chosen = measure_of(measure)
     if measure not in BODY_MEASURES:

@@ -21,13 +21,7 @@ def label(limit: str | float) -> str:
 
 
 def check_demands(demand: str | float | Iterable[str | float]) -> list[str | float]:
-    """The limit states, thresholds as floats.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If one is not allowed, there is none, or two are equal.
-    """
+    """The limit states, all different, thresholds as floats."""
     given = [demand] if isinstance(demand, str) or np.ndim(demand) == 0 else list(demand)  # type: ignore[arg-type]
     found: list[str | float] = []
     for limit in given:

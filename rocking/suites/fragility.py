@@ -147,18 +147,9 @@ def fragility_of_outcomes(
     confidence: float = 0.95,
     signs: int = 1,
 ) -> xr.Dataset:
-    """Counts, intervals and fitted curves from the outcomes of a suite, as `fragility` describes them.
+    """Counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
 
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.outcomes.suite_outcomes`.
-    demand : sequence
-        Limit states.
-    confidence : float
-        Of all intervals [-], (0, 1).
-    signs : int
-        Columns after each other that belong to one record: 2 with its mirror image.
+    `signs`: columns after each other that belong to one record, 2 with its mirror image.
     """
     limits = check_demands(list(demand))
     levels = outcomes["intensity"].values

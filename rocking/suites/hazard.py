@@ -101,21 +101,10 @@ def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
 
 
 def curve_rates(model: str, x: Array, rates: Array, median: Array, dispersion: Array) -> tuple[Array, Array]:
-    """Bounds of the annual rate at which curves reach their limit states, nan without a curve [1/year].
+    """Bounds of the annual rate at which curves reach their limit states, at least and at most, nan without a curve
+    [1/year].
 
-    Parameters
-    ----------
-    model : str
-        Kind of the curves.
-    x, rates : float array
-        The hazard curve.
-    median, dispersion : float array (...)
-        Of the curves.
-
-    Returns
-    -------
-    (float array (...), float array (...))
-        At least and at most, see `annual_rate`.
+    `x`, `rates`: the hazard curve; `median`, `dispersion` (...): of the curves of kind `model`. See `annual_rate`.
     """
     weights, nodes = hazard_quadrature(x, rates)
     found = np.asarray(curve_probability(model, nodes, median[..., None], dispersion[..., None]) @ weights)

@@ -88,17 +88,7 @@ def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
 def hazard_arrays(hazard: Any, measure: str | None = None) -> tuple[ArrayLike, ArrayLike]:
     """Intensities and annual rates of a hazard curve in any form: a file, a result of `read_hazard`, or two arrays.
 
-    Parameters
-    ----------
-    hazard : path, xarray.DataArray or pair of arrays
-        The curve.
-    measure : str, optional
-        That of the fragility, with which a curve that states one has to agree.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is nothing of these, of another measure, or a file that `read_hazard` refuses.
+    `measure` is that of the fragility, with which a curve that states one has to agree.
     """
     curve = read_hazard(hazard) if isinstance(hazard, str | PathLike) else hazard
     if isinstance(curve, xr.DataArray):

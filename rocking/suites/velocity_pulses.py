@@ -66,23 +66,12 @@ PERIOD_SEPARATION = 0.15
 
 @dataclass(frozen=True)
 class Family:
-    """A kind of velocity pulse.
+    """A kind of velocity pulse."""
 
-    Attributes
-    ----------
-    name : str
-        Of the pulse of `rocking._excitation.pulses` whose acceleration is its derivative.
-    basis : callable
-        From phi [rad], (n,), and gamma [-]: the basis functions, (1 or 2, n).
-    half_window : callable
-        From gamma: largest abs(phi) [rad] at which they do not vanish.
-    cycles : tuple of float
-        Values of gamma of the scan; one, without meaning, for a family that has none.
-    """
-
-    name: str
-    basis: Callable[[Array, float], Array]
-    half_window: Callable[[float], float]
+    name: str  # of the pulse of `rocking._excitation.pulses` whose acceleration is its derivative
+    basis: Callable[[Array, float], Array]  # from phi [rad], (n,), and gamma [-]: the basis functions, (1 or 2, n)
+    half_window: Callable[[float], float]  # from gamma: largest abs(phi) [rad] at which they do not vanish
+    # values of gamma of the scan; one, without meaning, for a family that has none
     cycles: tuple[float, ...] = (math.nan,)
 
     @property
@@ -172,19 +161,8 @@ def _slope_peak(pulse: AbstractPulse) -> float:
 def fit_velocity(velocity: Array, time_step: float, family: str) -> VelocityPulse:
     """The pulse of a family that takes most of the energy of a velocity.
 
-    Parameters
-    ----------
-    velocity : (n,) array
-        [m/s], at n >= 2 `SHORTEST_PERIOD` uniform times; not all zero.
-    time_step : float
-        [s], > 0.
-    family : str
-        One of `FAMILIES`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the velocity is too short or zero.
+    `velocity` (n,): [m/s], at n >= 2 `SHORTEST_PERIOD` uniform times; not all zero. `time_step`: [s], > 0. `family`:
+    one of `FAMILIES`. Raises `InvalidArgumentError` if the velocity is too short or zero.
     """
     chosen, values = FAMILIES[family], np.asarray(velocity, dtype=np.float64)
     if values.size < 2 * SHORTEST_PERIOD:
