@@ -32,26 +32,11 @@ def refine_chords(
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
     Regions of many impacts lie side by side with equal codes, and a chord can join two of them. It is taken out: the
-    curve is not found at its middle.
+    curve is not found at its middle. `largest`: distance in the plane of 1/a and log omega [-], `uncounted` for regions
+    of many impacts; `end`: width in log omega of the chords that end a region, which are not halved.
 
-    Parameters
-    ----------
-    chains : Chains
-        The curves.
-    classify : Classify
-        The solver, with region codes.
-    largest : float
-        Distance in the plane of 1/a and log omega [-].
-    uncounted : float
-        The same for regions of many impacts [-].
-    end : float
-        Width in log omega of the chords that end a region, which are not halved [-].
-
-    Returns
-    -------
-    chains, error, uncounted_error, unknown
-        The curves, bounds of the largest distance of a chord from its curve, without regions of
-        many impacts and for these, and the number of chords whose curve was not found at the middle.
+    Returns the curves, bounds of the largest distance of a chord from its curve, without regions of many impacts and
+    for these, and the number of chords whose curve was not found at the middle.
     """
     error = uncounted_error = 0.0
     unknown = 0

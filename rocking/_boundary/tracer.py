@@ -60,31 +60,12 @@ SEARCHES = 4
 
 
 class Tracer:
-    """Columns, and the joins between the regions of neighbouring ones.
+    """Columns on the lines omega = const of a grid, and the joins between the regions of neighbouring ones.
 
-    Parameters
-    ----------
-    log_omega : float array (columns,)
-        Lines omega = const of the grid, ascending [-].
-    eta : float
-        Restitution [-].
-    classify, classify_regions : Classify
-        The solver with layer codes and with region codes.
-    work : Work
-        Where both note their work.
-
-    Attributes
-    ----------
-    columns : list of Column
-        Of the lines of the grid.
-    joins : dict of lists
-        By panel, the index of its left column: pairs of ends of regions that follow each other on a curve.
-    thinnest : float
-        Width in 1/a below which a region of many impacts is not resolved [-].
-    end : float
-        Distance in log omega within which the end of such a region is known [-].
-    chord : float
-        Largest distance of a chord from the curve of such a region [-].
+    `classify`, `classify_regions`: the solver with layer codes and with region codes, which note their work in `work`.
+    `joins`: by the index of the left column of a panel, pairs of ends of regions that follow each other on a curve.
+    `thinnest`: width in 1/a below which a region of many impacts is not resolved; `end`: distance in log omega within
+    which the end of such a region is known; `chord`: largest distance of a chord from the curve of such a region [-].
     """
 
     def __init__(
