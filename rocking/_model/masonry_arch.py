@@ -31,21 +31,11 @@ THINNEST = 1e-6
 
 
 class Mechanism(NamedTuple):
-    """A mechanism of an arch.
+    """A mechanism of an arch."""
 
-    Attributes
-    ----------
-    joints : (int, int, int, int)
-        Joints that open, from 0 at the left springing.
-    linkage : FourBarLinkage
-        The linkage.
-    equation : LinearEquation
-        Its equation of motion.
-    """
-
-    joints: tuple[int, int, int, int]
-    linkage: FourBarLinkage
-    equation: LinearEquation
+    joints: tuple[int, int, int, int]  # joints that open, from 0 at the left springing
+    linkage: FourBarLinkage  # the linkage
+    equation: LinearEquation  # its equation of motion
 
     @property
     def uplift_acceleration(self) -> float:
@@ -112,10 +102,7 @@ class MasonryArch:
     def mechanism(self) -> Mechanism:
         """The mechanism of least uplift acceleration that opens under a ground acceleration of one direction.
 
-        Raises
-        ------
-        InvalidArgumentError
-            If the arch is too thin to stand under its weight, or does not open.
+        Raises `InvalidArgumentError` if the arch is too thin to stand under its weight, or does not open.
         """
         quadruples = itertools.combinations(range(self.voussoirs + 1), 4)
         found = [one for joints in quadruples for face in (-1, 1) if (one := self._opening(joints, face))]
