@@ -30,18 +30,7 @@ NO_CUBES = "no spectrum cubes; `make reproduce` builds them"
 
 
 class CubeCollection:
-    """The spectrum cubes below a results folder.
-
-    Parameters
-    ----------
-    results : path
-        Folder that the workflow fills; it need not exist yet.
-
-    Attributes
-    ----------
-    catalogue : Catalogue
-        All files of the folder.
-    """
+    """The spectrum cubes below a results folder, which the workflow fills; `catalogue` has all its files."""
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)

@@ -82,18 +82,10 @@ Flags = NDArray[np.bool_]
 
 
 class Window(NamedTuple):
-    """The slices from which points are interpolated.
+    """The slices from which points are interpolated."""
 
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        The one at or below the points first, then the others.
-    arguments : tuple
-        What the kernel needs of them.
-    """
-
-    slices: list[CubeSlice]
-    arguments: tuple[Any, ...]
+    slices: list[CubeSlice]  # the one at or below the points first, then the others
+    arguments: tuple[Any, ...]  # what the kernel needs of them
 
     @classmethod
     def of(cls, slices: list[CubeSlice], lower: int) -> Window:
