@@ -274,18 +274,9 @@ PAPER = {"figures": FIGURES, "claims": section(restitution=ETAS)}
 def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
     """Raise an error for a configuration that no run could finish.
 
-    Parameters
-    ----------
-    config : mapping
-        Of data sets, with the figures and claims of the paper or without; or of a suite of records, with the keys
-        `title` and `suite`.
-    folder : path
-        Folder of the file of the configuration.
-
-    Raises
-    ------
-    ConfigurationError
-        One line for the first invalid value: key, value and what is allowed.
+    `config`: of data sets, with the figures and claims of the paper or without; or of a suite of records, with the keys
+    `title` and `suite`. `folder`: folder of the file of the configuration. Raises `ConfigurationError`: one line for
+    the first invalid value: key, value and what is allowed.
     """
     if "suite" in config:
         _check_suite(config, folder)

@@ -26,12 +26,8 @@ NAME = re.compile(r"[a-z0-9_]{1,40}")
 
 
 def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:
-    """A pulse of a configuration; paths are relative to `folder`, that of the configuration.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is neither a name of the catalogue nor samples with another name.
+    """A pulse of a configuration: a name of the catalogue, or samples; paths are relative to `folder`, that of the
+    configuration.
     """
     if not isinstance(entry, Mapping):
         made = pulse(entry)
@@ -57,13 +53,7 @@ def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:
 
 
 def different(pulses: Iterable[str | SampledPulse]) -> dict[str, str | SampledPulse]:
-    """The pulses by their names.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If two have one name.
-    """
+    """The pulses by their names, which have to differ."""
     found: dict[str, str | SampledPulse] = {}
     for one in pulses:
         name = one if isinstance(one, str) else one.name

@@ -69,13 +69,7 @@ def write_record(record: Path, products: Iterable[Path]) -> None:
 
 
 def read_record(record: Path) -> dict[str, Any]:
-    """The digests that `write_record` wrote.
-
-    Raises
-    ------
-    ValueError
-        If the file is not a record.
-    """
+    """The digests that `write_record` wrote. Raises `ValueError` if the file is not a record."""
     content = json.loads(record.read_bytes())
     if not isinstance(content, dict) or not content:
         raise ValueError(f"{record}: no record of products")

@@ -40,14 +40,10 @@ class RunningError(RuntimeError):
 
 
 def acquire(folder: Path) -> None:
-    """Lock a folder until this process ends, and remove unfinished files of killed jobs.
+    """Lock a folder until this process ends, and remove unfinished files of killed jobs. Raises `RunningError` if it is
+    locked.
 
     If only the run was killed, this waits for its jobs, which end by themselves within moments.
-
-    Raises
-    ------
-    RunningError
-        If another run holds the lock.
     """
     folder = folder.resolve()
     if folder in _held:
@@ -90,10 +86,7 @@ def _locked(file: IO[str], timeout: float) -> bool:
 def join_run() -> None:
     """In a job: share the lock of the folder until the job ends, and end with the run.
 
-    Raises
-    ------
-    RunningError
-        If the run of this job was killed and another one has begun.
+    Raises `RunningError` if the run of this job was killed and another one has begun.
     """
     jobs = _held[FOLDER] = (FOLDER / "jobs.lock").open("a", encoding="utf-8")
     fcntl.flock(jobs, fcntl.LOCK_SH)

@@ -22,12 +22,8 @@ CASES = {
 
 
 def exact_curves(boundaries: Sequence[xr.Dataset]) -> Iterator[Claim]:
-    """(3.10), (3.18) and (3.20) with (3.21) against the traced points of their own mode.
-
-    Parameters
-    ----------
-    boundaries : sequence of datasets
-        Traced curves of slender blocks under the sine, one for each restitution.
+    """(3.10), (3.18) and (3.20) with (3.21) against the traced points of their own mode, of slender blocks under the
+    sine.
     """
     worst = dict.fromkeys(CASES, 0.0)
     count = dict.fromkeys(CASES, 0)

@@ -35,33 +35,15 @@ ABOUT = 0.25
 
 @dataclass(frozen=True)
 class Claim:
-    """One row of the table of claims.
+    """One row of the table of claims."""
 
-    Attributes
-    ----------
-    key : str
-        Short unique name.
-    place : str
-        Section and equation of the paper.
-    printed : str
-        The statement of the paper, in short or with its numbers.
-    criterion : str
-        What is tested, over which range, and the threshold; stated without looking at the result.
-    found : str
-        What we found, with the range where it holds.
-    verdict : str
-        One of `VERDICTS`.
-    numbers : mapping of str to float
-        The measured numbers behind `found` [-].
-    """
-
-    key: str
-    place: str
-    printed: str
-    criterion: str
-    found: str
-    verdict: str
-    numbers: dict[str, float] = field(default_factory=dict)
+    key: str  # short unique name
+    place: str  # section and equation of the paper
+    printed: str  # the statement of the paper, in short or with its numbers
+    criterion: str  # what is tested, over which range, and the threshold; stated without looking at the result
+    found: str  # what we found, with the range where it holds
+    verdict: str  # one of `VERDICTS`
+    numbers: dict[str, float] = field(default_factory=dict)  # the measured numbers behind `found` [-]
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:

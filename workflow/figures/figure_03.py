@@ -21,12 +21,7 @@ IMPACT_TIMES = 1500
 def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) -> xr.Dataset:
     """Amplitudes between which case 1.1 overturns, by (3.20) with (3.21) and by (3.30), over frequency ratio.
 
-    Parameters
-    ----------
-    restitution : sequence
-        eta [-].
-    frequency_ratio : mapping
-        low, high [-] and points of the axis.
+    `restitution`: eta [-]; `frequency_ratio`: low, high [-] and points of the axis.
     """
     eta = np.array(restitution)
     omega = np.linspace(frequency_ratio["low"], frequency_ratio["high"], int(frequency_ratio["points"]))

@@ -23,12 +23,7 @@ POINTS = 401
 def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Dataset:
     """Closed forms over frequency ratio, and the traced points of islands, as amplitudes a = a_g/(g alpha).
 
-    Parameters
-    ----------
-    boundaries : sequence of paths
-        Traced boundaries of the sine, one file for each restitution.
-    restitution : sequence
-        eta [-].
+    `boundaries`: traced boundaries of the sine, one file for each restitution; `restitution`: eta [-].
     """
     eta = np.array(restitution)
     tips = _tips(eta)

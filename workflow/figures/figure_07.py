@@ -25,15 +25,7 @@ def data(
 ) -> xr.Dataset:
     """Rotation and angular velocity in the groups of (4.1), over pulse and restitution.
 
-    Parameters
-    ----------
-    pulses : sequence of names
-    restitution : sequence
-        eta [-].
-    slenderness, frequency_ratio : float
-        1/a and omega [-].
-    duration : float
-        tau = p t at the end [-].
+    `restitution`: eta [-]; `slenderness`, `frequency_ratio`: 1/a and omega [-]; `duration`: tau = p t at the end [-].
     """
     tau = np.linspace(0.0, duration, SAMPLES)
     shape = (len(pulses), len(restitution), tau.size)

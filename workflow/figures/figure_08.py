@@ -30,14 +30,8 @@ def data(
 ) -> xr.Dataset:
     """Spectra in the groups of (4.11), g theta_max/a_g over omega, sampled with the solver up to their ends.
 
-    Parameters
-    ----------
-    restitution : sequence
-        eta [-].
-    slenderness : sequence
-        1/a [-], one row of panels each.
-    frequency_ratio : mapping
-        low and high [-] of what is shown.
+    `restitution`: eta [-]; `slenderness`: 1/a [-], one row of panels each; `frequency_ratio`: low and high [-] of what
+    is shown.
     """
     blocks = [SpectrumBlock(pulse, s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
     # theta/alpha times 1/a is g theta/a_g

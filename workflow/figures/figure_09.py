@@ -59,18 +59,9 @@ def data(
 ) -> xr.Dataset:
     """The traced boundary, thresholds of each block in SI units, and where blocks pass alpha and survive.
 
-    Parameters
-    ----------
-    boundaries : sequence of paths
-        Overturning boundaries of this restitution, one for each pulse.
-    alpha_deg : float
-        Slenderness angle [deg] of all blocks.
-    half_diagonal : sequence
-        R [m] of each block.
-    restitution : float
-        eta [-].
-    period : sequence
-        T_p [s] at which thresholds are found and checked.
+    `boundaries`: overturning boundaries of this restitution, one for each pulse; `alpha_deg`: slenderness angle [deg]
+    of all blocks; `half_diagonal`: R [m] of each block; `restitution`: eta [-]; `period`: T_p [s] at which thresholds
+    are found and checked.
     """
     alpha = float(np.radians(alpha_deg))
     pulses = [read_dataset(path).pulse.attrs["pulse_name"] for path in boundaries]
@@ -132,10 +123,7 @@ def upper_surviving_region(
 ) -> tuple[Floats, Floats]:
     """The largest range of amplitudes, up to `HIGHEST`, in which a block passes alpha and survives, for each omega.
 
-    Returns
-    -------
-    lower, upper : float arrays
-        Amplitudes a [-], bisected between nodes; nan where no node is inside.
+    Returns `lower`, `upper`: amplitudes a [-], bisected between nodes; nan where no node is inside.
     """
 
     def recovers(amplitude: Floats) -> NDArray[np.bool_]:
@@ -169,14 +157,7 @@ def block_thresholds(
 ) -> Iterator[dict[str, Any]]:
     """Peak accelerations at which the outcome of a block changes, from the groups, and outcomes integrated in SI units.
 
-    Parameters
-    ----------
-    pulse : str
-    block : RectangularBlock
-    period : float
-        T_p [s].
-    restitution : float
-        eta [-].
+    `period`: T_p [s]; `restitution`: eta [-].
     """
     p, frequency = block.frequency_parameter, 2 * np.pi / period
     groups = groups_of(Problem(block.alpha, p, block.uplift_acceleration, frequency), GroupSet.RIGID)  # (5.3)

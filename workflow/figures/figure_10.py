@@ -37,14 +37,8 @@ SLENDER = "#BDBDBD"
 def data(*, sine: Path, cosine: Path, restitution: float, alpha_deg: Sequence[float]) -> xr.Dataset:
     """Boundaries of both pulses at several angles, and the closed forms of the slender block under the sine.
 
-    Parameters
-    ----------
-    sine, cosine : path
-        Traced boundaries of this restitution.
-    restitution : float
-        eta [-].
-    alpha_deg : sequence
-        Slenderness angles [deg] beside the slender limit; angles of the files.
+    `sine`, `cosine`: traced boundaries of this restitution. `restitution`: eta [-]. `alpha_deg`: slenderness angles
+    [deg] beside the slender limit; angles of the files.
     """
     angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
     files = {"sine": sine, "cosine": cosine}

@@ -28,16 +28,8 @@ def data(
 ) -> xr.Dataset:
     """Spectra of each angle and of the slender limit, g theta_max/(a_g cos alpha) over omega, up to their ends.
 
-    Parameters
-    ----------
-    restitution : float
-        eta [-].
-    slenderness : sequence
-        g tan(alpha)/a_g [-], one row of panels each.
-    alpha_deg : sequence
-        Slenderness angles [deg].
-    frequency_ratio : mapping
-        low and high [-] of what is shown.
+    `restitution`: eta [-]; `slenderness`: g tan(alpha)/a_g [-], one row of panels each; `alpha_deg`: slenderness angles
+    [deg]; `frequency_ratio`: low and high [-] of what is shown.
     """
     angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
     blocks = [SpectrumBlock(pulse, s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]

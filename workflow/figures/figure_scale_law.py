@@ -25,14 +25,8 @@ LARGEST = 12.0
 def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: float) -> xr.Dataset:
     """Errors of the law where the block survives for every restitution.
 
-    Parameters
-    ----------
-    cubes : sequence of paths
-        Spectrum cubes of the sine, one for each restitution.
-    restitution : sequence
-        eta [-].
-    reference : float
-        The eta from which the law predicts the other peaks [-].
+    `cubes`: spectrum cubes of the sine, one for each restitution; `restitution`: eta [-]; `reference`: the eta from
+    which the law predicts the other peaks [-].
     """
     opened = [read_spectrum(path).sel(alpha=0.0) for path in cubes]
     eta = np.array(restitution)

@@ -42,16 +42,10 @@ def data(
 ) -> xr.Dataset:
     """Peaks of each angle on a grid, their spread over the angles, and the boundaries of overturning.
 
-    Parameters
-    ----------
-    alpha_deg : sequence
-        Slenderness angles [deg] beside the slender limit.
-    slenderness, frequency_ratio : mapping
-        low, high [-] and points of the axes g tan(alpha)/a_g, in equal steps, and omega_g/p, in equal ratios.
-    restitution : float, optional
-        eta [-] of all blocks; by default that of Housner for the angle of each, (2.4), 1 in the slender limit.
-    **files : path
-        Traced boundaries of this restitution for sine and cosine; without them they are traced.
+    `alpha_deg`: slenderness angles [deg] beside the slender limit. `slenderness`, `frequency_ratio`: low, high [-] and
+    points of the axes g tan(alpha)/a_g, in equal steps, and omega_g/p, in equal ratios. `restitution`: eta [-] of all
+    blocks; by default that of Housner for the angle of each, (2.4), 1 in the slender limit. **files: traced boundaries
+    of this restitution for sine and cosine; without them they are traced.
     """
     angles = np.array([0.0, *np.radians(alpha_deg)])
     eta = np.full(angles.size, restitution) if restitution is not None else housner_restitutions(angles)

@@ -113,13 +113,7 @@ def curve_variables(
 ) -> dict[str, xr.Variable]:
     """The spectra of several blocks as variables over `curve` and `point`.
 
-    Parameters
-    ----------
-    blocks : sequence of SpectrumBlock
-    window : mapping
-        low and high of omega [-].
-    scale : sequence of float
-        Factor of max |theta|/alpha for each block [-].
+    `window`: low and high of omega [-]; `scale`: factor of max |theta|/alpha for each block [-].
     """
     limits = window["low"], window["high"]
     found = [(k, branch) for k, block in enumerate(blocks) for branch in branches(block, limits)]

@@ -22,13 +22,7 @@ COLUMNS = 3
 
 
 def data(*, fragility: Path) -> xr.Dataset:
-    """Counts and curves of the first limit state.
-
-    Parameters
-    ----------
-    fragility : path
-        Fragility of the suite.
-    """
+    """Counts and curves of the first limit state of a suite."""
     given = read_dataset(fragility).isel(demand=0)
     levels = given.intensity.values
     fine = np.geomspace(levels[0], levels[-1], POINTS)
