@@ -29,11 +29,8 @@ from rocking.suites.configuration import suite_configuration
 from workflow.pulses import configured_pulse, different
 from workflow.scripts.axes import steps_between
 
-NODES = 200_000_000
-"""Largest number of nodes of the cubes of a tenth of the restitution, which are in memory together."""
-
-BYTES = 95
-"""Memory per node while cubes are solved [bytes], measured from 0.5 to 12 million nodes."""
+NODES = 200_000_000  # largest number of nodes of the cubes of a tenth of the restitution, which are in memory together
+BYTES = 95  # memory per node while cubes are solved [bytes], measured from 0.5 to 12 million nodes
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],

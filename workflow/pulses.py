@@ -21,8 +21,7 @@ from workflow import parts
 KEYS = ("name", "acceleration", "time", "period", "file")
 """Keys of a pulse given by samples: arguments of `rocking.SampledPulse`, or a file for acceleration and time."""
 
-NAME = re.compile(r"[a-z0-9_]{1,40}")
-"""Names of pulses, which name folders."""
+NAME = re.compile(r"[a-z0-9_]{1,40}")  # names of pulses, which name folders
 
 
 def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:

@@ -23,14 +23,9 @@ from rocking._datasets.checksum import PARTIAL
 RUN_ID = "ROCKING_RUN"
 """Environment variable: id of the process with which a process ends, the run for a job and make for a run."""
 
-RUN_NUMBER = "ROCKING_RUN_NUMBER"
-"""Environment variable: random number of the run of a job."""
-
-FOLDER = Path(".snakemake")
-"""Folder of the locks and of the files of Snakemake."""
-
-LOCK_TIMEOUT = 3.0
-"""Time for which a lock is tried [s]: the system needs a moment to end a process that was killed."""
+RUN_NUMBER = "ROCKING_RUN_NUMBER"  # environment variable: random number of the run of a job
+FOLDER = Path(".snakemake")  # folder of the locks and of the files of Snakemake
+LOCK_TIMEOUT = 3.0  # time for which a lock is tried [s]: the system needs a moment to end a process that was killed
 
 _held: dict[Path, IO[str]] = {}
 

@@ -21,8 +21,7 @@ MANIFEST = "results/manifest.json"
 LISTS = {MANIFEST: "manifest", "results/checks.txt": "check_results"}
 """Products that the manifest cannot list, and the job of each."""
 
-SUITES = "results/suites/*/manifest.json"
-"""Manifests of the suites of records."""
+SUITES = "results/suites/*/manifest.json"  # manifests of the suites of records
 
 
 def problems(folder: Path) -> Iterator[str]:

@@ -8,11 +8,8 @@ from numpy.typing import NDArray
 
 from rocking._boundary.curves import curves_at
 
-MARGIN = 0.1
-"""Share of a cell by which a curve is widened: a chord of a curve lies that close to it [-]."""
-
-STEP = 0.2
-"""Distance of the points by which a curve is followed, in cells [-]."""
+MARGIN = 0.1  # share of a cell by which a curve is widened: a chord of a curve lies that close to it [-]
+STEP = 0.2  # distance of the points by which a curve is followed, in cells [-]
 
 Array = NDArray[np.float64]
 

@@ -13,17 +13,13 @@ SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
 """Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the
 distance at which it may lie [-]."""
 
-WIDENINGS = 4
-"""Times that the distance at which the two sides of a curve are looked for is widened [-]."""
+WIDENINGS = 4  # times that the distance at which the two sides of a curve are looked for is widened [-]
 
 SURE = 0.5
 """Share of the largest distance below which it is not measured where the chords on both sides agree on it [-]."""
 
-FINE = 0.02
-"""Share of the largest distance to which a distance near it is measured [-]."""
-
-HALVINGS = 12
-"""Times that a chord is halved at most [-]."""
+FINE = 0.02  # share of the largest distance to which a distance near it is measured [-]
+HALVINGS = 12  # times that a chord is halved at most [-]
 
 
 def refine_chords(

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, refine_lines, without_layers
 
-THINNEST = 1e-6
-"""Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
+THINNEST = 1e-6  # width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]
 
 Index = NDArray[np.intp]
 

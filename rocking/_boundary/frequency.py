@@ -22,8 +22,7 @@ from rocking._model.outcome_code import SURVIVES
 from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
 
-NODES_PER_DECADE = 1000
-"""Nodes on which outcomes are first computed, before their changes are refined [-]."""
+NODES_PER_DECADE = 1000  # nodes on which outcomes are first computed, before their changes are refined [-]
 
 Flags = NDArray[np.bool_]
 

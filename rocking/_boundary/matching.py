@@ -18,15 +18,13 @@ from rocking._boundary.columns import Column
 from rocking._boundary.search import UNCOUNTED
 from rocking._numba.compilation import FloatArray, array_entry, array_kernel
 
-SECANT, STEP, CURVATURE, SPAN = range(4)
-"""Indices of the numbers of a trend."""
+SECANT, STEP, CURVATURE, SPAN = range(4)  # indices of the numbers of a trend
 
 KNOWN, UNKNOWN, SINGLE = 0.02, 0.03, 0.5
 """Cost of a threshold without partner, per step in log omega, if the slope of its curve is known or not, and if both
 columns have one threshold of its kind only [-]."""
 
-NEAR = 0.3
-"""Share of the distance to the next threshold up to which two thresholds can belong to one curve only [-]."""
+NEAR = 0.3  # share of the distance to the next threshold up to which two thresholds can belong to one curve only [-]
 
 PAIR, LEFT_ALONE, RIGHT_ALONE = range(3)
 """What the next thresholds of two columns do: they belong to one curve, or one of them has no partner."""
@@ -37,8 +35,7 @@ STRAIGHT = 0.05
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-Pairs = NDArray[np.int64]
-"""Indices (pairs, 2) of thresholds in a left and in a right column."""
+Pairs = NDArray[np.int64]  # indices (pairs, 2) of thresholds in a left and in a right column
 
 Side = tuple[Column, int, int]
 """A column, a threshold of it, and the region beside that: 0 for the one below, 1 for the one above."""

@@ -16,17 +16,10 @@ from rocking._boundary.matching import Pairs, Side, follow_trends
 from rocking._boundary.search import UNCOUNTED, Codes, Floats
 from rocking._model.outcome_code import SURVIVES
 
-PROBES = 81
-"""Most points by which a region is looked for in one column [-]."""
-
-ACROSS = np.linspace(0.02, 0.98, 9)
-"""Nodes of a column within a panel, as shares of its height [-]."""
-
-PREDICTED = 5
-"""Columns that are placed near the predicted end of one region at most; after them all lie halfway [-]."""
-
-SHORT = 0.1
-"""Share of the distance to the predicted end of a region by which a column stays before it [-]."""
+PROBES = 81  # most points by which a region is looked for in one column [-]
+ACROSS = np.linspace(0.02, 0.98, 9)  # nodes of a column within a panel, as shares of its height [-]
+PREDICTED = 5  # columns that are placed near the predicted end of one region at most; after them all lie halfway [-]
+SHORT = 0.1  # share of the distance to the predicted end of a region by which a column stays before it [-]
 
 NEARBY = np.array([-0.3, 0.0, 0.3])
 """The first nodes by which a region is looked for in it, in widths from the middle of the region [-]."""

@@ -23,8 +23,7 @@ from rocking._numba.compilation import contiguous_array
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.state import FULL_PRECISION
 
-RESOLUTION = 1e-12
-"""Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
+RESOLUTION = 1e-12  # width of the final bracket, in 1/a and in log omega; the curves are good to it
 
 ELASTIC_RESOLUTION = 1e-6
 """In place of `RESOLUTION` for elastic blocks, where one of the two regions has uncounted impacts [-].
@@ -32,14 +31,12 @@ ELASTIC_RESOLUTION = 1e-6
 Where a wavelet has just uplifted an elastic block, it strikes 200,000 times before the main part of the pulse.
 """
 
-ROUNDS = 32
-"""Times that brackets on a line are refined: each may uncover a further outcome between the two at its ends."""
+ROUNDS = 32  # times that brackets on a line are refined: each may uncover a further outcome between the two at its ends
 
 MANY_IMPACTS = 12
 """Overturning after more impacts than this, or after impacts that accumulate to rest, is one region [-]."""
 
-MOST_IMPACTS = 32
-"""Overturning after more impacts than this is not told apart even on one line [-]."""
+MOST_IMPACTS = 32  # overturning after more impacts than this is not told apart even on one line [-]
 
 MOST_COUNTED = 200
 """Overturning after more impacts than this is not told apart where the outcomes of one block are listed [-].
@@ -48,8 +45,7 @@ Of 495 lines of all pulses, 5 lose thresholds against an unlimited count, 22 wit
 restitutions of 0.99 and more take over 5 s, since each of thousands of counts is a region of its own.
 """
 
-UNCOUNTED = -1
-"""Region code of overturning whose impacts are not counted, and the `impacts` of its curves."""
+UNCOUNTED = -1  # region code of overturning whose impacts are not counted, and the `impacts` of its curves
 
 LARGE_MARGIN = 10.0
 """Margin beyond which its logarithm counts where points are interpolated [-].

@@ -21,17 +21,13 @@ from rocking._boundary.panels import Panel, probes_for_lost_regions
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
 from rocking._model.outcome_code import impacts_of_code
 
-BATCH_SIZE = 500_000
-"""Blocks that are solved in one call, about: a hundred megabytes [-]."""
-
-END = 1e-4
-"""Distance in log omega within which the end of a region is known [-]."""
+BATCH_SIZE = 500_000  # blocks that are solved in one call, about: a hundred megabytes [-]
+END = 1e-4  # distance in log omega within which the end of a region is known [-]
 
 CHORD = 1e-4
 """Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
 
-FINER = 8
-"""Parts into which the distance of two nodes is divided where blocks overturn after two impacts or more [-]."""
+FINER = 8  # parts into which the distance of two nodes is divided where blocks overturn after two impacts or more [-]
 
 NEARLY_ELASTIC = 0.9
 """Restitution above which regions of overturning after many impacts are resolved less finely than others [-].
@@ -55,8 +51,7 @@ EFFORT = 10_000_000
 It bounds the time for blocks that strike hundreds of times; `open_ends` counts what is left then.
 """
 
-SEARCHES = 4
-"""Times that a region which goes on beyond a column may start the search in the next ones anew [-]."""
+SEARCHES = 4  # times that a region which goes on beyond a column may start the search in the next ones anew [-]
 
 
 class Tracer:

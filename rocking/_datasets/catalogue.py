@@ -24,8 +24,7 @@ from rocking._datasets.cube import decode_dataset
 CLOCK_TICK = 20_000_000
 """Changes of a file within this time may have the same time stamp [ns]: file system clocks advance by 1 to 10 ms."""
 
-MAX_READS = 5
-"""Attempts to read a file that changes while it is read [-]."""
+MAX_READS = 5  # attempts to read a file that changes while it is read [-]
 
 _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")  # one part of a name: neither ".." nor a hidden file
 

@@ -8,8 +8,7 @@ from math import isfinite
 from types import SimpleNamespace
 from typing import Any
 
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
-"""Text that begins so is a formula for a spreadsheet."""
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # text that begins so is a formula for a spreadsheet
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:

@@ -43,8 +43,7 @@ from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking._model.fields import CUBE_FIELDS, DERIVED_FIELDS
 from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 
-DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
-"""Dimensions of a spectrum cube, in order."""
+DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")  # dimensions of a spectrum cube, in order
 
 AXES: dict[str, dict[str, Any]] = {
     "alpha": {

@@ -9,14 +9,9 @@ import numpy as np
 
 from rocking._excitation.shapes import AbstractPulse
 
-NODES = 40
-"""Gauss points on each monotone piece [-]: exact to rounding for the pulses by name."""
-
-HALVINGS = 60
-"""Halvings of the bracket of a zero of f [-]."""
-
-STILL = 1e-9
-"""Largest final velocity over the largest one of a pulse that leaves the ground at rest [-]."""
+NODES = 40  # Gauss points on each monotone piece [-]: exact to rounding for the pulses by name
+HALVINGS = 60  # halvings of the bracket of a zero of f [-]
+STILL = 1e-9  # largest final velocity over the largest one of a pulse that leaves the ground at rest [-]
 
 
 @dataclass(frozen=True)

@@ -18,14 +18,9 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._excitation.stationary import sign_changes
 
-DEGREE = 15
-"""Degree of the polynomials, below that of the Taylor steps, which therefore expand them exactly."""
-
-MAX_POLYNOMIALS = 128
-"""Most pieces: about 40 periods of a modulated sine."""
-
-SHORTEST = 1e-9
-"""Length of a piece over the window at which the function is not smooth."""
+DEGREE = 15  # degree of the polynomials, below that of the Taylor steps, which therefore expand them exactly
+MAX_POLYNOMIALS = 128  # most pieces: about 40 periods of a modulated sine
+SHORTEST = 1e-9  # length of a piece over the window at which the function is not smooth
 
 ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
 """Error allowed relative to max |f| + max |phi f'|, which is the rounding of the value and of the phase."""
@@ -34,8 +29,7 @@ WIGGLE = 64.0 * float(np.finfo(np.float64).eps)
 """Change of f over max |f| that is rounding: extremes that differ by less do not count."""
 
 _NODES = chebyshev.chebpts1(2 * (DEGREE + 1))
-_POINTS = np.concatenate([_NODES, chebyshev.chebpts2(2 * DEGREE + 5)])
-"""Points of the fit, then those that test it."""
+_POINTS = np.concatenate([_NODES, chebyshev.chebpts2(2 * DEGREE + 5)])  # points of the fit, then those that test it
 
 _SPECTRUM = chebyshev.chebvander(_NODES, _NODES.size - 1).T * (2.0 / _NODES.size)
 _SPECTRUM[0] *= 0.5  # from values at the nodes to coefficients of the Chebyshev series

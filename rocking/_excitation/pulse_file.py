@@ -14,15 +14,9 @@ from rocking._base.errors import InvalidArgumentError, RecordFileError
 from rocking._excitation.records.readers.columns import read_samples
 from rocking._excitation.records.readers.lines import TextFile
 
-MAX_BYTES = 8_000_000
-"""Largest file of a pulse [bytes]: 100,000 times and accelerations of all digits."""
-
-KEYS = ("acceleration", "time", "period", "name")
-"""Keys of a JSON file, arguments of `rocking.SampledPulse`."""
-
-
-MAX_TEXT = 60
-"""Characters of a value that an error repeats."""
+MAX_BYTES = 8_000_000  # largest file of a pulse [bytes]: 100,000 times and accelerations of all digits
+KEYS = ("acceleration", "time", "period", "name")  # keys of a JSON file, arguments of `rocking.SampledPulse`
+MAX_TEXT = 60  # characters of a value that an error repeats
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,8 @@ from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import AbstractPulse, checked_number, checked_numbers, mirrored_name
 from rocking._excitation.stationary import sign_changes
 
-MAX_POLYNOMIAL = 4
-"""Most coefficients of a wavelet's polynomial."""
-
-MAX_DECAY = 1.25
-"""Largest sqrt(spread)/(2 omega) [-] at which the arcs under a wavelet are accurate to rounding."""
+MAX_POLYNOMIAL = 4  # most coefficients of a wavelet's polynomial
+MAX_DECAY = 1.25  # largest sqrt(spread)/(2 omega) [-] at which the arcs under a wavelet are accurate to rounding
 
 Array = NDArray[np.float64]
 

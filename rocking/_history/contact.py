@@ -34,8 +34,7 @@ MAX_STEPS = 250_000
 LAST_FLIGHT = 100.0
 """Longest flight of free rocking [tau]: within a rounding of the unstable equilibrium it lasts 2 ln(2/1e-16) = 75."""
 
-EVENT_OFFSET = 1e-12
-"""Relative distance in time of the samples on either side of an event."""
+EVENT_OFFSET = 1e-12  # relative distance in time of the samples on either side of an event
 
 PRACTICAL_FRICTION = 0.7
 """Coefficient of friction that a dry contact reliably provides [-]: rough concrete on concrete, EN 1992-1-1, 6.2.5."""

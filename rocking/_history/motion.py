@@ -50,11 +50,8 @@ from rocking._solver.state import (
 
 Floats = NDArray[np.float64]
 
-FREE_DURATION = 8.0
-"""Default duration of free rocking after the pulse [tau]."""
-
-MAX_FREE_IMPACTS = 10_000
-"""Largest number of impacts of free rocking."""
+FREE_DURATION = 8.0  # default duration of free rocking after the pulse [tau]
+MAX_FREE_IMPACTS = 10_000  # largest number of impacts of free rocking
 
 MAX_FLIGHTS = IMPACT_LIMIT + 12 * (MAX_PIECES + 1)
 """Most flights under a pulse: three more impacts and one uplift in each of the three intervals of a piece."""

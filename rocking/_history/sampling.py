@@ -33,11 +33,8 @@ from rocking._solver.taylor.events import evaluate_series
 from rocking._solver.taylor.flight import MAX_STEPS, impact_in_step
 from rocking._solver.taylor.step import set_edge_lane, take_step
 
-TAU, ROTATION, VELOCITY = range(3)
-"""Rows of a history."""
-
-REST_VELOCITY = 1e-7
-"""Velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha."""
+TAU, ROTATION, VELOCITY = range(3)  # rows of a history
+REST_VELOCITY = 1e-7  # velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha
 
 
 @light_entry

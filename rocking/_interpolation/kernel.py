@@ -26,8 +26,7 @@ from rocking._interpolation.stencils import (
 from rocking._model.outcome import Outcome
 from rocking._numba.compilation import FloatArray, entry, kernel
 
-UNKNOWN_IMPACTS = -1
-"""Value of `impacts` where the nodes do not determine the number."""
+UNKNOWN_IMPACTS = -1  # value of `impacts` where the nodes do not determine the number
 
 _RECOVERS = int(Outcome.RECOVERS)
 
@@ -47,8 +46,7 @@ NODE = np.dtype(
 """The variables of a cube from which points are interpolated, at one node; `counted`: whether its number of impacts is
 certain in the cell above it (`rocking._lookup.cube_slice.counted_cells`)."""
 
-Nodes = NDArray[np.void]
-"""The nodes (angles, n, m) of a cube, of type `NODE`."""
+Nodes = NDArray[np.void]  # the nodes (angles, n, m) of a cube, of type `NODE`
 
 FourSlices = tuple[Nodes, Nodes, Nodes, Nodes]
 

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-STENCIL_SIZE = 4
-"""Nodes of a stencil in one direction, and slices of a window: the interpolant is exact for cubics."""
+STENCIL_SIZE = 4  # nodes of a stencil in one direction, and slices of a window: the interpolant is exact for cubics
 
 
 def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:

@@ -72,11 +72,8 @@ class Points:
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
 
-SAFETY = 6.0
-"""Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
-
-MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
-"""Fewest and most points that a thread interpolates at a time."""
+SAFETY = 6.0  # ratio of the error bound to the measured errors [-], which are known at a few points of each cell only
+MIN_CHUNK, MAX_CHUNK = 32_768, 262_144  # fewest and most points that a thread interpolates at a time
 
 Flags = NDArray[np.bool_]
 

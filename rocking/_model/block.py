@@ -18,8 +18,7 @@ from rocking._model.body import AbstractBody, Array, Edge
 from rocking._model.checks import check_lengths
 from rocking._model.reactions import INERTIA_RATIO
 
-Number = Any
-"""A float; of an array of blocks an array of them."""
+Number = Any  # a float; of an array of blocks an array of them
 
 
 @dataclass(frozen=True, init=False, eq=False)

@@ -200,8 +200,7 @@ SOLVED_FIELDS = (
 DERIVED_FIELDS = (RESIDUAL_ENERGY,)
 """Numbers that are computed from fields of a response when they are read, without a kernel."""
 
-RESPONSE_FIELDS = (*SOLVED_FIELDS, *DERIVED_FIELDS)
-"""Fields of `rocking.Response`, in order."""
+RESPONSE_FIELDS = (*SOLVED_FIELDS, *DERIVED_FIELDS)  # fields of `rocking.Response`, in order
 
 BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, FROM_CUBE)
 """Fields of a response with an error bound, of an interpolated cube or of the solver."""

@@ -20,14 +20,9 @@ from rocking._base.errors import InvalidArgumentError, integer, number, positive
 from rocking._base.units import Scalar
 from rocking._model.linkage import FourBarLinkage, LinearEquation, Link, VelocityField, restitution_of_impact
 
-MOST_VOUSSOIRS = 24
-"""Largest number of voussoirs: the number of mechanisms grows with its fourth power."""
-
-RADII = 1e-3, 1e6
-"""Smallest and largest radius [m]."""
-
-THINNEST = 1e-6
-"""Smallest thickness over the radius [-]; such an arch does not stand."""
+MOST_VOUSSOIRS = 24  # largest number of voussoirs: the number of mechanisms grows with its fourth power
+RADII = 1e-3, 1e6  # smallest and largest radius [m]
+THINNEST = 1e-6  # smallest thickness over the radius [-]; such an arch does not stand
 
 
 class Mechanism(NamedTuple):

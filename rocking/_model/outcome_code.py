@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from rocking._model.outcome import Outcome
 from rocking._numba.compilation import jitable
 
-SURVIVES = 0
-"""Code of a block that comes to rest or does not uplift."""
+SURVIVES = 0  # code of a block that comes to rest or does not uplift
 
 _DIRECTLY = int(Outcome.OVERTURNED_DIRECTLY)
 _RECOVERS = int(Outcome.RECOVERS)

@@ -31,8 +31,7 @@ RESTITUTION = Parameter("restitution", "eta", "-", 0.0, 1.0, "both", "coefficien
 ALPHA = Parameter("alpha", "alpha", "rad", 0.0, 1.57, "both", "slenderness angle (slender limit without)")
 """Values between 0 and `SMALLEST_ALPHA` are not accepted. At pi/2 tan(alpha) is infinite."""
 
-SMALLEST_ALPHA = 1e-12
-"""Smallest slenderness angle of (2.2) [rad]."""
+SMALLEST_ALPHA = 1e-12  # smallest slenderness angle of (2.2) [rad]
 
 RELATIVE_TOLERANCE = Parameter(
     "relative_tolerance", "", "-", 1e-13, 1e-3, "both", "relative error of the peak allowed for speed"

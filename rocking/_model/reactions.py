@@ -18,8 +18,7 @@ from rocking._model.parameters import RESTITUTION
 
 Floats = NDArray[np.float64]
 
-INERTIA_RATIO = 0.75
-"""R p^2/g = 3/4 for a rectangle that rotates about its corner, below (2.2)."""
+INERTIA_RATIO = 0.75  # R p^2/g = 3/4 for a rectangle that rotates about its corner, below (2.2)
 
 
 @dataclass(frozen=True)

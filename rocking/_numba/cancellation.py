@@ -21,8 +21,7 @@ from rocking._base.errors import StoppedError
 
 T = TypeVar("T")
 
-NEVER_STOPPED = np.zeros(1, np.uint8)
-"""Flag of kernels that are not cancelled."""
+NEVER_STOPPED = np.zeros(1, np.uint8)  # flag of kernels that are not cancelled
 
 
 class StopFlag:

@@ -211,11 +211,8 @@ store = instruction(
 )
 """store(array, row, x): set a row."""
 
-splat = instruction(_splat, _VECTOR_TYPE, types.float64)
-"""splat(number): the number in every lane."""
-
-absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
-"""absolute(x), lane by lane."""
+splat = instruction(_splat, _VECTOR_TYPE, types.float64)  # splat(number): the number in every lane
+absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)  # absolute(x), lane by lane
 
 maximum = instruction(
     lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
@@ -240,11 +237,8 @@ approx_exp2 = instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
-square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)
-"""square_root(x), lane by lane, correctly rounded."""
-
-power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)
-"""2**x of integers x from -1022 to 1023."""
+square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)  # square_root(x), lane by lane, correctly rounded
+power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)  # 2**x of integers x from -1022 to 1023
 
 sine_of_quadrant = instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
 """sine_of_quadrant(n, s, c): sin(r + n pi/2) of integers n from s = sin(r) and c = cos(r)."""

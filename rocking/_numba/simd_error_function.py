@@ -6,8 +6,7 @@ from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
 
-CENTRE = 3.75
-"""x at which the variable t of the polynomial is 0 (Shepherd & Laframboise 1981)."""
+CENTRE = 3.75  # x at which the variable t of the polynomial is 0 (Shepherd & Laframboise 1981)
 
 
 @kernel

@@ -10,8 +10,7 @@ from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimu
 from rocking._numba.simd_exponentials import arccosine
 from rocking._solver.excitation import shapes_and_slopes
 
-MAX_NEWTON_STEPS = 100
-"""Steps after which the bracketed Newton iteration stops; bisection alone needs 55."""
+MAX_NEWTON_STEPS = 100  # steps after which the bracketed Newton iteration stops; bisection alone needs 55
 
 
 @kernel

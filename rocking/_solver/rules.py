@@ -36,11 +36,8 @@ from rocking._solver.state import set_empty_response
 IMPACT_LIMIT = 200_000
 """Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
 
-MODES_PER_UPLIFT = 65536
-"""Number of peak modes reserved for the motion between two uplifts from rest."""
-
-MAX_UPLIFT_MODE = 32_767
-"""Largest number of uplifts that the mode of a peak counts: it is an int32."""
+MODES_PER_UPLIFT = 65536  # number of peak modes reserved for the motion between two uplifts from rest
+MAX_UPLIFT_MODE = 32_767  # largest number of uplifts that the mode of a peak counts: it is an int32
 
 NO_UPLIFT, RECOVERS, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""

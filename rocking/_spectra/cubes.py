@@ -48,8 +48,7 @@ FIRST_PROBES = 2
 REFINE_TOL = 1e-6
 """Error at the first probes, in a cell or one next to it, above which the other probes are used as well [-]."""
 
-MAX_ERROR = 5e-5
-"""Largest measured error of a cell that is interpolated [-]."""
+MAX_ERROR = 5e-5  # largest measured error of a cell that is interpolated [-]
 
 PROBE_TOLERANCE = 1e-8
 """Relative error of the peaks with which interpolation is compared [-]: small compared with errors that matter."""

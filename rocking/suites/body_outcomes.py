@@ -24,8 +24,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.suites.intensity import measure_of
 from rocking.suites.outcomes import FIELDS, check_levels, checked_levels, checked_records, labelled_outcomes
 
-SIGNS = 2
-"""Motions of one record: as recorded and mirrored [-]."""
+SIGNS = 2  # motions of one record: as recorded and mirrored [-]
 
 BODY_MEASURES = "pga", "pgv", "pga_ratio"
 """Measures that two different edges leave defined; uplift is that of the weaker edge."""

@@ -45,11 +45,8 @@ STATED_BY_FILES: dict[str, Any] = dict.fromkeys(
 )
 """The same in its section `records`."""
 
-MAX_POINTS = 10_000
-"""Most levels, and most points of one axis of the map."""
-
-MAX_CELLS = 1_000_000
-"""Most points of the map."""
+MAX_POINTS = 10_000  # most levels, and most points of one axis of the map
+MAX_CELLS = 1_000_000  # most points of the map
 
 
 @dataclass(frozen=True)

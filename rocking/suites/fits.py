@@ -37,8 +37,7 @@ from rocking.suites.curve import LINKS, Link, curve_probability
 
 Array = NDArray[np.float64]
 
-LARGEST_SLOPE = 1e8
-"""b at which a fit counts as a step [-]; it is reached only by data that are separated to rounding."""
+LARGEST_SLOPE = 1e8  # b at which a fit counts as a step [-]; it is reached only by data that are separated to rounding
 
 
 class FitStatus(IntEnum):

@@ -28,16 +28,14 @@ from rocking.suites.hazard_files import hazard_arrays
 
 Array = NDArray[np.float64]
 
-STEP = 0.02
-"""Largest part of ln x that is integrated at once [-], by `NODES` Gauss points."""
+STEP = 0.02  # largest part of ln x that is integrated at once [-], by `NODES` Gauss points
 
 NODES = 4
 
 NARROW, PARTS = 0.1, np.linspace(-8.0, 8.0, 65)
 """Dispersion below which the parts are divided around the median [-], and where, in dispersions from it."""
 
-NEGLIGIBLE = 0.01
-"""Share of the rate that intensities below the hazard curve may add without a word [-]."""
+NEGLIGIBLE = 0.01  # share of the rate that intensities below the hazard curve may add without a word [-]
 
 
 Hazard: TypeAlias = "str | PathLike[str] | xr.DataArray | tuple[ArrayLike, ArrayLike]"

@@ -39,8 +39,7 @@ LABELS = {"Peak Ground Acceleration": "PGA", "Peak Ground Velocity": "PGV"}
 
 OWN = "two columns with the header `pga [g],annual rate [1/year]`"
 
-MAX_BYTES = 10_000_000
-"""Largest file that is read."""
+MAX_BYTES = 10_000_000  # largest file that is read
 
 
 def read_hazard(path: str | PathLike[str]) -> xr.DataArray:

@@ -41,11 +41,8 @@ from rocking.suites.outcomes import (
 
 Array = NDArray[np.float64]
 
-RESTITUTION_STEP = 0.05
-"""Change of the coefficient of restitution by default [-]."""
-
-REFINEMENT = 2
-"""Samples into which one is divided by band-limited interpolation."""
+RESTITUTION_STEP = 0.05  # change of the coefficient of restitution by default [-]
+REFINEMENT = 2  # samples into which one is divided by band-limited interpolation
 
 VARIANTS = {
     "low_restitution": "with the smaller restitution",

@@ -39,29 +39,17 @@ from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse
 
 Array = NDArray[np.float64]
 
-MAX_CYCLES = 10.0
-"""Largest gamma of a fit [-]. Pulses of the cited study have 1 to 3."""
-
-MIN_CYCLES = 1.0 + 1e-6
-"""Smallest gamma of a fit [-]; at 1 a term of the acceleration vanishes."""
-
-SHORTEST_PERIOD = 8
-"""Shortest period of a fit, in samples."""
+MAX_CYCLES = 10.0  # largest gamma of a fit [-]. Pulses of the cited study have 1 to 3
+MIN_CYCLES = 1.0 + 1e-6  # smallest gamma of a fit [-]; at 1 a term of the acceleration vanishes
+SHORTEST_PERIOD = 8  # shortest period of a fit, in samples
 
 PERIOD_RATIO = 1.08
 """Ratio of the periods of the scan [-]; the correlation with a pulse falls by a few percent between them."""
 
-SCANNED_CYCLES = (1.1, 1.4, 1.8, 2.4, 3.2, 4.5, 6.5, 9.5)
-"""Values of gamma of the scan [-]."""
-
-SAMPLES_PER_PERIOD = 24
-"""Samples to which the velocity is averaged for the scan; the refinement uses all samples."""
-
-STARTS = 4
-"""Refined cells of the scan, with periods that differ by `PERIOD_SEPARATION`."""
-
-PERIOD_SEPARATION = 0.15
-"""Smallest difference of ln(T_p) between refined cells [-]."""
+SCANNED_CYCLES = (1.1, 1.4, 1.8, 2.4, 3.2, 4.5, 6.5, 9.5)  # values of gamma of the scan [-]
+SAMPLES_PER_PERIOD = 24  # samples to which the velocity is averaged for the scan; the refinement uses all samples
+STARTS = 4  # refined cells of the scan, with periods that differ by `PERIOD_SEPARATION`
+PERIOD_SEPARATION = 0.15  # smallest difference of ln(T_p) between refined cells [-]
 
 
 @dataclass(frozen=True)

@@ -95,8 +95,7 @@ def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
     )
 
 
-STEP = 1e-9
-"""Relative distance from a curve at which blocks are tested on either side [-]."""
+STEP = 1e-9  # relative distance from a curve at which blocks are tested on either side [-]
 
 
 def sides_of_limit() -> tuple[Floats, Flags, Flags]:

@@ -14,23 +14,12 @@ IN_RANGE = "holds within stated range"
 FAILS = "does not hold"
 VERDICTS = (HOLDS, IN_RANGE, FAILS)
 
-PART = 0.5
-"""Share of what was tested from which a claim is said to hold within a stated range [-]."""
-
-SAME = 1e-9
-"""Difference, relative or in 1/a, up to which two results are the same: "exact", "equal", "collapse" [-]."""
-
-CLOSE = 0.01
-"""Relative difference up to which two results "coincide" or are in "excellent" agreement [-]."""
-
-SMALL = 0.05
-"""Relative difference that is "small", "weak", "practically" nothing, or "accurate" [-]."""
-
-FAIR = 0.20
-"""Relative difference that is "satisfactory" [-]."""
-
-ABOUT = 0.25
-"""Relative difference up to which a number is "about" or "approximately" another [-]."""
+PART = 0.5  # share of what was tested from which a claim is said to hold within a stated range [-]
+SAME = 1e-9  # difference, relative or in 1/a, up to which two results are the same: "exact", "equal", "collapse" [-]
+CLOSE = 0.01  # relative difference up to which two results "coincide" or are in "excellent" agreement [-]
+SMALL = 0.05  # relative difference that is "small", "weak", "practically" nothing, or "accurate" [-]
+FAIR = 0.20  # relative difference that is "satisfactory" [-]
+ABOUT = 0.25  # relative difference up to which a number is "about" or "approximately" another [-]
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ from rocking.paper.overturning import (
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import ABOUT, CLOSE, FAIR, SAME, SMALL, Claim, percent, verdict_of
 
-WINDOW = 0.25
-"""Distance from tau = 1 within which (3.27) is tested [-]."""
+WINDOW = 0.25  # distance from tau = 1 within which (3.27) is tested [-]
 
 
 class Impacts(NamedTuple):

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-TESTS = "tests/paper/test_errata.py"
-"""The file of the tests that show the misprints."""
+TESTS = "tests/paper/test_errata.py"  # the file of the tests that show the misprints
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,7 @@ from rocking.paper.overturning import amplitude_of_impact_time, case_1_1_amplitu
 from rocking.plot.style import GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted
 
-IMPACT_TIMES = 1500
-"""Times of impact among which solutions beyond the pulse are looked for [-]."""
+IMPACT_TIMES = 1500  # times of impact among which solutions beyond the pulse are looked for [-]
 
 
 def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) -> xr.Dataset:

@@ -18,8 +18,7 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-EXACT = 1e-9
-"""Relative difference up to which (4.13) and the solver are considered equal [-]."""
+EXACT = 1e-9  # relative difference up to which (4.13) and the solver are considered equal [-]
 
 HOLDS = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 0.7}
 APPROXIMATE = {"color": "black", "linestyle": (0, (1, 2)), "linewidth": 0.7}

@@ -25,26 +25,16 @@ from workflow.figures.style import panel_letters, plotted
 
 Floats = NDArray[np.float64]
 
-HIGHEST = 12.0
-"""Largest amplitude a shown [-], as in figure 4."""
-
-WIDEST = {"sine": 7.2, "cosine": 6.0}
-"""Largest frequency ratio shown, beyond the tip of the overturning region [-]."""
+HIGHEST = 12.0  # largest amplitude a shown [-], as in figure 4
+WIDEST = {"sine": 7.2, "cosine": 6.0}  # largest frequency ratio shown, beyond the tip of the overturning region [-]
 
 FEWEST, NODES = 0.2, 301
 """Smallest frequency ratio shown, and number of grid nodes in each direction for `upper_surviving_region` [-]."""
 
-HALVINGS = 40
-"""Times that the distance of two nodes is halved to find a bound of the upper surviving region [-]."""
-
-MAIN = 1
-"""Thresholds of overturning after more impacts than this are marked in the inset only [-]."""
-
-DETAIL = ((0.4, 2.0), (1.03, 1.38))
-"""Limits of omega and of a in the inset of the cosine [-]."""
-
-STEP = 1e-6
-"""Relative distance from a threshold at which the block is integrated in SI units [-]."""
+HALVINGS = 40  # times that the distance of two nodes is halved to find a bound of the upper surviving region [-]
+MAIN = 1  # thresholds of overturning after more impacts than this are marked in the inset only [-]
+DETAIL = ((0.4, 2.0), (1.03, 1.38))  # limits of omega and of a in the inset of the cosine [-]
+STEP = 1e-6  # relative distance from a threshold at which the block is integrated in SI units [-]
 
 COLOURS, SURVIVES = (BLUE, VERMILION), "#D9D9D9"
 

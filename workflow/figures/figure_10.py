@@ -19,8 +19,7 @@ from workflow.figures.style import panel_letters, plotted
 WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 5.6)}
 """Frequency ratios shown [-]; beyond them almost no block overturns at the amplitudes shown."""
 
-AMPLITUDES = (1.0, 12.0)
-"""Amplitudes a shown [-], as in figure 4."""
+AMPLITUDES = (1.0, 12.0)  # amplitudes a shown [-], as in figure 4
 
 DETAILS = {
     "sine": [((0.10, 0.70, 0.31, 0.27), ((0.3, 1.2), (1.03, 1.13)))],

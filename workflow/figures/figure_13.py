@@ -15,8 +15,7 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-LARGEST_DIFFERENCE = 10.0
-"""Largest difference to the slender block that the lower panels show [%]."""
+LARGEST_DIFFERENCE = 10.0  # largest difference to the slender block that the lower panels show [%]
 
 
 def data(

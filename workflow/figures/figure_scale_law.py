@@ -18,8 +18,7 @@ from rocking.paper.scale_law import largest_deviation, restitution_exponent
 from rocking.plot.style import WIDTH
 from workflow.figures.style import panel_letters, plotted
 
-LARGEST = 12.0
-"""Largest amplitude a shown [-], as in figure 4."""
+LARGEST = 12.0  # largest amplitude a shown [-], as in figure 4
 
 
 def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: float) -> xr.Dataset:

@@ -23,11 +23,8 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-PEAKS, SPREADS = (0.003, 1.0), (0.1, 100.0)
-"""Ranges of the colours of the peaks [-] and of the spread [%]."""
-
-NODES = 81
-"""Nodes in each direction of the grid from which boundaries are traced where no file holds them."""
+PEAKS, SPREADS = (0.003, 1.0), (0.1, 100.0)  # ranges of the colours of the peaks [-] and of the spread [%]
+NODES = 81  # nodes in each direction of the grid from which boundaries are traced where no file holds them
 
 OVERTURNS = "#E3E3E3"
 

@@ -21,14 +21,9 @@ from workflow.figures.style import plotted
 
 Floats = NDArray[np.float64]
 
-STRAIGHT = 5e-4
-"""Largest distance between a curve and the straight line between two of its points, in theta/alpha [-]."""
-
-FIRST_POINTS = 200
-"""Points per decade of omega from which the sampling starts [-]."""
-
-ROUNDS = 40
-"""Times that intervals are halved: the shortest one is far below the resolution of the boundary [-]."""
+STRAIGHT = 5e-4  # largest distance between a curve and the straight line between two of its points, in theta/alpha [-]
+FIRST_POINTS = 200  # points per decade of omega from which the sampling starts [-]
+ROUNDS = 40  # times that intervals are halved: the shortest one is far below the resolution of the boundary [-]
 
 
 class SpectrumBlock(NamedTuple):

@@ -17,8 +17,7 @@ from rocking.suites.curve import curve_probability
 from workflow.figures.style import panel_letters, plotted
 from workflow.figures.suite_outcomes import block_title, intensity_label
 
-COLUMNS = 3
-"""Panels in a row."""
+COLUMNS = 3  # panels in a row
 
 
 def data(*, fragility: Path) -> xr.Dataset:

@@ -12,8 +12,7 @@ from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 
-HIGHEST_VERTICAL_SCALE = 1e6
-"""Largest factor of a vertical component [-]."""
+HIGHEST_VERTICAL_SCALE = 1e6  # largest factor of a vertical component [-]
 
 FLIGHT_MARGIN = 1e-9
 """Relative distance of `highest_vertical_scale` from the factor at which the acceleration reaches -g [-]."""

@@ -15,8 +15,7 @@ from rocking._numba.simd_exponentials import exponential
 
 WAVELET = int(Family.WAVELET)
 
-WAVELET_SERIES_LENGTH = 23
-"""Length of the series at the start of the slender arcs under wavelets."""
+WAVELET_SERIES_LENGTH = 23  # length of the series at the start of the slender arcs under wavelets
 
 WAVELET_FIELDS: Fields = [
     ("spread", np.float64),

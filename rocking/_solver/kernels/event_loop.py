@@ -22,8 +22,7 @@ from rocking._solver.rules import (
 )
 from rocking._solver.state import IMPACT, OVERTURNS
 
-ROUNDING = 1e-15
-"""Excess of |a f| over 1 at the start of the pulse that is within rounding [-]."""
+ROUNDING = 1e-15  # excess of |a f| over 1 at the start of the pulse that is within rounding [-]
 
 
 @kernel

@@ -31,8 +31,7 @@ from rocking._solver.rules import (
     set_sign,
 )
 
-ROUNDING = 1e-15
-"""Share of a sample interval in which a flight is within rounding [-]."""
+ROUNDING = 1e-15  # share of a sample interval in which a flight is within rounding [-]
 
 
 @kernel

@@ -21,8 +21,7 @@ import math
 
 from rocking._numba.compilation import kernel
 
-MAX_ITERATIONS = 200
-"""Largest number of iterations of a root search; bisection alone needs about 60."""
+MAX_ITERATIONS = 200  # largest number of iterations of a root search; bisection alone needs about 60
 
 
 @kernel

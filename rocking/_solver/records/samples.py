@@ -20,8 +20,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel
 SHAPE, LATER, BLOCKS, TIME, VERTICAL, LATER_LOW, BLOCKS_LOW = range(7)
 """Rows of the array of a motion, see `sample_rows`."""
 
-BLOCK = 32
-"""Sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold one extreme."""
+BLOCK = 32  # sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold one extreme
 
 
 def sample_rows(

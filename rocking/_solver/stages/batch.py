@@ -47,8 +47,7 @@ from rocking._solver.stages.state import (
     W0,
 )
 
-LEFT = -1
-"""Outcome of a cell that no stage decides: it is left to the caller."""
+LEFT = -1  # outcome of a cell that no stage decides: it is left to the caller
 
 
 @kernel

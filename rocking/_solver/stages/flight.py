@@ -32,8 +32,7 @@ from rocking._solver.stages.roots import locate_impacts, locate_peaks, quintic_r
 from rocking._solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
 from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 
-MAX_DIP_ARCS = 8
-"""States at which the tangents decide on a minimum of z; nearly all need one or two."""
+MAX_DIP_ARCS = 8  # states at which the tangents decide on a minimum of z; nearly all need one or two
 
 UPLIFT_SLACK = 1e-13
 """A flight from an uplift starts at a cut; parts that end closer to it than this [rad] lie before it. The part that

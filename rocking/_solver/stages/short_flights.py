@@ -12,8 +12,7 @@ from rocking._solver.stages.excitation import restoring_acceleration, set_angles
 from rocking._solver.stages.state import OMEGA, PEAK, PHASE, W0
 from rocking._solver.state import IMPACT, IN_FLIGHT
 
-MAX_STEPS = 12
-"""Steps to the impact or the peak; two suffice where the flight is short."""
+MAX_STEPS = 12  # steps to the impact or the peak; two suffice where the flight is short
 
 
 @kernel

@@ -17,11 +17,8 @@ from rocking._solver.state import RESPONSE_RECORD, aligned_record
 BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
 
-BUCKETS = 256
-"""Classes of slenderness, in whose order the cells of a block are followed."""
-
-LIST_COUNT = 7
-"""Lists of cells, see `rocking._solver.stages.lists`."""
+BUCKETS = 256  # classes of slenderness, in whose order the cells of a block are followed
+LIST_COUNT = 7  # lists of cells, see `rocking._solver.stages.lists`
 
 # columns of the row of a cell, of which there are LANES: the cell and its next flight,
 SLENDERNESS, OMEGA, ETA = 0, 1, 2  # 1/a, omega, eta
@@ -35,8 +32,7 @@ UPLIFT_TIME, FIRST_IMPACT_TIME, FIRST_IMPACT_VELOCITY = 11, 12, 13
 PIECE = 14  # piece of the pulse that holds the uplift at which the flight starts, or -1 if `PHASE` is set
 CHATTER = 15  # whether impacts have accumulated to rest
 
-FAR = 1.0
-"""Time [tau] given to cells that are not concerned: it is outside the series at the start of every flight."""
+FAR = 1.0  # time [tau] given to cells that are not concerned: it is outside the series at the start of every flight
 
 FINISHED, LONG, SHORT, REPEATED, REST, UNDECIDED = 0, 1, 2, 3, 4, 5
 """What follows for a cell: nothing, a long or a short flight with the opposite sign of rotation, a long one with the

@@ -28,8 +28,7 @@ from rocking._solver.stages.state import OMEGA
 WAVELET_SERIES_RADIUS, MAX_WAVELET_REACH = 1.8, 0.9
 """Largest growth_rate omega h and h at which the series at the start is exact to rounding: 1.8^21/23! = 1e-17."""
 
-HALF_ROOT_PI = 0.5 * math.sqrt(math.pi)
-"""sqrt(pi)/2 [-]."""
+HALF_ROOT_PI = 0.5 * math.sqrt(math.pi)  # sqrt(pi)/2 [-]
 
 
 @kernel

@@ -14,19 +14,13 @@ from rocking._base.units import UNITS, unit_name
 from rocking._excitation.records.readers.header import Header, read_header, units_in
 from rocking._excitation.records.readers.lines import NUMBER, TOUCHING, TextFile, to_float
 
-LONGEST_STEP = 0.5
-"""Longest step of a record [s] that is taken from times without a unit."""
-
-MAX_UNIT_PARTS = 8
-"""Most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2."""
-
-MAX_NAME = 60
-"""Most characters of the name of a column; longer ones are sentences."""
+LONGEST_STEP = 0.5  # longest step of a record [s] that is taken from times without a unit
+MAX_UNIT_PARTS = 8  # most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2
+MAX_NAME = 60  # most characters of the name of a column; longer ones are sentences
 
 _COMMENT = "#%!*/\"'"
 
-_DECIMAL_COMMA = (";", "\t")
-"""Separators of columns beside which a comma is the decimal sign."""
+_DECIMAL_COMMA = (";", "\t")  # separators of columns beside which a comma is the decimal sign
 
 _UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:,[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)*+\s*+")
 """A row that may be of numbers with decimal commas only."""

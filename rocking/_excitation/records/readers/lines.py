@@ -27,20 +27,11 @@ if TYPE_CHECKING:  # loads the compiler
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][+-]?\d+)?", re.ASCII)
 """A number as Fortran and C write it; not nan, inf or 1_000, which Python reads as well."""
 
-MAX_LINE = 8192
-"""Most bytes of a line: several hundred columns. A longer one is no line of a record."""
-
-HEAD_LINES = 200
-"""Largest number of lines that are searched for a header."""
-
-CHUNK = 65536
-"""Bytes of rows that are read at once: some milliseconds, in which no other thread may run."""
-
-MAX_SAMPLES = 10_000_000
-"""Largest number of values that is read from one file [-]."""
-
-MAX_CLOSING = 200
-"""Most bytes of a comment behind the last number, such as *** End data ***."""
+MAX_LINE = 8192  # most bytes of a line: several hundred columns. A longer one is no line of a record
+HEAD_LINES = 200  # largest number of lines that are searched for a header
+CHUNK = 65536  # bytes of rows that are read at once: some milliseconds, in which no other thread may run
+MAX_SAMPLES = 10_000_000  # largest number of values that is read from one file [-]
+MAX_CLOSING = 200  # most bytes of a comment behind the last number, such as *** End data ***
 
 _CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%][^\r\n]*\s*\Z")
 
@@ -212,8 +203,7 @@ def decoded(text: bytes) -> str:
         return text.decode("latin-1")
 
 
-TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")
-"""Where two numbers touch; not after an exponent's letter."""
+TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")  # where two numbers touch; not after an exponent's letter
 
 
 def to_float(text: str) -> float:

@@ -14,8 +14,7 @@ from rocking._excitation.records.readers.layout import names_below
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
 from rocking._excitation.records.record import Record
 
-HEADER_LINES = 12
-"""Largest number of lines before the line with NPTS and DT."""
+HEADER_LINES = 12  # largest number of lines before the line with NPTS and DT
 
 _NAMED = r"\s*+[=:]?\s*+([^\s,;=]+)"
 

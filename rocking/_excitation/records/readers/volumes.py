@@ -31,8 +31,7 @@ from rocking._excitation.records.record import Record
 Array = NDArray[np.float64]
 Lines = Iterator[tuple[int, bytes]]
 
-FIRST_LINES = 5
-"""Lines in which the format is named."""
+FIRST_LINES = 5  # lines in which the format is named
 
 REFUSED = {
     r"^\*? ?vol1ds|\bbhrc\b": "a BHRC Volume 1 file",
