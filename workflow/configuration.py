@@ -3,8 +3,6 @@
 Every error is one line that names the key, its value and what is allowed.
 """
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, pairwise

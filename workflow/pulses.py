@@ -4,8 +4,6 @@ The samples of a pulse are an input of the jobs that depend on them, a file whos
 samples of the same name make the products of this pulse again, and no others.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

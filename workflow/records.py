@@ -5,8 +5,6 @@ contains a digest of the code and the settings of the job, so that it is missing
 Snakemake has noted what the products were made from (it has not for a job that went on after its run was killed).
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping

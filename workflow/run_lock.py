@@ -7,8 +7,6 @@ A cluster may start a job of a killed run long after another run has begun: it f
 `run.lock`, and ends.
 """
 
-from __future__ import annotations
-
 import fcntl
 import os
 import select

@@ -4,8 +4,6 @@
 `workflow/manifests/`. The bytes of a file depend on the code that made it as well, which it names.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

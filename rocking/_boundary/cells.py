@@ -1,7 +1,5 @@
 """Which cells of a grid the traced boundaries cross."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray

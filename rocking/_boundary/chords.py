@@ -1,7 +1,5 @@
 """Chords of boundary curves, halved until their distance from the curves is small enough."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -4,8 +4,6 @@ A file `results/overturning/PULSE/eta-0.85.nc` holds polylines one after the oth
 its angle in alpha(curve) [rad]; 0 stands for the slender limit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ is inversely proportional to T_p and proportional to the square root of R (2.2).
 gives the critical periods of a block and the critical sizes of a shape.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

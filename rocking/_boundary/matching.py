@@ -5,8 +5,6 @@ ends there, the width of this chord in log omega, the second derivative of 1/a w
 two chords, and the width of both together. `SECANT` to `SPAN` number them. The loops over thresholds are compiled.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

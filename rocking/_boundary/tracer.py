@@ -7,8 +7,6 @@ halfway or near its predicted end, until that place is known to `END`. The ends 
 columns, joined, are the boundary curves.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable

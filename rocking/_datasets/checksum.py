@@ -3,8 +3,6 @@
 netCDF readers ignore bytes beyond the end of file that the format itself states, so they do not see the digest.
 """
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 

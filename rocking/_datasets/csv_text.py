@@ -1,7 +1,5 @@
 """Columns as CSV text (RFC 4180), for the command line, the service and the workflow."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite

@@ -20,8 +20,6 @@ samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and A
 creation, so equal content gives equal bytes, and a digest of their values.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os

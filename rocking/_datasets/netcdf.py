@@ -5,8 +5,6 @@ threads that read files at the same time can end the process. The locks of xarra
 in memory. This package therefore opens netCDF-4 files with the functions of this module only.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager

@@ -1,7 +1,5 @@
 """Parameters of a planar block from outcomes of tests on a shaking table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Integrals of a pulse shape: the ground velocity that it makes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Files of sampled pulses: columns of numbers, or JSON. `rocking.SampledPulse.from_file` reads them."""
 
-from __future__ import annotations
-
 import codecs
 import json
 from dataclasses import dataclass

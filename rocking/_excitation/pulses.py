@@ -9,8 +9,6 @@ families or of one's own (`SmoothPulse`).
 A text names a pulse, mirrors it and states its parameters, with their units: "-mavroeidis_papageorgiou(phase=90 deg)".
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 import re

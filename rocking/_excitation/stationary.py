@@ -1,7 +1,5 @@
 """Stationary phases of a pulse: all phases at which f' changes sign, by interval exclusion and bisection."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The motion of one body as a function of time, sampled at given times by the flights of the solver."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field

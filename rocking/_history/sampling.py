@@ -12,8 +12,6 @@ of times that are passed. `impact_times` is filled with the times of the impacts
 (1,), to 1, a function returns within a flight; samples are missing.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._base.errors import SearchError

@@ -3,8 +3,6 @@
 Nothing is compiled here: the workflow plans its jobs with it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

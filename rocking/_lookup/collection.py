@@ -4,8 +4,6 @@ A missing, damaged or unreadable cube never gives a wrong result: the solver com
 `CubeCollection.problems` reports the file. Files that change are read again.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The rigid rectangular block: a body with equal edges, and its equation of motion (section 2 of the paper)."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from dataclasses import dataclass, fields

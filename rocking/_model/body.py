@@ -8,8 +8,6 @@ About the edge s (right: theta > 0) a rigid body on a ground that accelerates by
 b_s is the distance of the centre of mass from the edge, h its height and r the radius of gyration about it.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Checks of the parameters against their declared ranges."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

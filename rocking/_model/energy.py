@@ -1,7 +1,5 @@
 """Energy of a block at the end of the pulse, and its margin over that with which the block overturns."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

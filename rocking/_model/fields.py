@@ -5,8 +5,6 @@ and netCDF responses and the table in docs/notation.md derive from these declara
 classes with them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

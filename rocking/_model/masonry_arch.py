@@ -5,8 +5,6 @@ Of all such mechanisms the one with the least uplift acceleration forms (kinemat
 mirror image opens.
 """
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

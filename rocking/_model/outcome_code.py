@@ -4,8 +4,6 @@ The code is 0 where the block survives, and 4 impacts + outcome where it overtur
 impact, 11 after two. The functions work on numpy arrays and inside compiled kernels.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

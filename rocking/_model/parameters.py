@@ -4,8 +4,6 @@ The checks of the library (`rocking._model.checks`), the help of the command lin
 service derive from these declarations.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._base.parameter import Parameter

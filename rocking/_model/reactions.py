@@ -5,8 +5,6 @@ angular acceleration from the equation of motion (`rocking._model.body`; (2.2) f
 this requires.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

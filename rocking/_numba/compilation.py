@@ -7,8 +7,6 @@ There are two ways, which no kernel can tell apart (`rocking._numba.way`): the f
 time by private names of numba (`rocking._numba.internals`), the plain one by its public interface alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

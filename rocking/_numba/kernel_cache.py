@@ -9,8 +9,6 @@ which is compared before they are loaded: what is damaged is made again; where t
 is compiled in each process. Either gives one warning in a process.
 """
 
-from __future__ import annotations
-
 import ast
 import gc
 import hashlib

@@ -4,8 +4,6 @@ Kernels write expressions such as `load(series, n) * x + y` as for one cell; com
 combine. numba has no such type, and automatic vectorisation does not recognise the series of a Taylor step.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """The scaled complementary error function of a SIMD vector."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel

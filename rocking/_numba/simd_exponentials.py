@@ -3,8 +3,6 @@
 The functions of the C library take one number. All relative errors are below 6e-16.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel

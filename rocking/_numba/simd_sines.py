@@ -5,8 +5,6 @@ reduced to [-pi/4, pi/4] in two parts (Cody and Waite), followed by the polynomi
 The error is about one ulp for angles up to 1e8.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel

@@ -1,7 +1,5 @@
 """Responses of bodies with two edges under any motion, and how far they are from another outcome."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

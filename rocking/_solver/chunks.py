@@ -1,7 +1,5 @@
 """Distribution of the cells of an array over threads."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """Phases at which f crosses a level on monotone pieces of the pulse: bracketed Newton iterations, `LANES` at a time."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -7,8 +7,6 @@ says which impacts after the motion can matter. The functions are those of a blo
 edges that differ are scaled by the caller.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import kernel

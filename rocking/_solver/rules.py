@@ -24,8 +24,6 @@ w = 0.1. X = 1 - z = 0.6 exceeds w, so that the block does not escape; it rises 
 each further flight is lower: it survives.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel

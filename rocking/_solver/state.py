@@ -4,8 +4,6 @@ The layout is fixed and the same for all excitations. Kernels access the memory 
 compiled once. The records are prepared for each pulse; each thread works on copies.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

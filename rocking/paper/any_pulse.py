@@ -6,8 +6,6 @@ from an impact on. It contains (3.10), (3.18) and (3.20) and is an independent c
 the end, published conditions of overturning without impact for three simple pulses.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 

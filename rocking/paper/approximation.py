@@ -1,7 +1,5 @@
 """Approximate impact time of case 1.1, (3.23) to (3.30): the sine is replaced by a constant and two exponentials."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

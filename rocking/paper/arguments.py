@@ -1,7 +1,5 @@
 """Arguments of the closed forms: ranges, and checks that they broadcast."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -13,8 +13,6 @@ a = 1 the first impact follows shortly after uplift, where (3.4) as printed lose
 there.
 """
 
-from __future__ import annotations
-
 from math import factorial
 from typing import NamedTuple
 

@@ -8,8 +8,6 @@ is linear in s = sqrt(a^2 - 1) (see `motion`), so its inverse a(tau_i1) is expli
 one equation in tau_i1 alone. The curve is then found by a single root search, without nested iterations.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Peak rotation of a block that survives and whose first impact is after the pulse, (4.12) to (4.16)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -3,8 +3,6 @@
 The bracketed roots and maxima are those of many scalar functions at once; nan where there is none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fragility of arrays of bodies: labelled by their dimensions, and lazy where they are backed by dask."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable

@@ -4,8 +4,6 @@ A record and its mirror image, both signs of its acceleration, overturn such a b
 side from which the ground moves first is a matter of chance. Both count, each with half the weight of the record.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

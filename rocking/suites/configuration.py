@@ -4,8 +4,6 @@ A configuration is a mapping, as read from a file; `docs/fragility.md` lists its
 out: `DEFAULTS`, and what the files of the records state, `STATED_BY_FILES`.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Mapping

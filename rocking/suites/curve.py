@@ -9,8 +9,6 @@ Baker J. W. (2015), Efficient analytical fragility function fitting using dynami
 Spectra 31(1), 579-599.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Separate from `fragility`, so that a configuration is checked without the imports of the statistics.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -20,8 +20,6 @@ Biometrics Bulletin 2(6), 110-114. Clopper C. J., Pearson E. S. (1934), The use 
 illustrated in the case of the binomial, Biometrika 26(4), 404-413.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import IntEnum

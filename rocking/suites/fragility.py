@@ -6,8 +6,6 @@ level. The curve of first exceedance, in which a record counts from the lowest l
 state, is given for comparison only: it is the usual result of incremental dynamic analysis, and its median is too low.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

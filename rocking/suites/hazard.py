@@ -10,8 +10,6 @@ Cornell C. A. (1968), Engineering seismic risk analysis, Bulletin of the Seismol
 1583-1606. McGuire R. K. (2004), Seismic hazard and risk analysis, Earthquake Engineering Research Institute.
 """
 
-from __future__ import annotations
-
 import math
 from os import PathLike
 from typing import Any, TypeAlias

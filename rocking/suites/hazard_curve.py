@@ -3,8 +3,6 @@
 Separate from `hazard`, so that a configuration is checked without the imports of the statistics.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -12,8 +12,6 @@ the top with the rate zero, and at the bottom with the probability one, say noth
 in g and PGV in cm/s in those of the services.
 """
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Iterator, Sequence

@@ -19,8 +19,6 @@ Dimitrakopoulos E. G., Paraskeva T. S. (2015), Dimensionless fragility curves fo
 excitations, Earthquake Engineering & Structural Dynamics 44(12), 2015-2033.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

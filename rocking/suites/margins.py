@@ -1,7 +1,5 @@
 """The mildest intensity at which each record of a suite overturns each block, found between the levels."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """Outcomes of blocks under the records of a suite, each at several levels of intensity."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence

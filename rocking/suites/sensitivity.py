@@ -9,8 +9,6 @@ The friction demand takes 94 % of the time, 4 to 33 ms for a record of 2,500 to 
 about 1.5 ms. All of these are therefore computed at a few levels, not at those of a fragility curve.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

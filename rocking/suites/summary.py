@@ -1,7 +1,5 @@
 """What the outcomes of a suite say of each block: the margin of each record, and quantiles of the peak rotation."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """Fragility as columns, for CSV, JSON and text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -21,8 +21,6 @@ pseudo-inverses and nonlinear least squares problems whose variables separate, S
 413-432.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

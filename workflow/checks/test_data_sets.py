@@ -1,7 +1,5 @@
 """The data sets of a pulse: consistent, and in agreement with the solver. Run by `rule check_data_sets`."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

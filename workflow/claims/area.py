@@ -1,7 +1,5 @@
 """Areas of the control plane, so that a share does not depend on where a grid has its nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Claims of section 3 on the overturning curves: closed forms compared with the solver."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

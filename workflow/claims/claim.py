@@ -4,8 +4,6 @@ The paper states most of its claims in words. The thresholds below, which say wh
 rule of the verdict are the same for all claims and do not depend on what is found.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Claims of section 3 on the time of the first impact, exact (3.13) and approximate (3.23) to (3.30)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Misprints of the paper: what is printed, what is right, and the tests that show it; also in docs/equations.md."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from typing import Any
 

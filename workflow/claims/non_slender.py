@@ -1,7 +1,5 @@
 """Claims of section 5 on blocks that are not slender: similar blocks, dependence on alpha, the slender limit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 

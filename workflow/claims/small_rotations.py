@@ -1,7 +1,5 @@
 """Claims of section 6: accuracy and limits of the groups of (6.1) for blocks of any slenderness."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 

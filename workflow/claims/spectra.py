@@ -1,7 +1,5 @@
 """Claims of section 4a on peak rotation: the closed form (4.13) and the scale law (4.16) for restitution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ description of DataCite, the licence of the data, a page for readers, and a scri
 package. Equal products give equal bytes of the archive in the same year.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime as dt
 import hashlib

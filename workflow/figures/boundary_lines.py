@@ -1,7 +1,5 @@
 """Traced overturning boundaries of files as lines, and as variables of plotted data."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 

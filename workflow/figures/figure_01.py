@@ -1,7 +1,5 @@
 """Figure 1: the block, drawn to scale, and the pulse that moves its base."""
 
-from __future__ import annotations
-
 import matplotlib.patches as patches
 import numpy as np
 import xarray as xr

@@ -1,7 +1,5 @@
 """Figure 2: the response sequences of a block under one sine, and a history of each way of overturning."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

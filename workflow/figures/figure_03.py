@@ -1,7 +1,5 @@
 """Figure 3: overturning after an impact inside the pulse (case 1.1), exact against semi-analytical."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure 4: overturning curves of the sine in closed form, their regions, and the islands that they do not contain."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Figure 5: two blocks of different size and shape under different pulses, in degrees and seconds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

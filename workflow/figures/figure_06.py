@@ -1,7 +1,5 @@
 """Figure 6: the two histories of figure 5 in the groups of (4.1), in which they coincide."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

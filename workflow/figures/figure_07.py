@@ -1,7 +1,5 @@
 """Figure 7: histories of one block for several coefficients of restitution, the damping of the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

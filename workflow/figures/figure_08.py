@@ -1,7 +1,5 @@
 """Figure 8: rocking spectra for many coefficients of restitution, with the closed form (4.13) for the sine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

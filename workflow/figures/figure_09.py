@@ -1,7 +1,5 @@
 """Figure 9: overturning of two geometrically similar blocks, two curves in SI units and one in groups."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Figure 10: overturning of blocks of several slenderness angles, with the limit of slender blocks of figure 4."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

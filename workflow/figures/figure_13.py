@@ -1,7 +1,5 @@
 """Figure 13: rocking spectra of blocks of several slenderness angles, which nearly coincide in the groups of (6.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure S1: the sine of the excitation and the ad hoc exponentials (3.27) that approximate it around tau = 1."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

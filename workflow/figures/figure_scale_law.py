@@ -1,7 +1,5 @@
 """Additional figure: accuracy of the scaling of peak rotation with eta squared, (4.16), for the sine."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Master spectra: peak rotation over the whole control plane in the groups of (6.1), for blocks of any slenderness."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Figures 11 and 12: histories of blocks of different shape, in the groups of (4.11) and in those of (6.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

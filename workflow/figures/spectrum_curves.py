@@ -4,8 +4,6 @@ A curve is the peak rotation over the frequency ratio on one connected range of 
 of many blocks stand one after the other, `row_size` points each, as in the files of overturning boundaries.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple

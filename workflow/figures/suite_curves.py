@@ -1,7 +1,5 @@
 """Fragility curves of each block of a suite: observed fractions with intervals, fitted curves, first exceedance."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

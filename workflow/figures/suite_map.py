@@ -1,7 +1,5 @@
 """Probability of overturning over size and slenderness, at one level of intensity."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

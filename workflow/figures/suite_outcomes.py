@@ -1,7 +1,5 @@
 """Outcome of each record at each level, for each block of a suite."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

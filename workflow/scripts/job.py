@@ -1,7 +1,5 @@
 """Adapter between Snakemake and the scripts: a job is one call of a plain function."""
 
-from __future__ import annotations
-
 import inspect
 import traceback
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Measures of a ground motion that is linear between its samples. Arrays (samples,), SI units."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Processing of a record, each step on request only: baseline correction, band-limited resampling."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

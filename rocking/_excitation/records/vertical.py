@@ -1,7 +1,5 @@
 """Factors of the vertical component of a record: a body on the ground flies where the acceleration reaches -g."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sums of sinusoids, `rocking._excitation.sinusoids`."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

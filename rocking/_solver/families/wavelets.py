@@ -1,7 +1,5 @@
 """Wavelets f = (sum of polynomial[k] phi^k) exp(-phi^2/spread), `rocking._excitation.wavelets`."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -5,8 +5,6 @@ impact. The intervals of the pulse (`rocking._solver.kernels.intervals`) decide 
 impact. The first flight does not depend on the restitution: it is stored and reused for each eta.
 """
 
-from __future__ import annotations
-
 from rocking._base.errors import SearchError
 from rocking._numba.compilation import Record, kernel
 from rocking._solver.kernels.chatter import chatter_ends_in_rest

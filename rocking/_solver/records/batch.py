@@ -3,8 +3,6 @@
 A SIMD lane takes the next block as soon as its block is finished.
 """
 
-from __future__ import annotations
-
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel

@@ -5,8 +5,6 @@ The motion is linear between its samples and zero after the last. The restoring 
 expression, so that it has one value wherever it is used.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel

@@ -15,8 +15,6 @@ increments that keep their digits on short flights. A piece does not contain a c
   at the ends, two zeros require a minimum (maximum) of w inside, where z'' changes its sign: tanh s = -C/D.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import kernel

@@ -1,7 +1,5 @@
 """`record_response`: responses of blocks under a recorded ground motion."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ The motion is linear between its samples and zero after the last. Samples of a r
 sampled pulse need not be.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

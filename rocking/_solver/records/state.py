@@ -1,7 +1,5 @@
 """State of the solver under samples: a record for each body, a record for the Taylor steps of `LANES`."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -7,8 +7,6 @@ that V S + F C <= V (S - C) <= 0: z'' >= 0 for all z >= 0 up to |theta| = pi/2, 
 maximum.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel

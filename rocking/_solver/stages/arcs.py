@@ -9,8 +9,6 @@ A, B of (3.4) would lose all digits on short flights. Of a particular solution p
 `rocking._solver.stages.excitation` gives F, p and their derivatives at the phase of the last `set_angles`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel

@@ -6,8 +6,6 @@ depends neither on its lane nor on the other cells. What no stage decides, a sea
 very many impacts, is left to the caller, for Taylor steps: most calls leave no block.
 """
 
-from __future__ import annotations
-
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store

@@ -5,8 +5,6 @@ where it is smaller. The cut between both is unique. If there is none it is put 
 destabilised or the restored part is empty and all cells have the same sequence of parts.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 The vector form of `rocking._solver.rules` for slender blocks.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

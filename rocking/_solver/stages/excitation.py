@@ -5,8 +5,6 @@ sinusoids, or the phase and the Gaussian of a wavelet (`rocking._solver.stages.w
 either family, because every further kernel takes a tenth of a second to compile.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -19,8 +19,6 @@ w = 0.460 at its left end, which is computed now: one peak, which is kept for la
 2 pi, z < 0 at the right end: one impact, which is located at phi = 5.099 with w = -1.416, and the peak with it.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel, specialised_kernel

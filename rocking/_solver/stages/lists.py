@@ -1,7 +1,5 @@
 """Lists of the cells that wait for a flight, by their places in the block, and the vectors of their first flights."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -6,8 +6,6 @@ with an error of about 14 r^4 y where r is the largest of |b_2 y| and the rate t
 iteration; a step out of it is replaced by its middle.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel

@@ -1,7 +1,5 @@
 """Short flights of `LANES` blocks by the Taylor series at their start: the impact is the first zero of z/h."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel

@@ -1,7 +1,5 @@
 """State of the stages: a record of `LANES` cells, and one row of numbers for each cell that waits for a stage."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -14,8 +14,6 @@ For a negative x, g erfcx(x) = 2 exp(c (c - 2 |phi|/sqrt(S))) - g erfcx(-x). For
 a rounding error grows with c^2, for odd wavelets with c^3.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

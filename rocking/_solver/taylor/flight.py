@@ -7,8 +7,6 @@ and no maximum. Therefore steps end where a destabilising interval begins, and a
 then no impact is possible until the acceleration is restoring again.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._base.errors import SearchError

@@ -4,8 +4,6 @@ What needs a search, a minimum of z while the block is destabilised and peaks th
 out, is left to the scalar functions of `rocking._solver.taylor.flight`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, Series, SimdVector, kernel

@@ -5,8 +5,6 @@ Times are in a column whose name says so or whose unit is one. What is not state
 as an argument.
 """
 
-from __future__ import annotations
-
 import re
 from array import array
 from dataclasses import replace

@@ -4,8 +4,6 @@
 (`KINDS`, `SAMPLES`); a title is none, whatever separators it holds.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from itertools import chain

@@ -5,8 +5,6 @@ The fourth line has one of the forms `NPTS=  4000, DT= .01000 SEC`, `NPTS=  4000
 fewer lines of text before it.
 """
 
-from __future__ import annotations
-
 import re
 
 from rocking._excitation.records.readers.header import Statement, read_header

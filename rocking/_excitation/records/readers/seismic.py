@@ -1,7 +1,5 @@
 """SAC and miniSEED files through ObsPy, an optional package."""
 
-from __future__ import annotations
-
 import io
 import struct
 import warnings

@@ -6,8 +6,6 @@ format for CSMIP strong-motion data tapes, OSMS 85-03; GeoNet strong-motion data
 Geological Survey. Other files of this kind are refused by their name.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
