@@ -114,8 +114,8 @@ def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any
 
 
 def _square_root(builder: Any, x: Any) -> Any:
-    kind = ir.FunctionType(_LLVM_VECTOR, [_LLVM_VECTOR])
-    return builder.call(builder.module.declare_intrinsic(f"llvm.sqrt.v{LANES}f64", fnty=kind), [x])
+    name = "llvm.sqrt.f64" if x.type == ir.DoubleType() else f"llvm.sqrt.v{LANES}f64"
+    return builder.call(builder.module.declare_intrinsic(name, fnty=ir.FunctionType(x.type, [x.type])), [x])
 
 
 def transpose(builder: Any, rows: list[Any]) -> list[Any]:
@@ -168,20 +168,26 @@ def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
 
 
 def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
-    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address."""
+    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address.
+
+    `select`, `maximum`, `minimum` and `square_root` take numbers, too, in place of all vectors and masks: rules that
+    hold for one cell and for `LANES` are stated once by them.
+    """
 
     def typed(*given: Any) -> Any:
         kinds = [kind or one for kind, one in zip(parameters, given, strict=True)]
-
-        def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            operands = [
-                context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
-                for kind, value in zip(signature.args, values, strict=True)
-            ]
-            made = generate(builder, *operands)
-            return context.get_dummy_value() if result is types.void else made
-
+        if all(isinstance(one, types.Number | types.Boolean) for one in given) and _VECTOR_TYPE in kinds:
+            kinds = [types.boolean if kind == _MASK_TYPE else types.float64 for kind in kinds]
+            return types.float64(*kinds), lower
         return result(*kinds), lower
+
+    def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        operands = [
+            context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
+            for kind, value in zip(signature.args, values, strict=True)
+        ]
+        made = generate(builder, *operands)
+        return context.get_dummy_value() if result is types.void else made
 
     # numba inspects the number of parameters
     forms: dict[int, Callable[..., Any]] = {
