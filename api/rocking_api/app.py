@@ -16,8 +16,6 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddle
 
 from rocking._lookup.collection import CubeCollection
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
-from rocking_api.http.host import HostCheck
-from rocking_api.http.memory_budget import MemoryBudgetMiddleware
 from rocking_api.http.request_log import RequestLog
 from rocking_api.models.answer import VERSION
 from rocking_api.models.bodies import BODIES
@@ -80,9 +78,6 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
     # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream", "application/zip")
-    app.add_middleware(  # counts before compression
-        MemoryBudgetMiddleware, budget=service.memory_budget, seconds=settings.reading_seconds
-    )
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
@@ -93,8 +88,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
-    app.add_middleware(HostCheck)
-    app.add_middleware(RequestLog, metrics=service.metrics, access_log=settings.access_log)
+    app.add_middleware(RequestLog, metrics=service.metrics)
     app.state.when_ready = when_ready
     add_handlers(app)
     pages.add_error_pages(app)
@@ -116,8 +110,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         background.start_soon(service.dataset_checker.watch)
         yield
         background.cancel_scope.cancel()
-    for executor in (service.executor, service.parser):
+    for executor in (service.executor, service.single, service.parser):
         executor.close()
+    service.metrics.close()
 
 
 async def _load_kernels(service: Service, when_ready: Callable[[], None]) -> None:

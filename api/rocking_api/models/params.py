@@ -292,5 +292,7 @@ def check_point(params: ResponseParams) -> None:
         and SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper
         and FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper
         and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
+        and (not params.alpha_deg or ALPHA_DEG.lower <= params.alpha_deg <= ALPHA_DEG.upper)
+        and 0.0 <= params.absolute_tolerance < math.inf
     ):
         params.check()

@@ -81,7 +81,7 @@ async def get_archive(request: Request, service: ServiceDep) -> Response:
         return names, max((version.size for version in versions if version is not None), default=0)
 
     names, largest = await service.run_io(work)
-    request.state.reservation.add(largest)
+    service.reservation(request).replace(largest)
     headers = {"Content-Disposition": 'attachment; filename="rocking-data.zip"', "Cache-Control": REVALIDATE}
     return StreamingResponse(archive(catalogue, names), media_type="application/zip", headers=headers)
 
