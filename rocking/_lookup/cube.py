@@ -258,10 +258,11 @@ class Cube:
         arrays = points.slenderness, points.frequency_ratio, points.restitution, points.alpha, groups
         found = Found.zeros(size)
         no_uplift = prepare(points.slenderness, points.restitution, self.restitutions, groups, present, found)
-        windows: list[tuple[int, Window, tuple[Any, ...]]] = []
-        for group in np.flatnonzero(present[:-1]).tolist():
-            if (window := self._window(group)) is not None:
-                windows.append((group, window, window.arguments(points.alpha, self.may_read)))
+        windows: list[tuple[int, Window, tuple[Any, ...]]] = [
+            (group, window, window.arguments(points.alpha, self.may_read))
+            for group in np.flatnonzero(present[:-1]).tolist()
+            if (window := self._window(group)) is not None
+        ]
         given: list[tuple[int, int]] = []
 
         def fill(part: slice, _: NDArray[np.uint8] | None = None) -> None:

@@ -34,7 +34,7 @@ from rocking._interpolation.stencils import AngleAxis, Mesh
 Array = NDArray[np.float64]
 
 MAX_LAYER_BYTES = 57_500_000
-"""Memory of the nodes of a cube that are kept at a time [bytes]: four angles of the atlas. One response needs no more."""
+"""Memory of the nodes of a cube that are kept at a time [bytes]: four angles of the atlas, as one response needs."""
 
 
 class Layers:
