@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -52,8 +52,8 @@ def _list_pulses(schema: dict[str, Any]) -> None:
     names = pulse_names()
     varied = "|".join(name for name in names if pulse_parameters(name))
     schema["anyOf"] = [
-        {"enum": [*names, *(f"-{name}" for name in names)]},
-        {"pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
+        {"title": "Pulse_name", "type": "string", "enum": [*names, *(f"-{name}" for name in names)]},
+        {"type": "string", "pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
     ]
 
 
@@ -152,6 +152,27 @@ class Params(BaseModel):
         errors = self.out_of_range(self)
         if errors:
             raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
+
+
+class ListParams(Params):
+    """A part of a list."""
+
+    limit: int | None = Field(
+        None,
+        description="most entries [-]; absent: all",
+        examples=[10],
+        json_schema_extra={"minimum": 1, "maximum": 10_000},
+    )
+    cursor: str | None = Field(
+        None, description="where the list goes on: `next_cursor` of the answer before; absent: at its start"
+    )
+
+    def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
+        """The names of this part, of ascending names, and the cursor of the next one; None at the end."""
+        self.check()
+        rest = [name for name in names if self.cursor is None or name > self.cursor]
+        part = rest[: self.limit]
+        return part, part[-1] if len(part) < len(rest) else None
 
 
 class LookupOptions(Params):

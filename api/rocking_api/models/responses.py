@@ -30,7 +30,7 @@ from rocking._model.response import Outcome
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.encoding import Column
-from rocking_api.models.answer import ECHO, QUERY, Answer
+from rocking_api.models.answer import ECHO, QUERY, Answer, ListAnswer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import HistoryParams, LookupOptions, OverturningParams, ResponseParams, SpectrumParams
 
@@ -238,11 +238,11 @@ class PulseCubes(BaseModel):
     zarr: str = Field(description="path for xarray.open_zarr(...), over the dimension restitution too")
 
 
-class DatasetCatalogue(Answer):
-    """All data sets."""
+class DatasetCatalogue(ListAnswer):
+    """Data sets."""
 
     datasets: list[DatasetSummary] = Field(description="in the order of their names")
-    pulses: list[PulseCubes] = Field(description="the spectrum cubes by pulse, in the order of their names")
+    pulses: list[PulseCubes] = Field(description="the spectrum cubes of these by pulse, in the order of their names")
 
 
 class VariableDescription(BaseModel):
