@@ -86,7 +86,7 @@ UNDER_SAMPLES = (
     ("two edges, overturns", 10, 250, 0.02, 5.0, 0.0, {"left": 0.1, "right": 0.2, "height": 1.2}),
     ("against a wall", 11, 250, 0.02, 3.5, 0.0, {"alpha": 0.2, "p": 2.5, "restitution": 0.6} | WALL),
     ("against a wall, no rebound", 12, 250, 0.02, 3.5, 0.0, {"alpha": 0.2, "p": 2.5, "restitution": 0.0} | WALL),
-    ("against a wall, vertical component", 13, 250, 0.02, 3.5, 0.5, {"alpha": 0.2, "p": 2.5, "restitution": 0.5} | WALL),
+    ("against a wall, vertical motion", 13, 250, 0.02, 3.5, 0.5, {"alpha": 0.2, "p": 2.5, "restitution": 0.5} | WALL),
     ("chaotic", 36, 3000, 0.02, 1.78, 0.0, {"alpha": 0.15, "p": 4.0, "restitution": 0.995}),
     ("chaotic, three digits remain", 19, 3000, 0.02, 1.63, 0.0, {"alpha": 0.15, "p": 4.0, "restitution": 0.995}),
 )  # fmt: skip
@@ -237,7 +237,7 @@ def _impact_times(rotation: arb, alpha: float, p: float, restitution: float, sle
     """Times [s] of the first impacts of a block that is released at rest.
 
     The time to theta = 0 is acosh(1/(1 - z))/p for the slender block, z = theta/alpha. The rigid one is a pendulum
-    about theta = alpha: (K(m) - F(asin(cos(alpha/2)/cos(phi/2)), m))/p, phi = alpha - theta, m = cos^2(phi/2). The energy
+    about alpha: (K(m) - F(asin(cos(alpha/2)/cos(phi/2)), m))/p, phi = alpha - theta, m = cos^2(phi/2). The energy
     (w^2) at an impact is multiplied by restitution^2.
     """
     a, eta, rate = arb(alpha), arb(restitution), arb(p)
