@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
-from rocking._assessment.columns import INPUTS, OUTPUTS, VERDICTS
+from rocking._assessment.columns import CLAUSES, INPUTS, OUTPUTS, VERDICTS
 from rocking._assessment.motions import envelope_of
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
@@ -78,6 +78,7 @@ def report_html(found: Assessment, project: Project, bad_rows: Sequence[BadRow] 
         found=found,
         sections=list(sections.values()),
         most_detailed=MOST_DETAILED,
+        clauses=CLAUSES,
         inputs=INPUTS,
         units={one.name: one.unit for one in OUTPUTS},
         colours=dict(zip(VERDICTS, COLOURS, strict=True)),

@@ -153,6 +153,14 @@ Sensitivity = Annotated[
         metavar="",
     ),
 ]
+Standards = Annotated[
+    str,
+    typer.Option(
+        help="Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
+        "circolare_nonlinear.",
+        metavar="[NAME,NAME,...]",
+    ),
+]
 Output = Annotated[
     str | None, typer.Option("--output", "-o", help="CSV file to write, with all columns.", metavar="[FILE]")
 ]
@@ -196,6 +204,7 @@ def assess(
     shapes: Shapes = None,
     moving_ground: MovingGround = False,
     sensitivity: Sensitivity = True,
+    standards: Standards = "",
     samples: Samples = 0,
     seed: Seed = 0,
     resolution: Resolution = 0.005,
@@ -256,6 +265,7 @@ def assess(
                 given,
                 site,
                 sensitivity=sensitivity,
+                standards=standards,
                 samples=samples,
                 seed=seed,
                 resolution=resolution,
@@ -342,7 +352,7 @@ def _write(option: str, path: str, text: str) -> None:
 
 def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) -> None:
     """Print the table, and below it the objects to which each warning applies."""
-    from rocking._assessment.columns import OUTPUTS
+    from rocking._assessment.columns import CLAUSES, OUTPUTS
     from rocking._cli import printing
 
     rows = found.rows
@@ -357,7 +367,8 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) ->
     if form.kind == "csv":
         printing.print_csv(found.with_details(columns), form, units)
         return
-    printing.print_table({name: columns[name] for name in SHOWN}, units)
+    stated = [f"{name}_ratio" for name in CLAUSES if rows[0][f"{name}_ratio"] is not None]
+    printing.print_table({name: columns[name] for name in [*SHOWN, *stated]}, units)
     if found.resolution:
         typer.echo(f"factors on records: at most {100.0 * found.resolution:g} % apart were tried")
     concerned: dict[str, list[str]] = {}
