@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from types import SimpleNamespace
 from typing import Any
 
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
-"""Text that begins so is a formula for a spreadsheet."""
+"""Text that begins so is a formula for a spreadsheet, unless it is a negative number."""
+
+_NEGATIVE = re.compile("-[0-9]+(?:[.,][0-9]+)?")
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
@@ -52,4 +55,5 @@ def _cell(value: Any) -> Any:
         return value if isfinite(value) else None
     if isinstance(value, bool):
         return "true" if value else "false"
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA_STARTS) else value
+    is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _NEGATIVE.fullmatch(value)
+    return f"'{value}" if is_formula else value
