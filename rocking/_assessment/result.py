@@ -76,7 +76,7 @@ class Assessment(EqualByValue):
         Of objects that were not read from a table their `details`.
         """
         rows = [one.cells or one.details for one in self.objects]
-        names, taken = [one.name for one in self.objects], {name for one in OUTPUTS for name in (one.name, one.label)}
+        names, taken = [one.name for one in self.objects], {name for one in OUTPUTS for name in (one.name, one.header)}
         found = {}
         for label in dict.fromkeys(label for row in rows for label in row):
             cells = [row.get(label, "") for row in rows]
@@ -204,7 +204,7 @@ class Assessment(EqualByValue):
     def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:
         added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
         rows: list[dict[str, Any]] = [*self.rows, *added]
-        columns = {one.label: [row.get(one.name) for row in rows] for one in OUTPUTS}
+        columns = {one.header: [row.get(one.name) for row in rows] for one in OUTPUTS}
         return self.with_details(columns, [one.cells for one in bad_rows])
 
     def __repr__(self) -> str:

@@ -11,9 +11,9 @@ import numpy as np
 from rocking._assessment.columns import CLOSE, OUTPUTS, VERDICTS
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
-from rocking._base.column import named, plain_name
+from rocking._base.cells import named, plain_name
+from rocking._base.quantities import NUMBER
 from rocking._base.units import UNITS
-from rocking._dimensional.table_header import NUMBER
 
 PEOPLE = {"m": "cm", "rad": "deg", "m/s2": "g"}
 """Units that people use, by the SI unit."""

@@ -1,7 +1,5 @@
 """The rigid rectangular block: a body with equal edges, and its equation of motion (section 2 of the paper)."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from dataclasses import dataclass, fields
@@ -18,8 +16,7 @@ from rocking._model.body import AbstractBody, Array, Edge
 from rocking._model.checks import check_lengths
 from rocking._model.reactions import INERTIA_RATIO
 
-Number = Any
-"""A float; of an array of blocks an array of them."""
+Number = Any  # a float; of an array of blocks an array of them
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -148,8 +145,10 @@ class AbstractBlock(AbstractBody):
     def right(self) -> Edge:
         """The right edge; the left one is alike."""
         inertia_ratio = INERTIA_RATIO if self.contact_is_known else math.nan
-        values = self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio
-        return Edge(*map(np.asarray, values))
+        alpha, p, eta, ratio = map(
+            np.asarray, (self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio)
+        )
+        return Edge(alpha, p, eta, ratio)
 
     @property
     def left(self) -> Edge:
