@@ -171,7 +171,7 @@ def rows_in_units(found: Assessment) -> dict[str, list[Any]]:
 
 def number_header(found: Assessment) -> str:
     """The header of the inventory numbers in the table of objects, "" without one beside the names."""
-    known = {plain_name(name): NUMBER for name in NUMBER.aliases}
+    known = {plain_name(name): NUMBER for name in NUMBER.names}
     own = (label for one in found.objects[:1] for label, cell in one.cells.items() if cell != one.name)
     return next((label for label in own if named(label, known)), "")
 
