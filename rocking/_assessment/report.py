@@ -48,7 +48,7 @@ MOST_MOTIONS = 8
 PAGE, HEAD, NOTE, LINE, GAP = 259.0, 28.0, 13.0, 3.6, 1.0
 """Heights [mm]: of a page, of the title and head of the table, of the text below it, of a line, between two rows."""
 
-NAME, VERDICT, STEP = 22, 14, 17
+NAME, VERDICT, MOTION, STEP = 22, 14, 11, 17
 """Characters in a line of these columns of the table [-], on the safe side."""
 
 STRONGEST = 3.0
@@ -136,7 +136,8 @@ def _pages_of_table(lines: Sequence[Line], number: str) -> list[list[Line]]:
     room = PAGE - HEAD
     for line in lines:
         name = line.object.cells.get(number, "") + line.object.name
-        texts = (name, NAME), (line.values["verdict"], VERDICT), (line.first_step, STEP)
+        verdict, motion = line.values["verdict"], line.values["governing"]
+        texts = (name, NAME), (verdict, VERDICT), (motion, MOTION), (line.first_step, STEP)
         height = GAP + LINE * max(math.ceil((len(text) + 1) / size) for text, size in texts)
         if height + (NOTE if line is lines[-1] else 0.0) > room and pages[-1]:
             pages.append([])

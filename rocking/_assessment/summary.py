@@ -26,6 +26,9 @@ WITHIN = "within 20 %"
 DETAILED = (WITHIN, "slides before it rocks", "may slide while it rocks", "the hazard curve does not")
 """Beginnings of warnings whose numbers, behind a colon, differ from object to object."""
 
+LONGEST = 40
+"""Characters of a name on a screen, and in a warning [-]."""
+
 WIDER = 1.5
 """Base that is needed over the one that an object has up to which a wider base is proposed [-]."""
 
@@ -143,7 +146,7 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
 
     number = number_header(found)
     columns = {number: [one.object.cells.get(number, "") for one in lines]} if number else {}
-    columns |= {"object": column("object")}
+    columns |= {"object": [_shortened(name) for name in column("object")]}
     if directions:
         columns["direction"] = column("direction")
     return columns | {
@@ -198,4 +201,8 @@ def warnings_of(found: Assessment) -> list[tuple[str, list[str]]]:
 
 def names_in_short(names: Sequence[str], most: int = 5) -> str:
     """The first names, and how many more there are."""
-    return "; ".join(names[:most]) + (f"; and {len(names) - most} more" if len(names) > most else "")
+    return "; ".join(map(_shortened, names[:most])) + (f"; and {len(names) - most} more" if len(names) > most else "")
+
+
+def _shortened(name: str) -> str:
+    return name if len(name) <= LONGEST else f"{name[: LONGEST - 1].rstrip()}\u2026"
