@@ -4,11 +4,11 @@ Under a record the outcome is not monotone in the strength, and the lowest range
 often narrow: of 140 pairs of objects and records half of these ranges are narrower than 0.1 %, since the body strikes
 10 to 200 times. `lowest_overturning` tries strengths from that of uplift on, `resolution` apart. Each response has a
 reach: how far away in strength one of its peaks comes to the unstable equilibrium, by the derivative of the peak
-(`rocking._solver.records.estimate`). An interval is halved while it is wider than the reach at one of its ends, down to
-a 512th of the resolution; then while it is wider than a 4th, a 16th, a 64th and a 256th of it, as long as the body has
-had fewer than `BUDGET` responses between these strengths; and just below the lowest that overturns to a 128th of the
-resolution in any case. All of these are estimates; each that is the lowest so far is confirmed by the solver, and the
-change of outcome below the lowest is bisected with it. A narrower range can be missed.
+(`rocking._solver.records.estimate`). An interval is halved while it is wider than half the reach at one of its ends,
+down to a 512th of the resolution; then while it is wider than an 8th and a 32nd of it, as long as the body has
+had fewer than `BUDGET` responses in a `WINDOW`; and close below the lowest that overturns the intervals are as narrow
+as a 64th of their distance from it. All of these are estimates; each that is the lowest so far is confirmed by the
+solver, and the change of outcome below the lowest is bisected with it. A narrower range can be missed.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ RESOLUTIONS = 1e-4, 0.1
 PARTS = 512
 """Parts of the resolution, a power of two, into which it is divided where the body may overturn."""
 
-CLOSE, CLOSE_PARTS = PARTS, 4
-"""Parts below the lowest that overturns in which no interval is wider than so many parts."""
+CLOSE, CLOSE_RATIO = PARTS, 64
+"""Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
-MULTIPLES = 1.0, 4.0, 16.0, 64.0, 256.0
+MULTIPLES = 2.0, 8.0, 32.0
 """An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other."""
 
-WINDOW, BUDGET = 16, 300
+WINDOW, BUDGET = 16, 1000
 """Intervals of the resolution that are searched together, from the weakest on; responses of a body in them with which
 the larger multiples are not used."""
 
@@ -151,6 +151,7 @@ def lowest_overturning(
     limit: Array | float = math.inf,
     *,
     resolution: float = RESOLUTION,
+    enough: Array | float = 0.0,
 ) -> Array:
     """Lowest strength at which each body overturns, of those tried; nan where none up to the highest was found.
 
@@ -165,14 +166,16 @@ def lowest_overturning(
     limit : float array (bodies,)
         Strength beyond which there is no response.
     resolution : float
-        Largest relative distance of two strengths [-].
+        Largest relative distance of two strengths [-]. Above `RESOLUTION` the budget of responses is smaller.
+    enough : float array (bodies,)
+        The search of a body ends with a strength up to this one that overturns it, which need not be the lowest.
 
     Returns
     -------
     float array (bodies,)
         A strength that overturns the body; one lower by 1e-6, or the weakest, does not or is the start.
     """
-    start, highest, limit = np.broadcast_arrays(start, highest, limit)
+    start, highest, limit, enough = np.broadcast_arrays(start, highest, limit, enough)
     found = np.full(start.shape, math.nan)
     size = max(FEWEST, math.ceil(start.size / (SHARES * AVAILABLE_CORES)))
     if start.size > size:
@@ -180,7 +183,7 @@ def lowest_overturning(
 
     def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
         own = lines.from_line(part.start)
-        found[part] = _Search(own, start[part], limit[part], resolution).lowest(highest[part])
+        found[part] = _Search(own, start[part], limit[part], resolution, enough[part]).lowest(highest[part])
 
     fill_chunks(fill, start.size, size, AVAILABLE_CORES, lines.stop)
     return np.where(found > highest, math.nan, found)
@@ -189,9 +192,11 @@ def lowest_overturning(
 class _Search:
     """One search for the lowest strengths of bodies; places number the strengths that can be tried, from the start."""
 
-    def __init__(self, lines: Lines, start: Array, limit: Array, resolution: float) -> None:
+    def __init__(self, lines: Lines, start: Array, limit: Array, resolution: float, enough: Array) -> None:
         self.lines, self.start, self.limit = lines, start, limit
-        self.unit = math.log1p(resolution) / PARTS
+        self.unit, self.budget = math.log1p(resolution) / PARTS, BUDGET * min(RESOLUTION / resolution, 1.0)
+        with np.errstate(divide="ignore"):
+            self.enough = np.log(enough / start) / self.unit  # place
         self.first = np.full(start.size, NONE)  # place of the lowest that overturns
         self.tried = np.zeros(start.size)  # responses in the window
 
@@ -204,14 +209,24 @@ class _Search:
         strength = self.strength(line, place)
         overturned, reach = self.lines.estimated(line, strength)
         self.tried += np.bincount(line, minlength=self.tried.size)
-        left = overturned
+        left = overturned.copy()
         while (left := left & (place < self.first[line])).any():
             hits = np.flatnonzero(left)
             lowest = hits[np.unique(line[hits], return_index=True)[1]]
-            confirmed = self.lines.overturned(line[lowest], strength[lowest])
-            self.first[line[lowest[confirmed]]] = place[lowest[confirmed]]
             left[lowest] = False
+            for shift in (0, -1, 1):  # the estimate may be that of a place beside it
+                at = np.maximum(place[lowest] + shift, 0)
+                confirmed = self.lines.overturned(line[lowest], self.strength(line[lowest], at))
+                own, at = line[lowest[confirmed]], at[confirmed]
+                self.first[own] = np.minimum(self.first[own], at)
+                lowest = lowest[~confirmed]
+                if not lowest.size:
+                    break
         return np.where(overturned, 0.0, reach / self.unit)
+
+    def settled(self) -> Bools:
+        """Whether a strength is known that is low enough."""
+        return np.asarray(self.first <= self.enough)
 
     def lowest(self, highest: Array) -> Array:
         """The lowest strength of each body, nan where none up to the highest or a little above it was found."""
@@ -245,10 +260,11 @@ class _Search:
         """The intervals, and those into which they are divided as long as one is to be halved."""
         done = [intervals.take(np.empty(0, dtype=np.intp))]
         while True:
-            intervals = intervals.take(intervals.low < self.first[intervals.line])
+            intervals = intervals.take((intervals.low < self.first[intervals.line]) & ~self.settled()[intervals.line])
             gap = intervals.high - intervals.low
-            used = np.where(self.tried[intervals.line] < BUDGET, multiple, MULTIPLES[0])
-            close = (self.first[intervals.line] - intervals.high < CLOSE) & (gap > CLOSE_PARTS)
+            used = np.where(self.tried[intervals.line] < self.budget, multiple, MULTIPLES[0])
+            below = self.first[intervals.line] - intervals.low
+            close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
             near = gap * used > np.minimum(intervals.low_reach, intervals.high_reach)
             halved = (gap > 1) & (near | close)
             done.append(intervals.take(~halved))
@@ -263,7 +279,7 @@ class _Search:
     def bisected(self, known: Index) -> Array:
         """The lowest strengths of bodies for which one is known, with the change of outcome below it."""
         place = self.first[known]
-        low = np.maximum(place - 1, 0)
+        low = np.where(self.settled()[known], place, np.maximum(place - 1, 0))
         found = np.full(self.start.size, math.nan)
         over = np.ones(known.size, dtype=np.bool_)
         while (down := np.flatnonzero(over & (low < place))).size:

@@ -113,7 +113,12 @@ class _Nodes:
 
 
 def lowest_thresholds(
-    problem: Problem, highest: Array | float, stop: StopFlag | None = None, *, resolution: float = SCAN_RESOLUTION
+    problem: Problem,
+    highest: Array | float,
+    stop: StopFlag | None = None,
+    *,
+    resolution: float = SCAN_RESOLUTION,
+    enough: float = 0.0,
 ) -> Array:
     """The lowest peak acceleration of a motion that overturns each body of a problem, whose own one is not read.
 
@@ -133,6 +138,8 @@ def lowest_thresholds(
         Cancels the work, which then raises `StoppedError`.
     resolution : float
         Under a record: largest relative distance of the accelerations that are tried [-].
+    enough : float
+        Under a record: as of `lowest_overturning` [m/s2].
 
     Returns
     -------
@@ -146,7 +153,8 @@ def lowest_thresholds(
         lines = replace(problem, peak_acceleration=np.full(shape, peak))
         start, limit = record_range(lines)
         factor = np.broadcast_to(highest, shape).ravel() / peak
-        found = lowest_overturning(record_lines(lines, stop), start, factor, limit, resolution=resolution)
+        given = record_lines(lines, stop)
+        found = lowest_overturning(given, start, factor, limit, resolution=resolution, enough=enough / peak)
         return found.reshape(shape) * peak
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
     cells = replace(problem, peak_acceleration=np.asarray(uplift)).cells
