@@ -4,8 +4,8 @@ The lowest factors of made-up objects in two directions, under seven pulse shape
 of made-up records at 0.3 g; both use all cores. Kernels are compiled before.
 
 With `--scan 2000` it compares the lowest factors under three suites with scans of so many factors: in equal ratios or
-steps from uplift up to them, in equal ratios up to ten times that of uplift, in equal steps up to the highest. It prints
-in how many pairs of an object and a record the body overturns at a lower one.
+steps from uplift up to them, in equal ratios up to ten times that of uplift, in equal steps up to the highest. It
+prints in how many pairs of an object and a record the body overturns at a lower one.
 """
 
 from __future__ import annotations
