@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._assessment.columns import CLOSE, OUTPUTS, VERDICTS
+from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, VERDICTS
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
 from rocking._base.cells import named, plain_name
@@ -149,6 +149,11 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
     columns |= {"object": [_shortened(name) for name in column("object")]}
     if directions:
         columns["direction"] = column("direction")
+    clauses = {
+        clause.replace("_", " "): [rounded(one) for one in column(f"{clause}_ratio")]
+        for clause in CLAUSES
+        if any(one.values[f"{clause}_ratio"] is not None for one in lines)
+    }
     return columns | {
         "verdict": column("verdict"),
         "overturns from factor": [top if one is None else rounded(one) for one in column("factor")],
@@ -158,6 +163,7 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
         "base needed [cm]": [rounded(one, "m") for one in column("smallest_width")],
         "wider by [cm]": [rounded(one.wider, "m") for one in lines],
         "what to do first": [one.first_step for one in lines],
+        **clauses,
     }
 
 
