@@ -11,7 +11,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
 from rocking._solver.stages import columns as column
 from rocking._solver.stages.cuts import init_nodes, start_uplifts, uplift_piece
-from rocking._solver.stages.events import end_flights, prefetch_responses, write_responses
+from rocking._solver.stages.events import end_flights, write_responses
 from rocking._solver.stages.flight import follow_flights
 from rocking._solver.stages.lists import (
     GENERAL_LIST,
@@ -172,7 +172,6 @@ def solve_by_arcs(
         block = responses[first:last]
         counts[:] = 0
         shared = start_cells(block_s, block_w, pulse, cells, block)
-        ahead = last
         while not is_stopped(stop):
             fullest = 0
             for which in range(1, GENERAL_LIST):
@@ -180,8 +179,6 @@ def solve_by_arcs(
                     fullest = which
             if counts[fullest] == 0:
                 break
-            prefetch_responses(responses, ahead, min(ahead + LANES, last + BLOCK_SIZE))
-            ahead += LANES
             follow_group(fullest, shared, block_s, block_w, block_eta, pulse, group, cells, block)
         for i in range(counts[GENERAL_LIST]):
             place = lists[GENERAL_LIST, i]

@@ -105,7 +105,6 @@ def _group_layout() -> np.dtype[np.void]:
             ("node_slope", np.float64, pieces),
             ("response", [(name, np.float64, lanes) for name in RESPONSE_RECORD.names or ()]),  # to be written
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
-            ("written", np.int64, lanes),  # number of the response to be written, or -1
             ("expanded", np.int64),  # 1 once `series` and `excitation` are of this flight
             ("used", np.int64),  # bits of the lanes that hold a cell
             ("source", np.int64, lanes),  # the same, with a cell in every lane
