@@ -58,7 +58,7 @@ def _copy_lane(_: Any, source: Any, lane: Any, target: Any) -> Any:
             _assign(context, builder, target, values[2], name, converted)
         return context.get_dummy_value()
 
-    return types.void(source, types.intp, target), lower
+    return types.void(source, lane, target), lower
 
 
 copy_lane: Any = intrinsic(_copy_lane)
