@@ -1,6 +1,7 @@
 """`record_response`: responses of blocks under a recorded ground motion."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -121,13 +122,25 @@ def solve_bodies_under_pulse(
     each_side: bool = False,
 ) -> tuple[NDArray[np.void], Array]:
     """`solve_bodies` under a sampled pulse; `rate` of the cells is the frequency ratio, errors as `solve_pulse`."""
-    parts = interval_parts(pulse, cells["rate"])
-    sampled = cells.copy()
+    parts, sampled = interval_parts(pulse, cells["rate"]), cells.copy()
     sampled["rate"] = 1.0 / cells["rate"]
-    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
-    for division in np.unique(parts):
-        own, rows = parts == division, pulse_samples(pulse, int(division))
-        records[own], of_edges = solve_bodies(rows, sampled[own], threads, stop, each_side)
+
+    def solve(own: NDArray[np.bool_], division: int) -> tuple[NDArray[np.void], Array]:
+        return solve_bodies(pulse_samples(pulse, division), sampled[own], threads, stop, each_side)
+
+    return _each_kind(parts, solve, each_side)
+
+
+def _each_kind(
+    kinds: NDArray[np.int64],
+    solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]],
+    each_side: bool,
+) -> tuple[NDArray[np.void], Array]:
+    """The result of `solve_bodies` for cells of several kinds (size,), those of each kind solved together."""
+    records, edges = np.empty(kinds.size, RESPONSE_RECORD), np.empty((kinds.size if each_side else 0, EDGE_COLUMNS))
+    for kind in np.unique(kinds):
+        own = kinds == kind
+        records[own], of_edges = solve(own, int(kind))
         if each_side:
             edges[own] = of_edges
     return records, edges
@@ -169,29 +182,19 @@ def solve_bodies(
     EDGE_COLUMNS); else the second result has no rows. Errors are those of `rocking._solver.peak_response.solve_cells`.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
-    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
-    if by_steps.any() and not by_steps.all():
-        for kind in (by_steps, ~by_steps):
-            records[kind] = solve_bodies(samples, cells[kind], threads, stop)[0]
-        return records, edges
-    if cells.size and by_steps[0]:
+    kinds = np.full(cells.size, -1)
+    if by_steps.any():
         # what sets the rounding of a cell is its own, not that of the cells beside it in the array or the thread
-        alike = 2 * taylor_orders(samples, cells) + (cells["vertical"] != 0.0)
-        if (kinds := np.unique(alike)).size > 1:
-            for kind in kinds:
-                own = alike == kind
-                records[own], of_edges = solve_bodies(samples, cells[own], threads, stop, each_side)
-                if each_side:
-                    edges[own] = of_edges
-            return records, edges
+        kinds[by_steps] = 2 * taylor_orders(samples, cells[by_steps]) + (cells["vertical"][by_steps] != 0.0)
+    if cells.size and (kinds != kinds[0]).any():
+        return _each_kind(kinds, lambda own, _: solve_bodies(samples, cells[own], threads, stop, each_side), each_side)
+    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
 
-        def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        if by_steps[0]:
             blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])
             solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], edges[part])
-
-    else:
-
-        def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        else:
             solve_slender(samples, cells[part], body_states(samples, 1)[0], flag, records[part])
 
     cores = int(threads or AVAILABLE_CORES)
