@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, number, positive
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 
 Array = NDArray[np.float64]
 
@@ -144,7 +143,7 @@ class Object:
             if getattr(self, name) is not None:
                 checked[name] = positive(name, getattr(self, name), unit)
         if not (isinstance(self.restitution, str) and self.restitution == "momentum"):
-            checked["restitution"] = check_number(RESTITUTION, self.restitution)
+            checked["restitution"] = RESTITUTION.number(self.restitution)
         half = 0.5 * min(size for plane in self.planes.values() for size in (plane.base, plane.height))
         checked["tolerance"] = number("tolerance", self.tolerance, 0.0, half, closed="left", unit="m")
         self._set(checked)
@@ -214,9 +213,9 @@ class Object:
         """The body in each plane, over the dimension `direction`."""
         import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 
-        given = Bodies.of([self]).scaled().rigid.parameters
-        names = {"direction": list(self.planes)}
-        return RigidBody(
+        rigid, names = Bodies.of([self]).scaled().rigid, {"direction": list(self.planes)}
+        given = rigid.parameters
+        return rigid.changed(
             **{key: xr.DataArray(value, names, "direction") if value.ndim else value for key, value in given.items()}
         )
 
@@ -469,11 +468,11 @@ class BodyArray(AbstractBody):
         given = self.rigid.parameters
         if np.array_equal(given["left"], given["right"]):
             return [self]
-        mirrored = RigidBody(**{**given, "left": given["right"], "right": given["left"]})
+        mirrored = self.rigid.changed(**{**given, "left": given["right"], "right": given["left"]})
         return [self, BodyArray(mirrored, self.own, self.change)]
 
     @property
     def column(self) -> BodyArray:
         """The bodies along the first of two axes."""
         given = {name: value[..., None] if value.ndim else value for name, value in self.rigid.parameters.items()}
-        return BodyArray(RigidBody(**given), self.own[:, None], self.change[:, None])
+        return BodyArray(self.rigid.changed(**given), self.own[:, None], self.change[:, None])

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._boundary.search import Floats, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_ends, check_number
+from rocking._model.checks import check_ends
 from rocking._model.outcome_code import SURVIVES
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
 
 NODES_PER_DECADE = 1000  # nodes on which outcomes are first computed, before their changes are refined [-]
@@ -60,7 +60,7 @@ def critical_frequency_ratio(
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    point = check_number(SLENDERNESS, slenderness), float(nodes[0]), check_number(RESTITUTION, restitution)
+    point = SLENDERNESS.number(slenderness), float(nodes[0]), RESTITUTION.number(restitution)
     grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, alpha, stop=stop), counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])

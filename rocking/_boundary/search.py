@@ -12,12 +12,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.checks import check_one_alpha
 from rocking._model.energy import outcome_margin
 from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
-from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
 from rocking._solver.peak_response import solve_cells

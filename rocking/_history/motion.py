@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import number, positive
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
@@ -22,9 +23,8 @@ from rocking._history.sampling import (
     sample_free_rocking,
     sample_record,
 )
-from rocking._model.checks import check_number, check_one_alpha
+from rocking._model.checks import check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
@@ -109,6 +109,12 @@ class BodyMotion(ABC):
     def restitution(self) -> float:
         """Of impacts that leave the right edge [-]."""
         return float(self.cell["eta"][0])
+
+    @property
+    def slenderness(self) -> float:
+        """g tan(alpha) over the largest ground acceleration [-]; of the left edge if nothing lifts the right one."""
+        right, left = self.cell["slenderness"].tolist()
+        return float(right if right < math.inf else left)
 
     @cached_property
     def alpha(self) -> float:
@@ -241,7 +247,7 @@ class PulseMotion(BodyMotion):
 
     def ground_acceleration(self, tau: Floats) -> Floats:
         f = self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau)
-        return np.asarray(f / self.cell["slenderness"][0])
+        return np.asarray(f / self.slenderness)
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
         followed, solved = self._flights
@@ -268,6 +274,7 @@ class PulseMotion(BodyMotion):
         cell, state = self.cell, np.repeat(pulse_state(self.pulse), LANES)
         followed, response = np.empty(MAX_FLIGHTS, FOLLOWED_FLIGHT), np.empty(1, RESPONSE_RECORD)
         equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
+        equal = equal and cell["slenderness"][0] == cell["slenderness"][1]
         edges = NO_EDGES if equal else np.empty((1, EDGE_COLUMNS))
         count = solve_batch(np.array([cell]), state, step_state(state[0]), self._flag, response, edges, followed)
         self._check_stop()
@@ -321,7 +328,7 @@ class SamplesMotion(BodyMotion):
         return self.times
 
     def ground_acceleration(self, tau: Floats) -> Floats:
-        u = self.samples[SHAPE] / self.cell["slenderness"][0]
+        u = self.samples[SHAPE] / self.slenderness
         return np.asarray(np.interp(tau, self.times, u, right=0.0))
 
     def vertical_acceleration(self, tau: Floats) -> Floats:
@@ -349,8 +356,8 @@ def build_motion(
 ) -> BodyMotion:
     """The motion for given groups; arguments and errors as for `rocking.time_history`."""
     made = as_pulse(pulse)
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
-    omega, angle = check_number(FREQUENCY_RATIO, frequency_ratio), check_one_alpha(alpha)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
+    omega, angle = FREQUENCY_RATIO.number(frequency_ratio), check_one_alpha(alpha)
     if duration is None:
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
@@ -374,7 +381,7 @@ def build_record_motion(
 ) -> SamplesMotion:
     """The motion for given parameters; arguments and errors as for `rocking.time_history`."""
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
     angle = check_one_alpha(alpha)
     vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._model.checks import check_number, check_one_alpha
-from rocking._model.parameters import RESTITUTION
+from rocking._base.quantities import RESTITUTION
+from rocking._model.checks import check_one_alpha
 
 Floats = NDArray[np.float64]
 
@@ -112,7 +112,7 @@ def impulse_ratio(restitution: float, alpha: float, other_alpha: float | None = 
     InvalidArgumentError
         For an argument out of range.
     """
-    eta = check_number(RESTITUTION, restitution)
+    eta = RESTITUTION.number(restitution)
     slope = math.tan(check_one_alpha(alpha))
     other = slope if other_alpha is None else math.tan(check_one_alpha(other_alpha))
     pressed = slope + eta * other

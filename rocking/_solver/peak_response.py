@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import broadcast, integer, needed, reject_given
+from rocking._base.quantities import RELATIVE_TOLERANCE
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as Recording
-from rocking._model.checks import check_groups, check_number, known_restitution
+from rocking._model.checks import check_groups, known_restitution
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of, is_labelled, labelled_response
-from rocking._model.parameters import RELATIVE_TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
@@ -193,7 +193,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     groups = broadcast(given, [*checked.values()][: 3 if alpha is None else 4])
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
-    accepted = 0.0 if relative_tolerance is None else check_number(RELATIVE_TOLERANCE, relative_tolerance)
+    accepted = 0.0 if relative_tolerance is None else RELATIVE_TOLERANCE.number(relative_tolerance)
     exact = made.samples is not None or (made.series.has_exact_arcs and slender)  # no terms to truncate
     precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)

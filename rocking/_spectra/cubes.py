@@ -14,14 +14,14 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import one_of
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._datasets.cube import DIMENSIONS, IMPACTS_BEFORE_REST, OPTIONAL_VARIABLES, build_spectrum_dataset
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.slices import windows_of
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
-from rocking._model.checks import check, check_alpha
+from rocking._model.checks import check_alpha
 from rocking._model.fields import CUBE_FIELDS
 from rocking._model.outcome_code import SURVIVES, outcome_codes
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
@@ -110,10 +110,10 @@ def solve_cubes(
     cores. `stop`: the computation ends with `StoppedError` soon after another thread sets it. Raises
     `InvalidArgumentError` if a value is out of range.
     """
-    rows = check(SLENDERNESS, slenderness)
-    columns = check(FREQUENCY_RATIO, frequency_ratio)
+    rows = SLENDERNESS.convert(slenderness)
+    columns = FREQUENCY_RATIO.convert(frequency_ratio)
     angles = check_alpha(alpha)
-    etas = check(RESTITUTION, restitution)
+    etas = RESTITUTION.convert(restitution)
     for name in derived:
         one_of("derived", name, OPTIONAL_VARIABLES)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)

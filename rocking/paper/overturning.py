@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import in_range
-from rocking._model.checks import check
 from rocking.paper.arguments import ANY_FREQUENCY_RATIO, POSITIVE_RESTITUTION, Array, checked
 from rocking.paper.motion import (
     after_pulse_coefficients,
@@ -62,7 +61,7 @@ def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
 
     a [-], > 1, of the shape of `frequency_ratio`. It is unique: (3.10) divided by a is monotone in psi.
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = case_2_phase(omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -95,7 +94,7 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
     `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and that of
     case 2 agree in all printed digits.
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -114,7 +113,7 @@ def limit_velocity(frequency_ratio: ArrayLike) -> Array:
     elsewhere it lies in the region where the block survives.
     """
     a = limit_amplitude(frequency_ratio)
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     A0, B0, C0 = coefficients(a, omega)
     grown = 1 + np.sqrt(1 - A0 * B0)  # B0* e^{p T_ex}, (3.31)
     return np.asarray((grown - A0 * np.exp(-pulse_end(a, omega)) + C0 * omega) / 2)  # (3.11)
@@ -262,7 +261,7 @@ def case_1_1_end(restitution: ArrayLike) -> Array:
         branch of (3.18) and the curve (3.20) meet there on the limit (3.31); for smaller eta the curve (3.20) has a
         turning point there.
     """
-    eta = check(POSITIVE_RESTITUTION, restitution)
+    eta = POSITIVE_RESTITUTION.convert(restitution)
     return find_root(_best_condition, np.full_like(eta, 0.05), np.full_like(eta, 8.0), eta)
 
 

@@ -11,13 +11,12 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import respond
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.intensity import measure_of
 from rocking.suites.outcomes import FIELDS, check_levels, checked_levels, checked_records, labelled_outcomes
@@ -50,8 +49,8 @@ def body_outcomes(
         )
     motions = [one for record in checked_records(records) for one in (record, mirrored(record))]
     levels = checked_levels(intensity, chosen)
-    eta = None if restitution == "momentum" else np.array(check_number(RESTITUTION, restitution))
-    column = RigidBody(
+    eta = None if restitution == "momentum" else np.array(RESTITUTION.number(restitution))
+    column = body.changed(
         **{name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
     )
     shape = (*body.shape, levels.size, len(motions))

@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
+from rocking._base.quantities import RESTITUTION
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 from rocking._model.block import RectangularBlock
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES
@@ -142,9 +141,7 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         name=_name(given["name"]),
         records=_record_files(given["records"], folder),
         blocks=_blocks(given["blocks"]),
-        restitution="momentum"
-        if given["restitution"] == "momentum"
-        else check_number(RESTITUTION, given["restitution"]),
+        restitution="momentum" if given["restitution"] == "momentum" else RESTITUTION.number(given["restitution"]),
         measure=measure,
         intensity=_levels("intensity", given["intensity"], logarithmic=True),
         demand=tuple(check_demands(given["demand"])),

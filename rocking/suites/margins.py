@@ -4,8 +4,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.scan import RESOLUTION, Index, lowest_overturning
-from rocking._dimensional.problem import HIGHEST_SCALE, uplift_scale
+from rocking._dimensional.problem import uplift_scale
 from rocking._dimensional.thresholds import block_lines
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale

@@ -18,9 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array, one_of
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.block import Block
-from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._dimensional.thresholds import overturning_scale
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record

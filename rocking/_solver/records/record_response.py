@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer
+from rocking._base.quantities import FREQUENCY_PARAMETER
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import check_vertical_scale
 from rocking._excitation.shapes import AbstractPulse
 from rocking._model.checks import check_groups
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of
-from rocking._model.parameters import FREQUENCY_PARAMETER
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
