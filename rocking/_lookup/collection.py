@@ -54,14 +54,8 @@ class CubeCollection:
     def slice_at(self, pulse: str, restitution: float, may_read: bool = True) -> CubeSlice | None:
         """The cube of a pulse and a restitution, None if there is none; without `may_read` it is not read.
 
-        A mirrored pulse has the same peaks and outcomes, hence the same cube.
-
-        Raises
-        ------
-        DatasetError
-            If the file is damaged, cannot be read, or does not contain the cube that its name states.
-        UnreadError
-            If it has to be read.
+        A mirrored pulse has the same peaks and outcomes, hence the same cube. Raises `DatasetError` if the file is
+        damaged, cannot be read, or does not contain the cube that its name states; `UnreadError` if it has to be read.
         """
         key = pulse.removeprefix("-"), restitution
         known = self._slices.current(key)

@@ -89,21 +89,11 @@ class UnreadError(RuntimeError):
 
 
 class Window(NamedTuple):
-    """The slices from which points are interpolated.
+    """The slices from which points are interpolated."""
 
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        Ascending.
-    lower : int
-        The one at or below the points.
-    levels : float array
-        Their restitutions [-].
-    """
-
-    slices: list[CubeSlice]
-    lower: int
-    levels: Array
+    slices: list[CubeSlice]  # ascending
+    lower: int  # the one at or below the points
+    levels: Array  # their restitutions [-]
 
     def arguments(self, alpha: Array, may_read: bool) -> tuple[Any, ...]:
         """What the kernel needs for points at some angles [rad], which are read if they are not."""

@@ -41,13 +41,8 @@ class Layers:
     """The nodes of a cube, read angle by angle when they are first needed.
 
     Of the ten angles of an atlas, 12 MB each, a response needs one or up to four: memory of the others is not touched.
-
-    Parameters
-    ----------
-    shape : (int, int, int)
-        Of the nodes: angles, n, m.
-    read : callable
-        Returns the nodes (n, m) of an angle by its index; the file then is the one that was checked.
+    `shape`: angles, n, m. `read` returns the nodes (n, m) of an angle by its index; the file then is the one that was
+    checked.
     """
 
     def __init__(self, shape: tuple[int, ...], read: Callable[[int], Nodes]) -> None:
@@ -95,34 +90,17 @@ class Layers:
 
 @dataclass(frozen=True, eq=False)
 class CubeSlice:
-    """The cube of one restitution.
+    """The cube of one restitution."""
 
-    Attributes
-    ----------
-    pulse : str or SampledPulse
-        Name of the pulse, or the pulse made again from the samples in the file.
-    restitution : float
-        eta of this cube [-].
-    restitutions : float array
-        eta of the cubes from which the interval above this one is interpolated [-], ascending.
-    axes : mapping of str to float array
-        alpha [rad], slenderness [-] and frequency_ratio [-].
-    mesh, angles : Mesh, AngleAxis
-        The same for the kernel.
-    layers : Layers
-        The variables, an array (angles, n, m) of `NODE`.
-    sha256 : str
-        Digest of the file, the version of the data.
-    """
-
-    pulse: str | SampledPulse
-    restitution: float
-    restitutions: Array
-    axes: Mapping[str, Array]
+    pulse: str | SampledPulse  # name of the pulse, or the pulse made again from the samples in the file
+    restitution: float  # eta of this cube [-]
+    restitutions: Array  # eta of the cubes from which the interval above this one is interpolated [-], ascending
+    axes: Mapping[str, Array]  # alpha [rad], slenderness [-] and frequency_ratio [-]
+    # mesh, angles: the same for the kernel
     mesh: Mesh
     angles: AngleAxis
-    layers: Layers
-    sha256: str
+    layers: Layers  # the variables, an array (angles, n, m) of `NODE`
+    sha256: str  # digest of the file, the version of the data
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""

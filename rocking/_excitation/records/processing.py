@@ -56,13 +56,9 @@ def offset_remark(a: Array) -> str | None:
 def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
     """The acceleration `a` (samples,) less the derivative of a polynomial fitted to the velocity `v` (samples,).
 
-    The polynomial of degree `order` + 1 is zero at the first sample, as the velocity. Time is divided by the
-    `duration` [s]: the least-squares problem is then well conditioned for the degrees allowed.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `order` is out of range, or there are fewer than `order` + 2 samples.
+    The polynomial of degree `order` + 1 is zero at the first sample, as the velocity. Time is divided by the `duration`
+    [s]: the least-squares problem is then well conditioned for the degrees allowed. At least `order` + 2 samples are
+    needed.
     """
     order = integer("order", order, 0, MAX_BASELINE_ORDER)
     if a.size < order + 2:
