@@ -148,13 +148,7 @@ class CubeCollection:
         return result.reshape(shape), tuple(one.sha256 for one in used)
 
     def problem(self, name: str) -> str | None:
-        """Description of the problem of a data set; None if it is intact.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is no data set of that name.
-        """
+        """Description of the problem of a data set; None if it is intact."""
         try:
             with self.catalogue.open(name) as file:
                 return self.problem_of(file)

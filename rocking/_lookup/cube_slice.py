@@ -66,13 +66,7 @@ class Layers:
         return not self._missing
 
     def at(self, angles: Collection[int]) -> Nodes:
-        """The nodes (angles, n, m), of which those of some angles are read; the others are undefined.
-
-        Raises
-        ------
-        DatasetError
-            If the file was replaced or removed.
-        """
+        """The nodes (angles, n, m), of which those of some angles are read; `DatasetError` if the file was replaced."""
         if self._missing.isdisjoint(angles):
             return self._nodes
         with self._lock:
@@ -113,13 +107,7 @@ class CubeSlice:
 
 
 def open_slice(path: Path | str) -> CubeSlice:
-    """A spectrum cube of a file, which is checked; its variables are read when they are first needed.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing, damaged, or not a spectrum cube.
-    """
+    """A spectrum cube of a file, which is checked; its variables are read when they are first needed."""
     version = version_of(Path(path))
     return decode_slice(read_content(path), path, Path(path), version)
 
@@ -166,13 +154,7 @@ def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
 
 
 def slice_of(cube: xr.Dataset, sha256: str = "", read: Callable[[int], Nodes] | None = None) -> CubeSlice:
-    """A spectrum cube; `sha256` is the digest of its file, and `read` that of `Layers`, if it has one.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an axis has fewer than four nodes, or the samples of the pulse are none.
-    """
+    """A spectrum cube, four nodes a side at least; of a file `sha256` is its digest, and `read` that of `Layers`."""
     restitution = restitution_of(cube)
     axes = {name: cube[name].values for name in AXES}
     layers = Layers(cube["peak_rotation"].shape, read or (lambda angle: _layer(cube.isel(alpha=[angle]))))

@@ -92,10 +92,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
 
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
-    """Smallest and largest frequency parameter p of a block under this record [rad/s].
-
-    Raises `InvalidArgumentError` if `motion` is not a record.
-    """
+    """Smallest and largest frequency parameter p of a block under this record, which is checked to be one [rad/s]."""
     if not isinstance(motion, Record):
         raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
@@ -104,10 +101,8 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
 def solve_pulse(
     pulse: AbstractPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
-    """Response records (size,) of blocks under a sampled pulse; `cells` as for `solve_cells` of `peak_response`.
-
-    Raises `InvalidArgumentError` if the frequency ratio is so low that the samples had to be divided into more than
-    `MAX_DIVIDED` intervals. Raises `StoppedError` if `stop` was set.
+    """Response records (size,) of blocks under a sampled pulse; `cells` and errors as for `solve_cells` of
+    `peak_response`.
     """
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)

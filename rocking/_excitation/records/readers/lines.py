@@ -175,10 +175,7 @@ class TextFile:
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
 
     def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
-        """The remark on a number of values that differs from the stated one; none if it does not.
-
-        Raises `RecordFileError` if the difference is larger than headers are usually off: the file is damaged.
-        """
+        """The remark on a number of values that differs from the stated one, by as much as headers are usually off."""
         difference = abs(values.size - stated)
         if difference > COUNT_DIFFERENCE * stated:
             raise self.error(line, f"{stated} stated, {values.size} values in the file", "equal numbers")
@@ -186,10 +183,7 @@ class TextFile:
 
 
 def to_floats(fields: list[bytes]) -> list[float]:
-    """Numbers that match `NUMBER`, with exponents of E.
-
-    Raises `ValueError` for any other text.
-    """
+    """Numbers that match `NUMBER`, with exponents of E; `ValueError` for any other text."""
     if b" ".join(fields).translate(None, b"0123456789+-.Ee "):
         raise ValueError("not only numbers")
     return [*map(float, fields)]
@@ -220,10 +214,7 @@ def parse_unit(text: str) -> str | None:
 
 
 def agreed_unit(file: TextFile, line: int | None, stated: str | None, given: str | None) -> str:
-    """The unit stated in the file, or given as an argument.
-
-    Raises `RecordFileError` if there is none, or the two differ.
-    """
+    """The unit stated in the file, or given as an argument; one of them, and the same if both."""
     if stated is None and given is None:
         raise file.error(line, "no unit of acceleration", "one in the header, or the argument `unit`")
     same = stated is None or given is None or {stated, given} <= {"gal", "cm/s2"} or stated == given
