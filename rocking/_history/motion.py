@@ -15,14 +15,7 @@ from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
 from rocking._excitation.records.vertical import check_one_vertical_scale
 from rocking._excitation.shapes import MAX_PIECES
-from rocking._history.sampling import (
-    ROTATION,
-    TAU,
-    VELOCITY,
-    sample_flights,
-    sample_free_rocking,
-    sample_record,
-)
+from rocking._history.sampling import ROTATION, TAU, VELOCITY, sample_flights, sample_free_rocking, sample_record
 from rocking._model.checks import check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry

@@ -214,11 +214,7 @@ def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> ND
 
 
 def solve_cells(
-    pulse: AbstractPulse,
-    cells: list[NDArray[np.float64]],
-    precision: float,
-    threads: int | None,
-    stop: StopFlag | None,
+    pulse: AbstractPulse, cells: list[NDArray[np.float64]], precision: float, threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
     """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
 

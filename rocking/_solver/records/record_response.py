@@ -110,11 +110,7 @@ def solve_pulse(
 
 
 def solve_bodies_under_pulse(
-    pulse: AbstractPulse,
-    cells: NDArray[np.void],
-    threads: int | None,
-    stop: StopFlag | None,
-    each_side: bool = False,
+    pulse: AbstractPulse, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None, each_side: bool = False
 ) -> tuple[NDArray[np.void], Array]:
     """`solve_bodies` under a sampled pulse; `rate` of the cells is the frequency ratio, errors as `solve_pulse`."""
     parts, sampled = interval_parts(pulse, cells["rate"]), cells.copy()
@@ -127,9 +123,7 @@ def solve_bodies_under_pulse(
 
 
 def _each_kind(
-    kinds: NDArray[np.int64],
-    solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]],
-    each_side: bool,
+    kinds: NDArray[np.int64], solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]], each_side: bool
 ) -> tuple[NDArray[np.void], Array]:
     """The result of `solve_bodies` for cells of several kinds (size,), those of each kind solved together."""
     records, edges = np.empty(kinds.size, RESPONSE_RECORD), np.empty((kinds.size if each_side else 0, EDGE_COLUMNS))
@@ -165,11 +159,7 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
 
 
 def solve_bodies(
-    samples: Array,
-    cells: NDArray[np.void],
-    threads: int | None,
-    stop: StopFlag | None,
-    each_side: bool = False,
+    samples: Array, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None, each_side: bool = False
 ) -> tuple[NDArray[np.void], Array]:
     """Response records (size,) of bodies `BODY_CELL` (size,) under `sample_rows`, and what differs from edge to edge.
 

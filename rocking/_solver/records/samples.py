@@ -22,9 +22,7 @@ BLOCK = 32  # sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold 
 
 
 def sample_rows(
-    shape: NDArray[np.float64],
-    time: NDArray[np.float64] | None = None,
-    vertical: NDArray[np.float64] | None = None,
+    shape: NDArray[np.float64], time: NDArray[np.float64] | None = None, vertical: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """The array (7, samples) of a motion.
 

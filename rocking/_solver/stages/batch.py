@@ -69,14 +69,7 @@ def distribute(which: int, pulse: Record, group: Record, cells: Record, response
 
 
 @kernel
-def share_flights(
-    which: int,
-    eta: FloatArray,
-    pulse: Record,
-    group: Record,
-    cells: Record,
-    responses: Record,
-) -> None:
+def share_flights(which: int, eta: FloatArray, pulse: Record, group: Record, cells: Record, responses: Record) -> None:
     """End the flights for the other cells that share them; `shared` and `leader` hold the group as it was before."""
     members, most = cells.members, 1
     for lane in range(LANES):

@@ -139,13 +139,7 @@ def sort_by_slenderness(which: int, slenderness: FloatArray, cells: Record) -> N
 
 @kernel
 def take_resting_cells(
-    which: int,
-    slenderness: FloatArray,
-    omega: FloatArray,
-    eta: FloatArray,
-    pulse: Record,
-    group: Record,
-    cells: Record,
+    which: int, slenderness: FloatArray, omega: FloatArray, eta: FloatArray, pulse: Record, group: Record, cells: Record
 ) -> None:
     """Take the last cells from a list of first flights into the group; unused lanes get one of them."""
     columns = group.columns
