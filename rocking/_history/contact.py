@@ -51,22 +51,12 @@ COLUMNS = {
 """Variables that `add_contact` adds to a time history, with their meanings."""
 
 ATTRIBUTES = (
-    "largest_friction_demand",
-    "largest_friction_demand_over_slope",
-    "smallest_normal_reaction",
-    "impulse_ratio",
+    *("largest_friction_demand", "largest_friction_demand_over_slope"),
+    *("smallest_normal_reaction", "impulse_ratio"),
 )
 """Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
-
-FORCES = (
-    "largest_friction_demand",
-    "largest_friction_demand_over_slope",
-    "friction_time",
-    "smallest_normal_reaction",
-    "normal_time",
-    "impulse_ratio",
-)
+FORCES = (*ATTRIBUTES, "friction_time", "normal_time")
 """Fields of `ContactExtremes` that depend on the contact forces."""
 
 
