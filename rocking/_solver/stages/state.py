@@ -61,7 +61,7 @@ def _group_layout() -> np.dtype[np.void]:
             *((name, np.float64, lanes) for name in _LANE_FIELDS),
             *((name, np.float64, terms) for name in ("force", "rate", "particular")),
             *((name, np.float64, terms) for name in ("cosine0", "sine0", "cosine", "sine")),
-            # coefficients of z about the start of the flight in powers of tau; of F for a wavelet; of its Gaussian, of phi
+            # coefficients: of z about the start of the flight; of F for a wavelet; of its Gaussian, in powers of phi
             *((name, np.float64, (WAVELET_SERIES_LENGTH, LANES)) for name in ("series", "excitation", "gauss")),
             ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
             ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
