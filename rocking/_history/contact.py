@@ -29,7 +29,7 @@ MAX_STEP = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
 
 MAX_STEPS = 250_000
-"""Number of steps during the ground motion, and after it, from which on they are longer than `MAX_STEP` [-]."""
+"""Most steps during the ground motion, and after it [-]: longer motions have longer steps than `MAX_STEP`."""
 
 LAST_FLIGHT = 100.0
 """Longest flight of free rocking [tau]: within a rounding of the unstable equilibrium it lasts 2 ln(2/1e-16) = 75."""

@@ -3,8 +3,8 @@
 `kernel` marks a function that other kernels call; `entry` marks one that is called from Python. Only entries are kept
 on disk (`rocking._numba.kernel_cache`), each with all the kernels that it calls, and each entry has one signature.
 
-There are two ways, which no kernel can tell apart (`rocking._numba.way`): the faster one compiles in a third of the
-time by private names of numba (`rocking._numba.internals`), the plain one by its public interface alone.
+Kernels compile in one of two ways, which give the same results (`rocking._numba.way`): the faster one takes a third of
+the time by private names of numba (`rocking._numba.internals`), the plain one uses its public interface alone.
 """
 
 from collections.abc import Callable

@@ -218,20 +218,10 @@ store = instruction(
 splat = instruction(_splat, _VECTOR_TYPE, types.float64)  # splat(number): the number in every lane
 absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)  # absolute(x), lane by lane
 
-maximum = instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-)
+maximum = instruction(lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y), *[_VECTOR_TYPE] * 3)
 """maximum(x, y), lane by lane."""
 
-minimum = instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y),
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-)
+minimum = instruction(lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y), *[_VECTOR_TYPE] * 3)
 """minimum(x, y), lane by lane."""
 
 approx_log2 = instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
@@ -315,33 +305,23 @@ def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
     lower_builtin(operation, _MASK_TYPE, _MASK_TYPE)(lambda _, builder, __, masks: generate(builder, *masks))
 
 
-for _operator, _name in (
-    (operator.add, "fadd"),
-    (operator.iadd, "fadd"),
-    (operator.sub, "fsub"),
-    (operator.isub, "fsub"),
-    (operator.mul, "fmul"),
-    (operator.imul, "fmul"),
-    (operator.truediv, "fdiv"),
-):
-    _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
+_ARITHMETIC = {
+    "fadd": (operator.add, operator.iadd),
+    "fsub": (operator.sub, operator.isub),
+    "fmul": (operator.mul, operator.imul),
+    "fdiv": (operator.truediv,),
+}
+for _name, _operators in _ARITHMETIC.items():
+    for _operator in _operators:
+        _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
 
-for _operator, _name in (
-    (operator.lt, "<"),
-    (operator.le, "<="),
-    (operator.gt, ">"),
-    (operator.ge, ">="),
-    (operator.eq, "=="),
-):
+_COMPARISONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq}
+for _name, _operator in _COMPARISONS.items():
     _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
 
-for _operator, _name in (
-    (operator.and_, "and_"),
-    (operator.iand, "and_"),
-    (operator.or_, "or_"),
-    (operator.ior, "or_"),
-):
-    _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
+for _name, _operators in {"and_": (operator.and_, operator.iand), "or_": (operator.or_, operator.ior)}.items():
+    for _operator in _operators:
+        _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
 
 
 @type_callable(operator.invert)

@@ -98,7 +98,7 @@ def counted(
 ) -> dict[str, tuple[NDArray[Any], str]]:
     """Number and fraction of the motions, the last axis, that do something, with interval; each with its meaning.
 
-    `signs` motions after each other are one record; the interval is that of so many fewer independent trials.
+    `signs` consecutive motions are one record and count as one independent trial of the interval.
     """
     count, trials = reached.sum(axis=-1), reached.shape[-1]
     low, high = binomial_interval(count / signs, trials // signs, confidence)

@@ -34,8 +34,8 @@ MAX_DIVIDED = 200_000
 """Most intervals into which the samples of a pulse are divided where they are longer than `MAX_INTERVAL`."""
 
 MIN_CHUNK, MAX_CHUNK = 64, 512
-"""Cells given to a thread at a time: about a millisecond of work at least, and full SIMD lanes for most of it. Of a
-motion with fewer samples than an ordinary record, 2,000, so many more."""
+"""Cells given to a thread at a time: at least a millisecond of work, with full SIMD lanes for most of it; more in
+proportion for motions of fewer samples than an ordinary record, 2,000."""
 
 
 def record_response(

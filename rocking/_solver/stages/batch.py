@@ -30,7 +30,7 @@ LEFT = -1  # outcome of a cell that no stage decides: it is left to the caller
 
 @kernel
 def leave_rest(which: int, pulse: Record, group: Record) -> None:
-    """Decide what follows for blocks at rest: another uplift or nothing."""
+    """Decide whether blocks at rest uplift again."""
     columns = group.columns
     for lane in range(LANES):
         if group.next[lane] != float(REST):

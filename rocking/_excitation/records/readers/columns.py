@@ -45,7 +45,7 @@ STEP_TOLERANCE = 0.02
 
 MAX_TIME = 1e12  # largest time in a column of times [s]; times are often counted from an epoch
 WRAPPED = "rows"  # the component that stands for the values of all columns, row by row
-JUMP = 3.0  # a leading value so many times as large as all others is no sample [-]
+JUMP = 3.0  # a leading value this many times larger than all others is no sample [-]
 
 SMOOTHER = 0.8
 """Sum of the steps along the rows over that down the columns below which the rows are one series [-]: of records of 100
