@@ -141,10 +141,6 @@ def _element_address(builder: Any, array: Any, index: Any) -> Any:
     return builder.gep(builder.bitcast(array, ir.DoubleType().as_pointer()), [index])
 
 
-def _load_elements(builder: Any, array: Any, start: Any) -> Any:
-    return builder.load(builder.bitcast(_element_address(builder, array, start), _LLVM_VECTOR.as_pointer()), align=8)
-
-
 def _gather(builder: Any, array: Any, places: Any) -> Any:
     vector = ir.Constant(_LLVM_VECTOR, ir.Undefined)
     for i in range(LANES):
@@ -202,9 +198,6 @@ load = instruction(
     lambda builder, *place: builder.load(_row_address(builder, *place), align=8), _VECTOR_TYPE, None, types.intp
 )
 """load(array, row): a row of an array (rows, LANES); row 0 of an array (LANES,)."""
-
-load_elements = instruction(_load_elements, _VECTOR_TYPE, None, types.intp)
-"""load_elements(array, start): the elements from `start` on of an array (cells,)."""
 
 gather = instruction(_gather, _VECTOR_TYPE, None, None)
 """gather(array, places): element `places[i]` of an array (cells,) in lane i."""
