@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 MAX_BASELINE_ORDER = 6  # largest degree of a baseline [-]: higher ones follow the motion itself
 MAX_RATIO = 1000  # largest numerator and denominator of the ratio of two time steps [-]
 MAX_SAMPLES = 10_000_000  # most samples of a resampled record [-], as of one that is read
+ZEROS = 10  # zeros of the interpolation filter on either side [-]
 
 RATIO_TOLERANCE = 1e-9
 """Relative difference of a ratio of time steps from a fraction [-]: steps are often given in a few digits."""
@@ -81,8 +82,22 @@ def resample(a: Array, dt: float, time_step: Scalar) -> Array:
         raise InvalidArgumentError("time_step", step, f"at most the duration, {(a.size - 1) * dt:g} s")
     if count > MAX_SAMPLES:
         raise InvalidArgumentError("time_step", step, f"a step that gives at most {MAX_SAMPLES} samples, not {count}")
-    if ratio == 1:
-        return a
-    from scipy.signal import resample_poly  # noqa: PLC0415  # takes longer to load than the package
+    return a if ratio == 1 else _interpolated(a, ratio.numerator, ratio.denominator, count)
 
-    return np.asarray(resample_poly(a, ratio.numerator, ratio.denominator, window=("kaiser", STOP_BAND))[:count])
+
+def _interpolated(a: Array, up: int, down: int, count: int) -> Array:
+    """Values (count,) of the band-limited signal at multiples of down/up steps: a convolution with a windowed sinc.
+
+    As `scipy.signal.resample_poly`, which takes longer to load than all other parts of a response to a record. The
+    filter is stated at 1/up of a step and cuts off at the lower of the two Nyquist frequencies.
+    """
+    half = ZEROS * max(up, down)
+    h = np.sinc(np.arange(-half, half + 1) / max(up, down)) * np.kaiser(2 * half + 1, STOP_BAND)
+    taps = 2 * half // up + 1
+    h = np.pad(up / h.sum() * h, (0, taps * up - h.size))
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(a, taps), taps)
+    found = np.empty(count)
+    for i in range(min(up, count)):  # every up-th value has the same part of the filter
+        last, part = divmod(i * down + half, up)
+        found[i::up] = windows[last + 1 :: down][: found[i::up].size] @ h[part::up][::-1]
+    return found
