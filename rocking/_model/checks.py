@@ -125,7 +125,5 @@ def spread_impact(momentum: Any, share: float) -> Any:
 
 
 def check_groups(**given: Any) -> dict[str, Array]:
-    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays
-    of their shapes; alpha = None is 0.
-    """
+    """The given of `slenderness`, `frequency_ratio`, `restitution` and `alpha` as float64 arrays; alpha = None is 0."""
     return {name: check_alpha(one) if name == "alpha" else _GROUPS[name].convert(one) for name, one in given.items()}
