@@ -14,13 +14,13 @@ from rocking._assessment.search import least, problems_of
 from rocking._assessment.site import LENGTH, Motion, static_acceleration
 from rocking._assessment.sliding import first_exceedance
 from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, first_excess
-from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag, check_stop
 
 if TYPE_CHECKING:

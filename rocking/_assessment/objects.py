@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, number, positive
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 
 Array = NDArray[np.float64]
 
@@ -144,7 +143,7 @@ class Object:
             if getattr(self, name) is not None:
                 checked[name] = positive(name, getattr(self, name), unit)
         if not (isinstance(self.restitution, str) and self.restitution == "momentum"):
-            checked["restitution"] = check_number(RESTITUTION, self.restitution)
+            checked["restitution"] = RESTITUTION.number(self.restitution)
         half = 0.5 * min(size for plane in self.planes.values() for size in (plane.base, plane.height))
         checked["tolerance"] = number("tolerance", self.tolerance, 0.0, half, closed="left", unit="m")
         self._set(checked)

@@ -72,7 +72,7 @@ class Assessment(EqualByValue):
     def details(self) -> dict[str, list[str]]:
         """Other texts of the object of each row, such as an inventory number, by their headers."""
         labels = dict.fromkeys(label for one in self.objects for label in one.details)
-        taken = {name for one in OUTPUTS for name in (one.name, one.label)}
+        taken = {name for one in OUTPUTS for name in (one.name, one.header)}
         return {
             f"{label} (given)" if label in taken else label: [one.details.get(label, "") for one in self.objects]
             for label in labels
@@ -171,7 +171,7 @@ class Assessment(EqualByValue):
         """
         added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
         rows: list[dict[str, Any]] = [*self.rows, *added]
-        text = csv_text(self.with_details({one.label: [row.get(one.name) for row in rows] for one in OUTPUTS}))
+        text = csv_text(self.with_details({one.header: [row.get(one.name) for row in rows] for one in OUTPUTS}))
         if path is not None:
             Path(path).write_text(text, encoding="utf-8", newline="")
         return text

@@ -16,9 +16,9 @@ from rocking._assessment.search import overturned_by
 from rocking._assessment.site import Site
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, integer, number
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.problem import checked_restitution
-from rocking._model.checks import check_number
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 
@@ -130,7 +130,7 @@ def overturning_probability(
     uncertain = {name: value for name, value in given.items() if hasattr(value, "ppf")}
     for name, value in given.items():
         if name == "restitution" and name not in uncertain:
-            eta = checked_restitution(value, check_number)
+            eta = checked_restitution(value, RESTITUTION.number)
             given[name] = "momentum" if eta is None else eta
         elif name not in uncertain and value is not None:
             low = -math.inf if name == "offset" else 0.0

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._base.units import split_quantity, unit_name
 from rocking._cli.options import MassOptions, ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
 from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
 from rocking._model.checks import check_window
-from rocking._model.parameters import FREQUENCY_RATIO
 
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block

@@ -347,7 +347,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) ->
 
     rows = found.rows
     columns = {one.name: [row[one.name] for row in rows] for one in OUTPUTS}
-    units = {one.name: one.unit for one in OUTPUTS if one.label != one.name}
+    units = {one.name: one.unit for one in OUTPUTS if one.header != one.name}
     if form.kind == "json":
         about = {"details": found.details, "columns": table.columns, "skipped": table.skipped}
         printing.print_json(

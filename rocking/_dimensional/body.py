@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
+from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
 from rocking._dimensional.curves import (
@@ -23,15 +24,13 @@ from rocking._dimensional.curves import (
     over_axis,
 )
 from rocking._dimensional.fields import FIELDS
-from rocking._dimensional.problem import HIGHEST_SCALE, STRENGTHS, Motion, Problem, are_numbers, checked_restitution
+from rocking._dimensional.problem import STRENGTHS, Motion, Problem, are_numbers, checked_restitution
 from rocking._dimensional.response import BodyResponse, respond
 from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, thresholds_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._model.body import AbstractBody, Edge
-from rocking._model.checks import check, check_number
 from rocking._model.labelled import in_unit, is_labelled, labelled_response
-from rocking._model.parameters import RESTITUTION
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -134,7 +133,7 @@ class RespondingBody(AbstractBody):
         if not is_labelled(eta):
             eta = checked_restitution(eta)
         strengths = {
-            name: in_unit(name, one, STRENGTHS[name].unit) if is_labelled(one) else check(STRENGTHS[name], one)
+            name: in_unit(name, one, STRENGTHS[name].unit) if is_labelled(one) else STRENGTHS[name].convert(one)
             for name, one in given.items()
             if one is not None
         }
@@ -353,10 +352,10 @@ class RespondingBody(AbstractBody):
         if self.shape:
             raise InvalidArgumentError(name, f"bodies of shape {self.shape}", "one body")
         if checked_restitution(restitution) is not None:
-            check_number(RESTITUTION, restitution)
+            RESTITUTION.number(restitution)
         for key, value in numbers.items():
             if value is not None:
-                check_number(STRENGTHS[key], value)
+                STRENGTHS[key].number(value)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.scan import (
     BALANCED,
     FEWEST,
@@ -22,7 +23,7 @@ from rocking._boundary.scan import (
 )
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.search import RESOLUTION, refine_brackets
-from rocking._dimensional.problem import HIGHEST_SCALE, Problem
+from rocking._dimensional.problem import Problem
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record

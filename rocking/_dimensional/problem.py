@@ -19,8 +19,18 @@ from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
-from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, number, reject_given
-from rocking._base.parameter import Parameter
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, reject_given
+from rocking._base.quantities import (
+    ALPHA,
+    FREQUENCY_RATIO,
+    HIGHEST_SCALE,
+    PEAK_ACCELERATION,
+    PERIOD,
+    RESTITUTION,
+    SCALE,
+    SLENDERNESS,
+    SMALLEST_ALPHA,
+)
 from rocking._base.units import Scalar, Values
 from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse, as_pulse
@@ -36,10 +46,8 @@ from rocking._history.motion import (
 )
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody
-from rocking._model.checks import check, check_number
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import Index, index_of
-from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record as KernelRecord
@@ -53,14 +61,7 @@ Array = NDArray[np.float64]
 
 Motion = str | AbstractPulse | Record
 
-HIGHEST_SCALE = 1e6
-"""Largest factor of a record [-]."""
-
-STRENGTHS = {
-    "peak_acceleration": Parameter("peak_acceleration", "a_g", "m/s2", 0.0, math.inf, "neither", "peak acceleration"),
-    "period": Parameter("period", "T_p", "s", 0.0, math.inf, "neither", "period of the pulse"),
-    "scale": Parameter("scale", "", "-", 0.0, HIGHEST_SCALE, "right", "factor of a record"),
-}
+STRENGTHS = {one.name: one for one in (PEAK_ACCELERATION, PERIOD, SCALE)}
 """Arguments that say how strong and how long a motion is."""
 
 
@@ -128,25 +129,24 @@ class Problem(EqualByValue):
             given = {"scale": 1.0 if scale is None else scale}
         else:
             motion = as_pulse(motion)
-            reject_given("a pulse: state `peak_acceleration`", scale=scale)
+            if scale is not None:
+                reject_given("a pulse: state `peak_acceleration`", scale=scale)
             given = {"peak_acceleration": peak_acceleration, "period": period}
-            for name, value in given.items():
-                needed("a pulse", **{name: value})
+            for name in given:
+                if given[name] is None:
+                    needed("a pulse", **{name: None})
         one = body.is_block and are_numbers(*given.values(), restitution)
         eta = None
         if not (isinstance(restitution, str) and restitution == "momentum"):
-            eta = checked_restitution(restitution, check_number if one else check)
+            eta = checked_restitution(restitution, RESTITUTION.number if one else RESTITUTION.convert)
         stated = not isinstance(peak_acceleration, Real)
         if one:
-            values: dict[str, Any] = {}
-            for name, value in given.items():
-                about = STRENGTHS[name]
-                values[name] = number(name, value, about.lower, about.upper, closed=about.closed, unit=about.unit)
+            values: dict[str, Any] = {name: STRENGTHS[name].number(value) for name, value in given.items()}
             made = cls(body, motion, *_strength(motion, values), eta, values.get("scale", 1.0), unit_is_stated=stated)
             if not flies:
                 made.reject_flight()
             return made
-        values = {name: check(STRENGTHS[name], value) for name, value in given.items()}
+        values = {name: STRENGTHS[name].convert(value) for name, value in given.items()}
         peak, times = _strength(motion, values)
         if eta is not None:
             given["restitution"], values["restitution"] = restitution, eta
@@ -247,7 +247,7 @@ class Problem(EqualByValue):
         if isinstance(self.motion, Record):
             in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
         else:
-            check(FREQUENCY_RATIO, 2.0 * math.pi / (self.period * p))
+            FREQUENCY_RATIO.convert(2.0 * math.pi / (self.period * p))
         etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
         unit = self.motion.time_step * p if isinstance(self.motion, Record) else 2.0 * math.pi / (self.period * p)
         columns = {
@@ -296,8 +296,8 @@ class Problem(EqualByValue):
         s, w, alpha = groups["slenderness"], groups["frequency_ratio"], groups["alpha"]
         low, high = SLENDERNESS.lower, FREQUENCY_RATIO.upper
         if not (low < s < math.inf and FREQUENCY_RATIO.lower < w < high and not 0.0 < alpha < SMALLEST_ALPHA):
-            check(SLENDERNESS, s)
-            check(FREQUENCY_RATIO, w)
+            SLENDERNESS.convert(s)
+            FREQUENCY_RATIO.convert(w)
             in_range("alpha", alpha or ALPHA.upper, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
         return solve_checked(self.pulse, s, w, groups["restitution"], alpha, self.body, threads, stop)
 
@@ -382,8 +382,8 @@ def are_numbers(*arguments: Any) -> bool:
     return True
 
 
-def checked_restitution(restitution: Values, checked: Callable[..., Any] = check) -> Any:
-    """The coefficient of restitution: None for "momentum", else an array; or one number by `check_number`.
+def checked_restitution(restitution: Values, checked: Callable[..., Any] = RESTITUTION.convert) -> Any:
+    """The coefficient of restitution: None for "momentum", else an array; or one number by `RESTITUTION.number`.
 
     Raises
     ------
@@ -393,14 +393,14 @@ def checked_restitution(restitution: Values, checked: Callable[..., Any] = check
     if isinstance(restitution, str) and restitution == "momentum":
         return None
     try:
-        return checked(RESTITUTION, restitution)
+        return checked(restitution)
     except InvalidArgumentError as error:
         raise InvalidArgumentError("restitution", error.value, f"momentum, or {error.allowed}") from None
 
 
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
     """The coefficient of restitution [-]: the number, or that of the geometry for "momentum"; `checked_restitution`."""
-    eta = checked_restitution(restitution, check_number)
+    eta = checked_restitution(restitution, RESTITUTION.number)
     return float(block.inelastic_restitution if eta is None else eta)
 
 

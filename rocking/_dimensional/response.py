@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._dimensional.doubts import LARGEST_AMPLIFICATION, notes_of, resampled_response, warnings_of
 from rocking._dimensional.fields import FIELDS, JUDGED, SHOWN, ResponseFields
 from rocking._dimensional.margins import Margins, margins_of
@@ -35,7 +36,6 @@ from rocking._model.fields import (
 )
 from rocking._model.labelled import with_index
 from rocking._model.outcome import Outcome
-from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._model.response import Response, along_own_axes, axis_names
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._solver.bounded_response import BoundedResponse

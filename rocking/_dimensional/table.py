@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, finite
+from rocking._base.quantities import HEIGHT, NAME, NUMBER, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
 from rocking._dimensional.block import Block
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.table_header import HEIGHT, NAME, NUMBER, RESTITUTION, WIDTH, Schema
+from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import Table, read_csv, read_file
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
@@ -21,19 +21,7 @@ from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import solve_with_bound
 
-COLUMNS = (
-    NAME,
-    WIDTH,
-    HEIGHT,
-    Column(
-        "peak_acceleration",
-        "m/s2",
-        "peak acceleration of the pulse",
-        ("pga", "a g", "peak ground acceleration", "acceleration", "beschleunigung", "accelerazione", "aceleracion"),
-    ),
-    Column("period", "s", "period of the pulse", ("t p", "tp", "t", "periode", "periodo")),
-    RESTITUTION,
-)
+COLUMNS = (NAME, WIDTH, HEIGHT, PEAK_ACCELERATION, PERIOD, RESTITUTION)
 """Columns of a table of blocks; others are passed through."""
 
 _NEEDED = ("width", "height", "peak_acceleration", "period")

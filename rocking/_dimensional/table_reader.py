@@ -19,14 +19,15 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking._base.column import (
-    Column,
+from rocking._base.cells import (
     decimal_sign,
     name_and_unit,
     plain_name,
+    read_cell,
     split_number,
 )
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
 from rocking._dimensional.table_header import (
     AMOUNT,
@@ -358,7 +359,7 @@ def _is_item(row: Sequence[str]) -> bool:
     return bool(first) and not _TOTAL.fullmatch(first[:MAX_NAME]) and any(map(str.isalnum, "".join(row)))
 
 
-def _written_unit(cell: str, one: Column) -> str:
+def _written_unit(cell: str, one: Quantity) -> str:
     """The unit in a cell, "" for none."""
     found = split_number(cell) if one.unit in UNITS else None
     return (unit_name(found[1], one.unit) or "") if found else ""
@@ -376,7 +377,7 @@ def _values(row: Sequence[str], header: Header, decimal: str, schema: Schema[Any
         if (cell.strip().lower() in EMPTY) if one.unit else not any(map(str.isalnum, cell)):
             continue
         stated = _row_unit(row, header, place) if one.unit in UNITS and not _written_unit(cell, one) else unit
-        value = one.value(cell, stated, "." if isinstance(cell, _Exact) else decimal)
+        value = read_cell(one, cell, stated, "." if isinstance(cell, _Exact) else decimal)
         values[one.name] = f"{values[one.name]}; {value}" if one.name in values else value
     for one, _ in header.columns.values():
         if values.get(one.name) == 0.0 and any(values.get(other) for other in one.absent_beside):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, number
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._base.units import Scalar
 from rocking._boundary.amplitude import amplitude_changes, thresholds
 from rocking._boundary.scan import (
@@ -26,7 +27,6 @@ from rocking._boundary.scan import (
 )
 from rocking._dimensional.lowest_thresholds import record_lines, record_range
 from rocking._dimensional.problem import (
-    HIGHEST_SCALE,
     Problem,
     record_groups,
     restitution_of,

@@ -9,8 +9,6 @@ families or of one's own (`SmoothPulse`).
 A text names a pulse, mirrors it and states its parameters, with their units: "-mavroeidis_papageorgiou(phase=90 deg)".
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 import re
@@ -19,8 +17,8 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import Annotated, get_type_hints
 
-from rocking._base.errors import InvalidArgumentError, number, one_of, plain_number
-from rocking._base.parameter import Parameter
+from rocking._base.errors import InvalidArgumentError, one_of, plain_number
+from rocking._base.quantity import Quantity
 from rocking._base.units import Scalar
 from rocking._excitation.shapes import AbstractPulse
 from rocking._excitation.sinusoids import SinusoidalPulse
@@ -41,9 +39,13 @@ __all__ = [
 ]
 
 
-CYCLES = Parameter("cycles", "gamma", "-", 1.0, 20.0, "right", "number of cycles within the envelope")
+CYCLES = Quantity(
+    "cycles", "-", "number of cycles within the envelope", symbol="gamma", lower=1.0, upper=20.0, closed="right"
+)
 
-PHASE = Parameter("phase", "nu", "rad", -2 * math.pi, 2 * math.pi, "both", "phase within the envelope")
+PHASE = Quantity(
+    "phase", "rad", "phase within the envelope", symbol="nu", lower=-2 * math.pi, upper=2 * math.pi, closed="both"
+)
 
 
 def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]) -> SinusoidalPulse:
@@ -129,7 +131,7 @@ def mavroeidis_papageorgiou(
     -[sin(phi/gamma) cos(phi + nu) + gamma sin(phi + nu) (1 + cos(phi/gamma))] is the sum of three sinusoids
     -[gamma sin B + (gamma + 1)/2 sin(B + A) + (gamma - 1)/2 sin(B - A)], A = phi/gamma, B = phi + nu.
     """
-    cycles, phase = _checked(CYCLES, cycles), _checked(PHASE, phase)
+    cycles, phase = CYCLES.number(cycles), PHASE.number(phase)
     shift = phase + math.pi / 2  # -sin x = cos(x + pi/2)
     raw = (
         (cycles, 1.0, shift),
@@ -195,10 +197,7 @@ def pulse_number(name: str) -> int:
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
     """The pulse itself, or the one of that name.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For anything else.
+    Raises `InvalidArgumentError` for anything else.
     """
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 
@@ -207,7 +206,7 @@ def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
 class PulseParameter:
     """A parameter of a named pulse, and its default in the unit of the declaration."""
 
-    declared: Parameter
+    declared: Quantity
     default: float
 
 
@@ -257,13 +256,13 @@ def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
     registered = _REGISTERED.get(base)
     if registered is not None and not given:
         return registered.mirrored() if sign else registered
-    known = pulse_parameters(one_of("pulse", base, pulse_names()))
+    known = pulse_parameters(base if base in PULSE_NAMES else one_of("pulse", base, pulse_names()))
     for key, value in given.items():
         if key not in known:
             raise InvalidArgumentError(key, value, f"for {base}: {' and '.join(known) or 'no parameters'}")
         if key in written and known[key].declared.unit == "-":
             given[key] = plain_number(key, written[key])
-    return _build_pulse(sign, base, **{key: _checked(known[key].declared, value) for key, value in given.items()})
+    return _build_pulse(sign, base, **{key: known[key].declared.number(value) for key, value in given.items()})
 
 
 def split_pulses(text: str) -> list[str]:
@@ -293,11 +292,6 @@ def _parts(text: str) -> tuple[str, str, Mapping[str, str]] | None:
             raise InvalidArgumentError("pulse", text, "each parameter once, as name=value")
         parameters[key] = value
     return found[1], found[2], parameters
-
-
-def _checked(parameter: Parameter, value: Scalar) -> float:
-    """A parameter of a pulse in the unit of its declaration; a text has its unit."""
-    return number(parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit)
 
 
 def _digits(value: float) -> str:

@@ -16,11 +16,8 @@ from rocking._excitation.pulse_file import read_pulse_file
 from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import AbstractPulse
 
-MAX_SAMPLES = 100_000
-"""Most samples of a pulse; longer motions are records."""
-
-MAX_RATIO = 1e9
-"""Largest ratio of the duration to the period and to the shortest interval [-]."""
+MAX_SAMPLES = 100_000  # most samples of a pulse; longer motions are records
+MAX_RATIO = 1e9  # largest ratio of the duration to the period and to the shortest interval [-]
 
 
 @final

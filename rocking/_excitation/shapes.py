@@ -17,14 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import InvalidArgumentError, float_array, in_range, number
 from rocking._excitation.series import ExcitationSeries
 
-MAX_PIECES = 84
-"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
+MAX_PIECES = 84  # most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles
 
 MAX_MAGNITUDE = 1e6
 """Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase has fewer than six digits."""
 
-PEAK_TOLERANCE = 1e-12
-"""Largest difference of max |f| from 1 [-]."""
+PEAK_TOLERANCE = 1e-12  # largest difference of max |f| from 1 [-]
 
 Array = NDArray[np.float64]
 

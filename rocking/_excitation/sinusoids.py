@@ -14,13 +14,11 @@ from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import MAX_MAGNITUDE, AbstractPulse, checked_window, mirrored_name, peak_amplitude
 from rocking._excitation.stationary import sign_changes
 
-MAX_SINUSOIDS = 8
-"""Most terms of a sum of sinusoids."""
+MAX_SINUSOIDS = 8  # most terms of a sum of sinusoids
 
 Array = NDArray[np.float64]
 
-Terms = tuple[tuple[float, float, float], ...]
-"""Sinusoids c cos(w phi + d): c [-], w [-], d [rad]."""
+Terms = tuple[tuple[float, float, float], ...]  # sinusoids c cos(w phi + d): c [-], w [-], d [rad]
 
 
 @final

@@ -1,7 +1,5 @@
 """The motion of one body as a function of time, sampled at given times by the flights of the solver."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -11,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import number, positive
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
@@ -24,9 +23,8 @@ from rocking._history.sampling import (
     sample_free_rocking,
     sample_record,
 )
-from rocking._model.checks import check_number, check_one_alpha
+from rocking._model.checks import check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
@@ -50,11 +48,8 @@ from rocking._solver.state import (
 
 Floats = NDArray[np.float64]
 
-FREE_DURATION = 8.0
-"""Default duration of free rocking after the pulse [tau]."""
-
-MAX_FREE_IMPACTS = 10_000
-"""Largest number of impacts of free rocking."""
+FREE_DURATION = 8.0  # default duration of free rocking after the pulse [tau]
+MAX_FREE_IMPACTS = 10_000  # largest number of impacts of free rocking
 
 MAX_FLIGHTS = IMPACT_LIMIT + 12 * (MAX_PIECES + 1)
 """Most flights under a pulse: three more impacts and one uplift in each of the three intervals of a piece."""
@@ -67,18 +62,10 @@ MAX_ROTATION = 4.0
 class BodyMotion(ABC):
     """The motion of one body as a function of tau, from the start of the ground motion to a horizon.
 
-    Parameters
-    ----------
-    cell : record `BODY_CELL`
-        The body, and the rate of the ground motion.
-    horizon : float
-        tau at which to stop [-].
-    stop : StopFlag, optional
-        Cancels the work: the methods raise `StoppedError` soon after another thread sets the flag.
-    inertia_ratio : (float, float)
-        R p^2/g of the right and the left edge [-], for the contact forces; 3/4 for a rectangle.
-    tilt : float
-        Angle by which the base is inclined towards the right [rad].
+    `cell`: the body, and the rate of the ground motion. `horizon`: tau at which to stop [-]. `stop`: cancels the work:
+    the methods raise `StoppedError` soon after another thread sets the flag. `inertia_ratio`: R p^2/g of the right and
+    the left edge [-], for the contact forces; 3/4 for a rectangle. `tilt`: angle by which the base is inclined towards
+    the right [rad].
     """
 
     cell: Record
@@ -224,12 +211,7 @@ def overturned(record: Record) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class PulseMotion(BodyMotion):
-    """A `BodyMotion` under a pulse.
-
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    """
+    """A `BodyMotion` under a pulse."""
 
     pulse: AbstractPulse
 
@@ -312,10 +294,7 @@ class PulseMotion(BodyMotion):
 class SamplesMotion(BodyMotion):
     """A `BodyMotion` under samples of a ground motion.
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `rocking._solver.records.samples.sample_rows`.
+    `samples` (7, samples): of `rocking._solver.records.samples.sample_rows`.
     """
 
     samples: Floats
@@ -373,8 +352,8 @@ def build_motion(
 ) -> BodyMotion:
     """The motion for given groups; arguments and errors as for `rocking.time_history`."""
     made = as_pulse(pulse)
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
-    omega, angle = check_number(FREQUENCY_RATIO, frequency_ratio), check_one_alpha(alpha)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
+    omega, angle = FREQUENCY_RATIO.number(frequency_ratio), check_one_alpha(alpha)
     if duration is None:
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
@@ -398,7 +377,7 @@ def build_record_motion(
 ) -> SamplesMotion:
     """The motion for given parameters; arguments and errors as for `rocking.time_history`."""
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
     angle = check_one_alpha(alpha)
     vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")

@@ -78,11 +78,8 @@ class Points:
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
 
-SAFETY = 6.0
-"""Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
-
-MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
-"""Fewest and most points that a thread interpolates at a time."""
+SAFETY = 6.0  # ratio of the error bound to the measured errors [-], which are known at a few points of each cell only
+MIN_CHUNK, MAX_CHUNK = 32_768, 262_144  # fewest and most points that a thread interpolates at a time
 
 Flags = NDArray[np.bool_]
 
@@ -92,21 +89,11 @@ class UnreadError(RuntimeError):
 
 
 class Window(NamedTuple):
-    """The slices from which points are interpolated.
+    """The slices from which points are interpolated."""
 
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        Ascending.
-    lower : int
-        The one at or below the points.
-    levels : float array
-        Their restitutions [-].
-    """
-
-    slices: list[CubeSlice]
-    lower: int
-    levels: Array
+    slices: list[CubeSlice]  # ascending
+    lower: int  # the one at or below the points
+    levels: Array  # their restitutions [-]
 
     def arguments(self, alpha: Array, may_read: bool) -> tuple[Any, ...]:
         """What the kernel needs for points at some angles [rad], which are read if they are not."""

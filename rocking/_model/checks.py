@@ -1,7 +1,5 @@
 """Checks of the parameters against their declared ranges."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -10,47 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number
-from rocking._base.parameter import Parameter
-from rocking._base.units import Quantity, Scalar
+from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
+from rocking._base.quantity import Quantity
+from rocking._base.units import Scalar, WithUnit
 from rocking._model.labelled import Index, broadcast_by_name, in_unit, index_of, is_labelled
-from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 
 Array = NDArray[np.float64]
 
 _GROUPS = {parameter.name: parameter for parameter in (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION)}
-
-
-def check(parameter: Parameter, value: ArrayLike | Quantity) -> Array:
-    """The value as a float64 array, shape kept.
-
-    Parameters
-    ----------
-    parameter : Parameter
-        The declaration.
-    value : array_like of real numbers, any shape
-        None of them masked.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an entry is not a finite real number in the range.
-    """
-    return in_range(
-        parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit
-    )
-
-
-def check_number(parameter: Parameter, value: ArrayLike | Quantity, name: str | None = None) -> float:
-    """As `check`, for one number; `name` is that of the error message, where it is not that of the parameter.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is not one finite real number in the range.
-    """
-    return number(
-        name or parameter.name, value, parameter.lower, parameter.upper, closed=parameter.closed, unit=parameter.unit
-    )
 
 
 def check_lengths(
@@ -58,17 +23,8 @@ def check_lengths(
 ) -> tuple[dict[str, Array], dict[str, Any], Index | None]:
     """What bodies are made from: arrays by name, those of them that are labelled, and the index of a series.
 
-    Parameters
-    ----------
-    arguments : mapping
-        Numbers, texts, quantities or arrays, also labelled ones, by name; None is left out.
-    others : mapping
-        Open ranges and units of those that are no lengths > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, or they do not broadcast.
+    `arguments`: numbers, texts, quantities or arrays, also labelled ones, by name; None is left out. `others`: open
+    ranges and units of those that are no lengths > 0.
     """
     ranges = {name: others.get(name, (0.0, math.inf, "m")) for name in arguments}
     given = {name: in_unit(name, value, ranges[name][2]) for name, value in arguments.items() if value is not None}
@@ -84,31 +40,19 @@ def check_lengths(
 
 
 def check_window(
-    parameter: Parameter, low: Scalar, high: Scalar, names: tuple[str, str] | None = None
+    parameter: Quantity, low: Scalar, high: Scalar, names: tuple[str, str] | None = None
 ) -> tuple[float, float]:
-    """The ends of a window of a parameter, low < high.
+    """The ends of a window of a parameter, low < high, in its range.
 
-    Parameters
-    ----------
-    parameter : Parameter
-        The declaration.
-    low, high : float
-        The ends.
-    names : (str, str), optional
-        Names for the error message; by default that of the parameter with the endings `_min` and `_max`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an end is outside the range, or `high` is not above `low`.
+    `names` are those of the error message; by default that of the parameter with the endings `_min` and `_max`.
     """
     first, last = names or (f"{parameter.name}_min", f"{parameter.name}_max")
-    lower = check_number(parameter, low, first)
+    lower = parameter.number(low, first)
     closed = "right" if parameter.closed in ("both", "right") else "neither"
     return lower, number(last, high, lower, parameter.upper, closed=closed, unit=parameter.unit)
 
 
-def check_ends(parameter: Parameter, ends: Any, name: str | None = None) -> tuple[float, float]:
+def check_ends(parameter: Quantity, ends: Any, name: str | None = None) -> tuple[float, float]:
     """The same of a window that is one argument, by default with the name of the parameter."""
     name = name or parameter.name
     if np.shape(ends) != (2,):
@@ -117,49 +61,41 @@ def check_ends(parameter: Parameter, ends: Any, name: str | None = None) -> tupl
     return check_window(parameter, low, high, (name, f"{name}[1]"))
 
 
-def check_alpha(alpha: ArrayLike | Quantity | None) -> Array:
-    """Slenderness angles [rad], 0 for None; the same errors as `check`, also between 0 and `SMALLEST_ALPHA`."""
+def check_alpha(alpha: ArrayLike | WithUnit | None) -> Array:
+    """Slenderness angles [rad], 0 for None; the same errors as its `convert`, also between 0 and `SMALLEST_ALPHA`."""
     if alpha is None:
         return np.zeros(())
-    angles = check(ALPHA, alpha)
+    angles = ALPHA.convert(alpha)
     if angles.ndim or 0.0 < angles < SMALLEST_ALPHA:
         in_range(ALPHA.name, np.where(angles > 0.0, angles, ALPHA.upper), SMALLEST_ALPHA, ALPHA.upper, unit=ALPHA.unit)
     return angles
 
 
-def check_one_alpha(alpha: ArrayLike | Quantity | None) -> float:
+def check_one_alpha(alpha: ArrayLike | WithUnit | None) -> float:
     """As `check_alpha`, for one angle."""
     if type(alpha) is float and SMALLEST_ALPHA < alpha < ALPHA.upper:
         return alpha
     if alpha is not None:
-        check_number(ALPHA, alpha)
+        ALPHA.number(alpha)
     return float(check_alpha(alpha))
 
 
 def known_restitution(restitution: Any, alpha: Any) -> Any:
     """The restitution as it is; for "momentum" (2.4) of the angles [rad], 0 where that is negative.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For "momentum" without an angle, or with an angle of 0, the slender limit, in which (2.4) loses no energy.
+    Raises `InvalidArgumentError` for "momentum" without an angle, or with an angle of 0, the slender limit, in which
+    (2.4) loses no energy.
     """
     if not (isinstance(restitution, str) and restitution == "momentum"):
         return restitution
-    if alpha is None or not np.all(check(ALPHA, alpha) > 0.0):
+    if alpha is None or not np.all(ALPHA.convert(alpha) > 0.0):
         raise InvalidArgumentError("restitution", restitution, "a number in the slender limit: (2.4) needs `alpha` > 0")
-    sine = np.sin(alpha if is_labelled(alpha) else check(ALPHA, alpha))
+    sine = np.sin(alpha if is_labelled(alpha) else ALPHA.convert(alpha))
     return np.maximum(1.0 - 1.5 * sine * sine, 0.0)  # (2.4)
 
 
 def check_groups(**given: Any) -> dict[str, Array]:
-    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays.
-
-    They keep their shapes; alpha = None is 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays
+    of their shapes; alpha = None is 0.
     """
-    return {name: check_alpha(one) if name == "alpha" else check(_GROUPS[name], one) for name, one in given.items()}
+    return {name: check_alpha(one) if name == "alpha" else _GROUPS[name].convert(one) for name, one in given.items()}

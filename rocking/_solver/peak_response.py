@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import broadcast, integer, needed, reject_given
+from rocking._base.quantities import RELATIVE_TOLERANCE
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as Recording
-from rocking._model.checks import check_groups, check_number, known_restitution
+from rocking._model.checks import check_groups, known_restitution
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of, is_labelled, labelled_response
-from rocking._model.parameters import RELATIVE_TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
@@ -43,8 +43,7 @@ if TYPE_CHECKING:
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
 
-MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768
-"""The same for cells that are solved by exact arcs, in a tenth of the time."""
+MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768  # the same for cells that are solved by exact arcs, in a tenth of the time
 
 TRUNCATION_FRACTION = 1e-4
 """Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
@@ -53,11 +52,8 @@ NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
 
 
-NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))
-"""For blocks with equal edges."""
-
-NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)
-"""Where only responses are wanted."""
+NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges
+NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)  # where only responses are wanted
 
 
 class SolverState(threading.local):
@@ -197,7 +193,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     groups = broadcast(given, [*checked.values()][: 3 if alpha is None else 4])
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
-    accepted = 0.0 if relative_tolerance is None else check_number(RELATIVE_TOLERANCE, relative_tolerance)
+    accepted = 0.0 if relative_tolerance is None else RELATIVE_TOLERANCE.number(relative_tolerance)
     exact = made.samples is not None or (made.series.has_exact_arcs and slender)  # no terms to truncate
     precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
@@ -226,18 +222,9 @@ def solve_cells(
 ) -> NDArray[np.void]:
     """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
 
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    cells : list of three or four float arrays (size,)
-        1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each as
-        `contiguous_array` gives it.
-    precision : float
-        Relative truncation error of a Taylor step [-].
-    threads : int or None
-        Number of threads, None: all cores.
-    stop : StopFlag or None
-        Cancels the work, which then raises `StoppedError`.
+    `cells` (size,): 1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each
+    as `contiguous_array` gives it. `precision`: relative truncation error of a Taylor step [-]. `threads`: number of
+    threads, None: all cores.
     """
     if pulse.samples is not None:
         return solve_pulse(pulse, cells, threads, stop)

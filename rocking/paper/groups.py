@@ -4,8 +4,6 @@ Two blocks with equal groups have the same scaled response: exactly for slender 
 for geometrically similar blocks with (5.3), approximately with (6.1).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 

@@ -5,16 +5,16 @@ import math
 import pytest
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._model.checks import check, check_window
-from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, GROUPS, SLENDERNESS
+from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, GROUPS, SLENDERNESS
+from rocking._model.checks import check_window
 
 
 @pytest.mark.parametrize("parameter", GROUPS, ids=[one.name for one in GROUPS])
 def test_interval_states_which_values_are_accepted(parameter):
-    assert check(parameter, parameter.lower) == parameter.lower
+    assert parameter.convert(parameter.lower) == parameter.lower
     for wrong in (parameter.lower - 1.0, math.nan, math.inf):
         with pytest.raises(InvalidArgumentError) as caught:
-            check(parameter, wrong)
+            parameter.convert(wrong)
         assert caught.value.allowed == f"{parameter.interval} [{parameter.unit}]"
 
 

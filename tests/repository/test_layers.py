@@ -27,10 +27,11 @@ LAYERS = (
     ("rocking/_solver", "rocking/paper"),
     ("rocking/_model", "rocking/_excitation"),
     ("rocking/_numba",),
-    ("rocking/_base/column",),
+    ("rocking/_base/cells", "rocking/_base/quantities"),
+    ("rocking/_base/quantity",),
     ("rocking/_base/errors", "rocking/_base/equality"),
     ("rocking/_base/units",),
-    ("rocking/_base/constants", "rocking/_base/parameter", "rocking/_base/version", "rocking/_base/source_tree"),
+    ("rocking/_base/constants", "rocking/_base/version", "rocking/_base/source_tree"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SOURCES = SourceTree(ROOT)

@@ -8,8 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
-from rocking._base.column import Column
 from rocking._base.errors import InvalidArgumentError, plain_numbers
+from rocking._base.quantity import Quantity
 from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
@@ -199,7 +199,7 @@ class AssessBody(AssessParams):
     hazard: HazardBody | None = Field(None, description="hazard curve of the site, with records")
 
 
-def _field(column: Column) -> Any:
+def _field(column: Quantity) -> Any:
     kinds: dict[str, Any] = {"": str, "bool": bool}
     unit = f" [{column.unit}]" if column.unit not in ("", "bool") else ""
     optional = column.name != "uplifts" and column.unit != ""

@@ -11,17 +11,16 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
-from rocking._base.parameter import Parameter
+from rocking._base.quantities import ALPHA, RESTITUTION
+from rocking._base.quantities import FREQUENCY_RATIO as ANY_FREQUENCY_RATIO
+from rocking._base.quantities import SLENDERNESS as ANY_SLENDERNESS
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
-from rocking._model import parameters
-from rocking._model.checks import check
-from rocking._model.parameters import RESTITUTION
 
 # Ranges of the service, far outside of practice and inside those of the library: searches around a point, and points
 # shifted by rounding for the error bound, stay in the latter.
-SLENDERNESS = parameters.SLENDERNESS.restricted(1e-9, math.inf)
-FREQUENCY_RATIO = parameters.FREQUENCY_RATIO.restricted(1e-6, 1e6)
-ALPHA_DEG = parameters.ALPHA.in_degrees().restricted(1e-6, 89.9)
+SLENDERNESS = ANY_SLENDERNESS.restricted(1e-9, math.inf)
+FREQUENCY_RATIO = ANY_FREQUENCY_RATIO.restricted(1e-6, 1e6)
+ALPHA_DEG = ALPHA.in_degrees().restricted(1e-6, 89.9)
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
@@ -35,16 +34,6 @@ _KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
 
 MAX_DURATION = 1e9
 """Duration of a history, tau = p t [-]."""
-
-
-def limits(parameter: Parameter) -> dict[str, Any]:
-    """The range of a parameter as keywords of JSON schema."""
-    schema = {}
-    if math.isfinite(parameter.lower):
-        schema["minimum" if parameter.closed in ("both", "left") else "exclusiveMinimum"] = parameter.lower
-    if math.isfinite(parameter.upper):
-        schema["maximum" if parameter.closed in ("both", "right") else "exclusiveMaximum"] = parameter.upper
-    return schema
 
 
 def _list_pulses(schema: dict[str, Any]) -> None:
@@ -70,14 +59,14 @@ Slenderness = Annotated[
     Field(
         description=f"{SLENDERNESS.help}; from 1 on the block does not uplift",
         examples=[0.4],
-        json_schema_extra=limits(SLENDERNESS),
+        json_schema_extra=SLENDERNESS.limits,
     ),
 ]
 FrequencyRatio = Annotated[
-    float, Field(description=FREQUENCY_RATIO.help, examples=[5.0], json_schema_extra=limits(FREQUENCY_RATIO))
+    float, Field(description=FREQUENCY_RATIO.help, examples=[5.0], json_schema_extra=FREQUENCY_RATIO.limits)
 ]
 Restitution = Annotated[
-    float, Field(description=RESTITUTION.help, examples=[0.85], json_schema_extra=limits(RESTITUTION))
+    float, Field(description=RESTITUTION.help, examples=[0.85], json_schema_extra=RESTITUTION.limits)
 ]
 AlphaDeg = Annotated[
     float | None,
@@ -266,14 +255,14 @@ def alpha_of(alpha_deg: float | None) -> float | None:
     InvalidArgumentError
         If it is neither 0 nor in the range of `ALPHA_DEG`.
     """
-    return math.radians(float(check(ALPHA_DEG, alpha_deg))) if alpha_deg else None
+    return math.radians(float(ALPHA_DEG.convert(alpha_deg))) if alpha_deg else None
 
 
 _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": as_pulse,
-    "slenderness": partial(check, SLENDERNESS),
-    "frequency_ratio": partial(check, FREQUENCY_RATIO),
-    "restitution": lambda value: (isinstance(value, str) and value == "momentum") or check(RESTITUTION, value),
+    "slenderness": SLENDERNESS.convert,
+    "frequency_ratio": FREQUENCY_RATIO.convert,
+    "restitution": lambda value: (isinstance(value, str) and value == "momentum") or RESTITUTION.convert(value),
     "alpha_deg": alpha_of,
 }
 """Checks of parameters whose range is not all of what is allowed, or which may be arrays."""

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, create_model
 
-from rocking._dimensional.problem import HIGHEST_SCALE
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP
 from rocking._excitation.records.record import TIME_STEP, UNITS

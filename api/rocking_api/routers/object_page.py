@@ -17,9 +17,8 @@ from rocking._assessment.objects import Object, Plane
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 from rocking_api.dial import dial_of, worst_directions
 from rocking_api.http.caching import revalidated
 from rocking_api.http.parameters import query_parameters
@@ -173,7 +172,7 @@ def _restitution(given: dict[str, str]) -> Scalar:
         number = float(text)
     except ValueError:
         raise InvalidArgumentError("restitution", text, "momentum, or a number from 0 to 1") from None
-    return check_number(RESTITUTION, number)
+    return RESTITUTION.number(number)
 
 
 def _object(given: dict[str, str]) -> Object:

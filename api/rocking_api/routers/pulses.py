@@ -111,7 +111,7 @@ def _parameters(name: str) -> list[PulseParameter]:
             unit=one.declared.unit,
             range=one.declared.interval,
             default=one.default,
-            description=one.declared.description,
+            description=one.declared.meaning,
         )
         for key, one in pulses.pulse_parameters(name).items()
     ]
