@@ -34,17 +34,8 @@ class State(NamedTuple):
 class DatasetChecker:
     """Checks every data set once per version of its file, on request, and logs each that is found damaged or repaired.
 
-    Parameters
-    ----------
-    cubes : CubeCollection
-        Cubes and catalogue of the results folder.
-    on_change : callable, optional
-        Called with the name of a data set or folder, and whether it is damaged, where that has changed.
-
-    Attributes
-    ----------
-    damaged : dict of str to str
-        What is wrong, by name, of each data set or folder that exists and cannot be used: what the last check found.
+    `damaged` says of each data set or folder that exists and cannot be used what is wrong, by name; `on_change` is
+    called with a name and whether it is damaged, where that has changed.
     """
 
     def __init__(self, cubes: CubeCollection, on_change: Callable[[str, bool], None] = lambda *_: None) -> None:

@@ -25,13 +25,7 @@ class Summary:
 
 
 class DatasetSummaries:
-    """Summaries of the data sets of a catalogue.
-
-    Parameters
-    ----------
-    catalogue : Catalogue
-        Source of the data sets.
-    """
+    """Summaries of the data sets of a catalogue."""
 
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue
@@ -39,15 +33,7 @@ class DatasetSummaries:
         self._kept = VersionCache[str, Summary]()
 
     def summary(self, name: str) -> Summary:
-        """The summary of a data set.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is no data set of that name.
-        DatasetError
-            If its file cannot be read.
-        """
+        """The summary of a data set."""
         with self._lock:
             known = self._kept.current(name)
             if known is not None:

@@ -74,13 +74,7 @@ class Service:
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
 
     async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
-        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            At once, if a parameter is out of range.
-        """
+        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`."""
         params.check()
         await self.kernels.wait()
         return await self.executor.run(work, request, self.reservation(request).held)
@@ -105,11 +99,6 @@ class Service:
 
         An object of JSON is read as `body`, which has the fields of `kind`; these may be in the query as well. Beside a
         file or a list they are in the query.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If parameters or body do not fit, see `check_json`, `read_json` and `limited_body`.
         """
         query = query_parameters(request)
         raw = await self.read_body(request, limit, hint)

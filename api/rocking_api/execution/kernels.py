@@ -32,18 +32,7 @@ def compile_command() -> list[str] | None:
 
 
 class Kernels:
-    """State of the kernels.
-
-    Parameters
-    ----------
-    seconds : float
-        How long a request waits for them [s].
-
-    Attributes
-    ----------
-    is_loaded : bool
-        Whether nothing is being compiled or loaded.
-    """
+    """State of the kernels."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
@@ -64,13 +53,7 @@ class Kernels:
             self._loading.cancel()  # waiting requests continue, and meet the same error if there is one
 
     async def wait(self) -> None:
-        """Return once they are loaded; usually at once.
-
-        Raises
-        ------
-        NotReadyError
-            After the time limit.
-        """
+        """Return once they are loaded; usually at once."""
         if self._loading is None or self.is_loaded:
             return
         await asyncio.wait({self._loading}, timeout=self._seconds)

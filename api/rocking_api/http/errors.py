@@ -42,13 +42,7 @@ class SlowBodyError(InvalidArgumentError):
 
 
 class DamagedDatasetsError(DatasetError):
-    """Data sets exist and cannot be used.
-
-    Parameters
-    ----------
-    damaged : mapping of str to str
-        What is wrong, by name.
-    """
+    """Data sets exist and cannot be used."""
 
     def __init__(self, damaged: Mapping[str, str]) -> None:
         super().__init__(damaged)
@@ -57,17 +51,7 @@ class DamagedDatasetsError(DatasetError):
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of error.
-
-    Attributes
-    ----------
-    name : str
-        The anchor of its `type` on the page of kinds.
-    status : HTTPStatus
-        Of the response.
-    meaning : str
-        When it occurs and what to do, in one sentence.
-    """
+    """A kind of error."""
 
     name: str
     status: HTTPStatus

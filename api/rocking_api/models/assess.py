@@ -9,14 +9,15 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
 from rocking._base.errors import InvalidArgumentError, plain_numbers
+from rocking._base.quantities import PGA
 from rocking._base.quantity import Quantity
 from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import Params, TableFormat
-from rocking_api.models.records import BaselineOrder
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import BaselineOrder, TableFormat, between
 from rocking_api.models.responses import BY_SOLVER
 
 MAX_OBJECTS = 2000
@@ -43,31 +44,21 @@ MAX_RECORD = 1_000_000
 Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
 Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
 
-_STRENGTH: dict[str, Any] = {"minimum": STRENGTHS[0], "maximum": STRENGTHS[1]}
-_LENGTH: dict[str, Any] = {"minimum": LENGTH[0], "maximum": LENGTH[1]}
-
 
 class AssessParams(Params):
     """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
-    pga: float | None = Field(
-        None,
-        description="peak ground acceleration [m/s2], required without records, which are scaled to it",
-        examples=[3.0],
-        json_schema_extra=_STRENGTH,
+    pga: float | None = between(
+        *STRENGTHS, f"{PGA.meaning} [m/s2], required without records", default=None, examples=[3.0]
     )
-    pgv: float | None = Field(
-        None,
-        description="peak ground velocity, from which each pulse has its period [m/s]; either this or periods",
+    pgv: float | None = between(
+        *STRENGTHS,
+        "peak ground velocity, from which each pulse has its period [m/s]; either this or periods",
+        default=None,
         examples=[0.3],
-        json_schema_extra=_STRENGTH,
     )
-    period_min: float | None = Field(
-        None, description="shortest period of the pulses, with `period_max` [s]", json_schema_extra=_LENGTH
-    )
-    period_max: float | None = Field(
-        None, description="longest period of the pulses, with `period_min` [s]", json_schema_extra=_LENGTH
-    )
+    period_min: float | None = between(*LENGTH, "shortest period of the pulses, with `period_max` [s]", default=None)
+    period_max: float | None = between(*LENGTH, "longest period of the pulses, with `period_min` [s]", default=None)
     shapes: str | None = Field(
         None,
         description="pulses, separated by commas; absent: all that leave the ground at rest",
@@ -82,16 +73,15 @@ class AssessParams(Params):
         "1", description="participation factors times mode shapes at the floor [-], one or one for each"
     )
     baseline_order: BaselineOrder = None
-    samples: int = Field(
+    samples: int = between(
         0,
-        description="variants of each object within its tolerance and 0.05 of the restitution that are tried [-]",
-        json_schema_extra={"minimum": 0, "maximum": MAX_SAMPLES},
+        MAX_SAMPLES,
+        "variants of each object within its tolerance and 0.05 of the restitution that are tried [-]",
+        default=0,
     )
-    seed: int = Field(0, description="seed of these variants [-]", json_schema_extra={"minimum": 0, "maximum": 2**53})
-    resolution: float = Field(
-        RESOLUTION,
-        description="largest relative distance of the factors on a record that are tried [-]",
-        json_schema_extra={"minimum": RESOLUTIONS[0], "maximum": RESOLUTIONS[1]},
+    seed: int = between(0, 2**53, "seed of these variants [-]", default=0)
+    resolution: float = between(
+        *RESOLUTIONS, "largest relative distance of the factors on a record that are tried [-]", default=RESOLUTION
     )
     sensitivity: bool = Field(True, description="find the factors of changed objects, and sizes not overturned")
     format: TableFormat = None
@@ -106,24 +96,16 @@ class AssessParams(Params):
                 as_pulse(shape)
 
     def site(self, given: AssessBody | None) -> Site:
-        """The site, with the records and the hazard curve of a body.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the parameters do not go together.
-        """
-        periods: Any = (
-            None if self.period_min is None and self.period_max is None else (self.period_min, self.period_max)
-        )
+        """The site, with the records and the hazard curve of a body."""
+        ends = self.period_min, self.period_max
+        motions = enumerate(() if given is None else given.records, start=1)
+        hazard = None if given is None else given.hazard
         return Site(
             self.pga,
             self.pgv,
-            periods,
-            []
-            if given is None
-            else [one.motion(k, self.baseline_order) for k, one in enumerate(given.records, start=1)],
-            None if given is None or given.hazard is None else (given.hazard.intensity, given.hazard.annual_rate),
+            None if ends == (None, None) else ends,  # type: ignore[arg-type]  # one of them alone is refused there
+            [one.motion(k, self.baseline_order) for k, one in motions],
+            None if hazard is None else (hazard.intensity, hazard.annual_rate),
             None if self.shapes is None else split_pulses(self.shapes),
             self.moving_ground,
             None if self.floor_periods is None else modes_of("floor_periods", self.floor_periods),
@@ -133,13 +115,7 @@ class AssessParams(Params):
 
 
 def modes_of(name: str, text: str) -> list[float]:
-    """The numbers of the modes of a building, separated by commas.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the text holds anything else, or more than `MAX_MODES`.
-    """
+    """The numbers of the modes of a building, separated by commas."""
     _parts(name, text, MAX_MODES, "modes")
     return plain_numbers(name, text)
 

@@ -2,80 +2,58 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, Field, SerializeAsAny
 
 from rocking._base.constants import STANDARD_GRAVITY
+from rocking._dimensional.fields import FIELDS
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import AbsoluteTolerance, Method, Params, PulseName, TableFormat
+from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, PointResponse, with_derived_fields, with_fields
+from rocking_api.models.quantity import (
+    AbsoluteTolerance,
+    BodyRestitution,
+    Gravity,
+    Height,
+    MassHeight,
+    Method,
+    Offset,
+    PeakAcceleration,
+    Period,
+    PulseName,
+    TableFormat,
+    Width,
+)
+from rocking_api.models.responses import BY_SOLVER, PointResponse, declared, with_fields
 
 MAX_BLOCKS = 10_000
 """Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
-
-RANGES = {
-    "width": (1e-4, 1e4, "m"),
-    "height": (1e-4, 1e4, "m"),
-    "offset": (-1e4, 1e4, "m"),
-    "mass_height": (1e-4, 1e4, "m"),
-    "peak_acceleration": (1e-6, 1e6, "m/s2"),
-    "period": (1e-4, 1e4, "s"),
-    "gravity": (1e-3, 1e3, "m/s2"),
-}
-"""Ranges of the service, far outside of practice, within which all numbers are representable as doubles."""
-
-
-def quantity(name: str, text: str, **more: Any) -> Any:
-    """The field of a quantity with its range."""
-    low, high, unit = RANGES[name]
-    return Field(description=f"{text} [{unit}]", json_schema_extra={"minimum": low, "maximum": high}, **more)
-
-
-def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
-    """One error message for both alternatives."""
-    try:
-        return read(value)
-    except ValidationError:
-        raise PydanticCustomError("restitution", "momentum, or a number in [0, 1] [-]") from None
-
-
-MomentumOrNumber = Annotated[Literal["momentum"] | float, WrapValidator(_momentum_or_number)]
-
-Offset = Annotated[
-    float,
-    quantity(
-        "offset",
-        "distance of the centre of mass from the middle of the width, less than half of it; positive to the right",
-    ),
-]
-MassHeight = Annotated[float | None, quantity("mass_height", "height of the centre of mass; absent: half the height")]
 
 
 class SizeParams(Params):
     """A block in SI units."""
 
-    width: float = quantity("width", "width 2b of the base", examples=[0.4])
-    height: float = quantity("height", "height 2h", examples=[1.6])
-    restitution: MomentumOrNumber = Field(
-        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
-    )
-    gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
+    width: Width
+    height: Height
+    restitution: BodyRestitution = "momentum"
+    gravity: Gravity = STANDARD_GRAVITY
 
 
-class BlockParams(SizeParams):
+class BodyParams(SizeParams):
+    """The same, and the place of its centre of mass."""
+
+    offset: Offset = 0.0
+    mass_height: MassHeight = None
+
+
+class BlockParams(BodyParams):
     """A block and a pulse in SI units."""
 
     pulse: PulseName
-    offset: Offset = 0.0
-    mass_height: MassHeight = None
-    peak_acceleration: float = quantity("peak_acceleration", "a_g", examples=[4.0])
-    period: float = quantity(
-        "period", "T_p = 2 pi/omega_g; a half sine or rectangular pulse lasts half of it", examples=[0.5]
-    )
+    peak_acceleration: PeakAcceleration
+    period: Period
     method: Method = "auto"
     absolute_tolerance: AbsoluteTolerance = 1e-4
 
@@ -84,9 +62,7 @@ class BlocksParams(Params):
     """What many blocks in a body have in common."""
 
     pulse: PulseName | None = Field(None, description="pulse, required unless a JSON body holds it", examples=["sine"])
-    restitution: MomentumOrNumber = Field(
-        "momentum", description="eta [-] of the blocks that state none, or momentum: (2.4), 0 where that is negative"
-    )
+    restitution: BodyRestitution = Field("momentum", description="of the blocks that state none: eta [-] or momentum")
     format: TableFormat = None
 
 
@@ -94,11 +70,11 @@ class BlockRow(Params):
     """One of many blocks in a JSON body, in SI units."""
 
     name: str = Field("", description="label", max_length=200)
-    width: float = quantity("width", "width 2b of the base")
-    height: float = quantity("height", "height 2h")
-    peak_acceleration: float = quantity("peak_acceleration", "a_g")
-    period: float = quantity("period", "T_p = 2 pi/omega_g")
-    restitution: MomentumOrNumber | None = Field(None, description="eta [-], or momentum; absent: that of all")
+    width: Width
+    height: Height
+    peak_acceleration: PeakAcceleration
+    period: Period
+    restitution: BodyRestitution | None = Field(None, description="eta [-], or momentum; absent: that of all")
 
 
 class BlockRows(BlocksParams):
@@ -112,29 +88,20 @@ class BlockRows(BlocksParams):
     )
 
 
-@with_derived_fields(list[float | None])
+_OF_TABLE = [
+    one
+    for one in FIELDS
+    if {"pulse", "block"} <= one.kinds and one.name not in ("half_diagonal", "frequency_parameter")
+]
+"""Columns of `respond_table`."""
+
+
+@declared(_OF_TABLE, many=True)
 class BlocksResponse(Answer):
     """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
 
     query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
     name: list[str] | None = Field(None, description="labels; null without any")
-    width: list[float] = Field(description="width 2b [m]")
-    height: list[float] = Field(description="height 2h [m]")
-    peak_acceleration: list[float] = Field(description="a_g [m/s2]")
-    period: list[float] = Field(description="T_p [s]")
-    uplift_acceleration: list[float] = Field(description="smallest ground acceleration that starts rocking [m/s2]")
-    alpha_deg: list[float] = Field(description="slenderness angle [deg]")
-    slenderness: list[float] = Field(description="g tan(alpha)/a_g [-]")
-    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
-    restitution: list[float] = Field(description="eta [-]")
-    peak_rotation_deg: list[float | None] = Field(description="max |theta| [deg]; null if overturned")
-    top_displacement: list[float | None] = Field(description="displacement of the top corner [m]; null likewise")
-    peak_rotation: list[float | None] = Field(description="max |theta|/alpha [-]; null if overturned")
-    overturned: list[bool] = Field(description="final outcome")
-    outcome: list[str] = Field(description="final outcome by name")
-    impacts: list[int] = Field(description="number of impacts before the pulse ends [-]")
-    exceeded_alpha: list[bool] = Field(description="whether the rotation passes alpha")
-    error_bound: list[float | None] = Field(description="bound of the error of peak_rotation [-]; null if overturned")
     metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, create_model
 
-from rocking._excitation.records.record import TIME_STEP
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import Params, TableFormat
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import TableFormat, TimeStep, between
 
 MAX_SAMPLES = 20_000
 """Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
@@ -20,19 +20,11 @@ Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 class IdentifyParams(Params):
     """How a trace is read and fitted."""
 
-    edges: int = Field(
-        1,
-        description="1 for a body with equal edges, 2 for one with a right and a left edge [-]",
-        json_schema_extra={"minimum": 1, "maximum": 2},
-    )
+    edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
     degrees: bool = Field(
         False, description="the rotations are in degrees, not in radians, where the header of CSV states no unit"
     )
-    time_step: float | None = Field(
-        None,
-        description="time between the rows where CSV counts them in place of times [s]",
-        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
-    )
+    time_step: TimeStep = Field(None, description="time between the rows where CSV counts them in place of times [s]")
     confidence: float = Field(
         0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
     )
@@ -46,25 +38,32 @@ class Trace(IdentifyParams):
     rotation: Samples = Field(description="rotation; positive values turn on the right edge [rad]")
 
 
+_ESTIMATES: dict[str, tuple[Any, str, str]] = {
+    "restitution": (list[float], "eta of the impacts after which it turns on the edge", "-"),
+    "alpha": (list[float], "slenderness angle", "rad"),
+    "frequency_parameter": (list[float], "p", "rad/s"),
+    "drift": (float, "drift of the sensor", "rad/s"),
+}
+"""Type, meaning and unit of what has an interval."""
+
+
+def _with_intervals(model: type[IdentifyResponse]) -> type[IdentifyResponse]:
+    """A decorator that adds the estimates and the ends of their intervals."""
+    found: dict[str, Any] = {}
+    for name, (kind, meaning, unit) in _ESTIMATES.items():
+        ends = {name: meaning} | {f"{name}_{end}": f"{end} end of its interval" for end in ("lower", "upper")}
+        found |= {key: (kind, Field(description=f"{text} [{unit}]")) for key, text in ends.items()}
+    return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
+
+
+@_with_intervals
 class IdentifyResponse(Answer):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
     query: IdentifyParams = QUERY
     edge: list[str] = Field(description="both, or right and left")
-    restitution: list[float] = Field(description="eta of the impacts after which it turns on the edge [-]")
-    restitution_lower: list[float] = Field(description="lower end of its interval [-]")
-    restitution_upper: list[float] = Field(description="upper end of its interval [-]")
-    alpha: list[float] = Field(description="slenderness angle [rad]")
-    alpha_lower: list[float] = Field(description="lower end of its interval [rad]")
-    alpha_upper: list[float] = Field(description="upper end of its interval [rad]")
-    frequency_parameter: list[float] = Field(description="p [rad/s]")
-    frequency_parameter_lower: list[float] = Field(description="lower end of its interval [rad/s]")
-    frequency_parameter_upper: list[float] = Field(description="upper end of its interval [rad/s]")
     impact_time: list[float] = Field(description="times of the impacts of the fit [s]")
     offset: float = Field(description="rotation at rest, at the first impact [rad]")
-    drift: float = Field(description="drift of the sensor [rad/s]")
-    drift_lower: float = Field(description="lower end of its interval [rad/s]")
-    drift_upper: float = Field(description="upper end of its interval [rad/s]")
     noise: float = Field(description="standard deviation of the residual [rad]")
     sample_noise: float = Field(description="standard deviation of independent errors of the samples [rad]")
     time: list[float] = Field(description="times of the samples [s]")

@@ -18,7 +18,8 @@ from pydantic import (
 )
 
 from rocking._excitation.sampled import SampledPulse
-from rocking_api.models.params import Params, PulseName
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import PulseName
 
 P = TypeVar("P", bound=Params)
 

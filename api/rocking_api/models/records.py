@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
-from typing import Annotated, Any
+from typing import Any
 
 from pydantic import BaseModel, Field, create_model
 
-from rocking._base.quantities import HIGHEST_SCALE
-from rocking._excitation.records.processing import MAX_BASELINE_ORDER
-from rocking._excitation.records.readers.read_record import MAX_SKIP
-from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import NOTES, OVERTURNS_ABOVE, Edge, MassHeight, Offset, SizeParams
+from rocking_api.models.blocks import NOTES, OVERTURNS_ABOVE, BodyParams, Edge, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Format
-from rocking_api.models.responses import BY_SOLVER, Motion, with_fields
-
-SMALLEST_SCALE = 1e-6
-"""Smallest factor of a record [-]."""
+from rocking_api.models.quantity import BaselineOrder, Contact, Format, Scale, Skip, TimeStep, Unit, between
+from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
 
 MAX_SCALES = 2000
 """Most factors of a curve over the scale [-]."""
@@ -31,44 +25,13 @@ CAUTION = (
     "amplitude at which it overturns a block is usually larger than that of the record, which is unconservative."
 )
 
-_SCALE: dict[str, Any] = {"minimum": SMALLEST_SCALE, "maximum": HIGHEST_SCALE}
-
-Unit = Annotated[
-    str | None,
-    Field(
-        description="unit of the samples, required if the file states none", json_schema_extra={"enum": [*UNITS, None]}
-    ),
-]
-
-
-Skip = Annotated[
-    int | None,
-    Field(
-        description="rows of numbers above the samples of a file of columns, such as a count or a factor [-]",
-        json_schema_extra={"minimum": 0, "maximum": MAX_SKIP},
-    ),
-]
-
-BaselineOrder = Annotated[
-    int | None,
-    Field(
-        description="degree of the baseline that is removed from the acceleration [-]; absent: none, "
-        "but for the mean of K-NET counts",
-        json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
-    ),
-]
-
 
 class RecordFileParams(SizeParams):
     """A block in SI units, and what the file of the record does not state."""
 
     name: str = Field("record", description="name of the file, for messages", max_length=200)
     unit: Unit = None
-    time_step: float | None = Field(
-        None,
-        description="time step [s], required if the file states none",
-        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
-    )
+    time_step: TimeStep = None
     component: str | None = Field(None, description="column or trace of a file with several", max_length=200)
     vertical: str | None = Field(
         None, description="column or trace of the vertical component, upwards, in the same file", max_length=200
@@ -80,14 +43,12 @@ class RecordFileParams(SizeParams):
 class RecordParams(RecordFileParams):
     """The same, and a factor of the record, of both components."""
 
-    scale: float = Field(1.0, description="factor of the record [-]", json_schema_extra=_SCALE)
+    scale: Scale = 1.0
 
 
-class RecordResponseParams(RecordParams):
+class RecordResponseParams(BodyParams, RecordParams):
     """The same, the place of the centre of mass, and whether to search thresholds and to fit a pulse."""
 
-    offset: Offset = 0.0
-    mass_height: MassHeight = None
     thresholds: bool = Field(
         True, description="find all scales at which the outcome changes, which takes most of the time"
     )
@@ -97,38 +58,26 @@ class RecordResponseParams(RecordParams):
 class RecordHistoryParams(RecordParams):
     """The same, and which samples are wanted."""
 
-    samples: int | None = Field(
-        None,
-        description="uniform samples [-]; absent: those of the record; the events are added",
-        json_schema_extra={"minimum": 2},
+    samples: int | None = between(
+        2, math.inf, "uniform samples [-]; absent: those of the record; the events are added", default=None
     )
-    contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
+    contact: Contact = False
     format: Format = None
 
 
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
-    scale_min: float | None = Field(
-        None, description="smallest factor [-]; absent: that of uplift", json_schema_extra=_SCALE
-    )
-    scale_max: float | None = Field(
-        None, description="largest factor [-]; absent: ten times that of uplift", json_schema_extra=_SCALE
-    )
-    points: int = Field(
-        200,
-        description="factors, evenly spaced in their logarithm [-]",
-        json_schema_extra={"minimum": 2, "maximum": MAX_SCALES},
-    )
+    scale_min: Scale | None = Field(None, description="smallest factor [-]; absent: that of uplift")
+    scale_max: Scale | None = Field(None, description="largest factor [-]; absent: ten times that of uplift")
+    points: int = between(2, MAX_SCALES, "factors, evenly spaced in their logarithm [-]", default=200)
     format: Format = None
 
 
 class RecordPulseParams(RecordParams):
     """The same, and the samples for a drawing."""
 
-    samples: int = Field(
-        2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
-    )
+    samples: int = between(2, MAX_DRAWN, "most samples of the drawing [-]", default=2000)
 
 
 class RecordBody(RecordFileParams):
@@ -238,6 +187,7 @@ class RecordHistoryResponse(Motion):
     metadata: Metadata = METADATA_FIELD
 
 
+@declared(OF_SOLVER, many=True)
 class RecordScalesResponse(Answer):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
@@ -245,11 +195,6 @@ class RecordScalesResponse(Answer):
     record: RecordDescription = _RECORD
     scale: list[float] = Field(description="factors of the record [-]")
     peak_acceleration: list[float] = Field(description="PGA of the scaled record [m/s2]")
-    peak_rotation: list[float | None] = Field(description="max |theta|/alpha [-]; null where the block overturns")
-    overturned: list[bool] = Field(description="final outcome")
-    outcome: list[str] = Field(description="final outcome by name")
-    impacts: list[int] = Field(description="number of impacts while the ground moves [-]")
-    exceeded_alpha: list[bool] = Field(description="whether the rotation passes alpha")
     thresholds: list[ScaleThreshold] = Field(
         description="scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at "
         "most 0.5 % apart up to the lowest, 0.2 % above it"

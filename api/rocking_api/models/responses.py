@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
@@ -12,21 +13,9 @@ from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
 from rocking._dimensional.fields import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
-from rocking._model.fields import (
-    BOUNDED_FIELDS,
-    COLUMN_FIELDS,
-    DERIVED_FIELDS,
-    ERROR_BOUND,
-    EXCEEDED_ALPHA,
-    FROM_CUBE,
-    IMPACTS,
-    OUTCOME,
-    OVERTURNED,
-    PEAK_ROTATION,
-    SOURCE,
-    ResponseField,
-)
-from rocking._model.response import Outcome
+from rocking._model import fields as own
+from rocking._model.fields import COLUMN_FIELDS, ResponseField
+from rocking._model.outcome import Outcome
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.encoding import Column
@@ -40,19 +29,23 @@ OUTCOMES = [outcome.name for outcome in Outcome]
 
 _WORDS = {int(outcome): (outcome.name, outcome.sentence) for outcome in Outcome}
 
-_OF_POINT = [field for field in BOUNDED_FIELDS if field is not FROM_CUBE]
+SOURCES = ("solver", "cube")
+"""By whether a response is from a data set."""
 
-_PEAK = Field(description=PEAK_ROTATION.description())
-_OVERTURNED = Field(description=OVERTURNED.description())
-_OUTCOME = Field(description=f"{OUTCOME.description()}, one of {', '.join(OUTCOMES)}")
-_IMPACTS = Field(description=IMPACTS.description())
-_CERTAIN_IMPACTS = Field(
-    description=f"{IMPACTS.description()}; null where a data set leaves it open: method=solver counts"
-)
-_EXCEEDED = Field(description=f"{EXCEEDED_ALPHA.description()}; the ground can bring a block back from there")
-_BOUND = Field(description=ERROR_BOUND.description())
-_SOURCE = Field(description=SOURCE.description())
+_OF_POINT = [field for field in own.BOUNDED_FIELDS if field is not own.FROM_CUBE]
 
+OF_SOLVER = (own.PEAK_ROTATION, own.OVERTURNED, own.OUTCOME, own.IMPACTS, own.EXCEEDED_ALPHA)
+"""Fields of each response of the solver."""
+
+_LOOKED_UP = [
+    replace(one, missing="a data set leaves it open: method=solver counts") if one is own.IMPACTS else one
+    for one in COLUMN_FIELDS
+]
+
+_DETAILS = {
+    own.OUTCOME.name: f"one of {', '.join(OUTCOMES)}",
+    own.EXCEEDED_ALPHA.name: "the ground can bring a block back from there",
+}
 
 BY_SOLVER = Field("solver", description="what answered: always the solver")
 _DATA = Field(
@@ -61,64 +54,42 @@ _DATA = Field(
 )
 
 
-def with_derived_fields(kind: Any) -> Callable[[type[Model]], type[Model]]:
-    """A decorator that adds the derived fields, each of the type `kind`, to a model."""
-    fields: dict[str, Any] = {field.name: (kind, Field(description=field.description())) for field in DERIVED_FIELDS}
-    return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
-
-
-def with_fields(*kinds: str) -> Callable[[type[Model]], type[Model]]:
-    """A decorator that adds what is found of one body, for responses of some kinds, unless the model declares it."""
-    declared = [one for one in SHOWN if one.dtype != "O" and one.kinds >= {*kinds}]
+def declared(fields: Iterable[ResponseField], *, many: bool = False) -> Callable[[type[Model]], type[Model]]:
+    """A decorator that adds declared fields to a model, unless it has them; lists of them if `many`."""
 
     def add(model: type[Model]) -> type[Model]:
-        fields: dict[str, Any] = {
-            one.label: (_type_of(one), Field(description=one.description(unit=one.label_unit)))
-            for one in declared
-            if one.label not in model.model_fields
-        }
-        return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
+        found: dict[str, Any] = {}
+        for one in fields:
+            text = "; ".join(filter(None, (one.description(unit=one.label_unit), _DETAILS.get(one.name))))
+            kind: Any = str if one.name == "outcome" else {"f": float, "?": bool, "U": str, "i": int}[one.dtype[0]]
+            kind = kind | None if one.missing else kind
+            if one.label not in model.model_fields:
+                found[one.label] = (list[kind] if many else kind), Field(description=text)
+        return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
 
     return add
 
 
-def _type_of(field: ResponseField) -> Any:
-    """The type in JSON of the values of a field for one body."""
-    if field is OUTCOME:
-        return str
-    kind: Any = {"f": float, "?": bool, "U": str, "i": int}[field.dtype[0]]
-    return kind | None if field.missing else kind
+def with_fields(*kinds: str) -> Callable[[type[Model]], type[Model]]:
+    """`declared` with what is found of one body, for responses of some kinds."""
+    return declared([one for one in SHOWN if one.dtype != "O" and one.kinds >= {*kinds}])
 
 
-@with_derived_fields(float | None)
+@declared(_LOOKED_UP)
 class PointResponse(Answer):
     """One block."""
 
     query: ResponseParams = QUERY
-    peak_rotation: float | None = _PEAK
-    overturned: bool = _OVERTURNED
-    outcome: str = _OUTCOME
     meaning: str = Field(description="the outcome in words")
-    impacts: int | None = _CERTAIN_IMPACTS
-    exceeded_alpha: bool = _EXCEEDED
-    error_bound: float | None = _BOUND
     note: str | None = Field(None, description="why peak_rotation, error_bound or impacts is null")
-    source: str = _SOURCE
     data_version: str | None = _DATA
     metadata_url: str = METADATA_URL_FIELD
 
 
-@with_derived_fields(list[float | None])
+@declared(_LOOKED_UP, many=True)
 class Columns(Answer):
     """Many blocks, in the order of the request."""
 
-    peak_rotation: list[float | None] = _PEAK
-    overturned: list[bool] = _OVERTURNED
-    outcome: list[str] = _OUTCOME
-    impacts: list[int | None] = _CERTAIN_IMPACTS
-    exceeded_alpha: list[bool] = _EXCEEDED
-    error_bound: list[float | None] = _BOUND
-    source: list[str] = _SOURCE
     data_versions: list[str] = Field(description="sha256 of each data set used")
     metadata_url: str = METADATA_URL_FIELD
 
@@ -180,13 +151,10 @@ class ContactResponse(BaseModel):
     warnings: str = Field(description="where the assumption of pure rocking is doubtful, in words")
 
 
+@declared(OF_SOLVER[:-1])
 class Motion(Answer):
     """A motion: outcome and samples, whatever its variable of time is."""
 
-    overturned: bool = _OVERTURNED
-    outcome: str = _OUTCOME
-    peak_rotation: float | None = _PEAK
-    impacts: int = _IMPACTS
     rotation: list[float] = Field(description="theta/alpha [-]")
     angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau, tau = p t [-]")
     ground_acceleration: list[float] = Field(description="u_g/(g tan alpha) [-]; under a pulse a f")
@@ -273,15 +241,7 @@ class Health(Answer):
 
 
 class Names:
-    """A column of names, stored as codes.
-
-    Parameters
-    ----------
-    codes : int or bool array, shape (points,)
-        Index of each name.
-    names : sequence of str
-        All names.
-    """
+    """A column of names by their codes (points,), of which no list is made before they are sent."""
 
     def __init__(self, codes: NDArray[Any], names: Sequence[str]) -> None:
         self._codes = codes
@@ -313,10 +273,10 @@ def columns_of(result: BatchResult) -> dict[str, Column]:
     """The fields of `Columns` with one value for each point."""
     columns: dict[str, Column] = {
         **result.fields,
-        OVERTURNED.name: result.fields[OUTCOME.name] >= Outcome.OVERTURNED_DIRECTLY,
-        OUTCOME.name: Names(result.fields[OUTCOME.name], OUTCOMES),
-        IMPACTS.name: Counts(result.fields[IMPACTS.name]),
-        SOURCE.name: Names(result.from_cube, ["solver", "cube"]),
+        own.OVERTURNED.name: result.fields[own.OUTCOME.name] >= Outcome.OVERTURNED_DIRECTLY,
+        own.OUTCOME.name: Names(result.fields[own.OUTCOME.name], OUTCOMES),
+        own.IMPACTS.name: Counts(result.fields[own.IMPACTS.name]),
+        own.SOURCE.name: Names(result.from_cube, SOURCES),
     }
     return {field.name: columns[field.name] for field in COLUMN_FIELDS}
 
@@ -325,7 +285,7 @@ def point_response(params: ResponseParams, found: BoundedResponse, versions: tup
     """The response for one block."""
     fields: dict[str, Any] = {one.name: getattr(found, one.name).item() for one in _OF_POINT}
     fields |= {name: values.item() for name, values in found.derived.items()}
-    outcome, source = fields["outcome"], "cube" if found.from_cube.item() else "solver"
+    outcome, from_cube = fields["outcome"], found.from_cube.item()
     note, warnings = None, []
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
         note = "the block overturns: there is no peak"
@@ -338,12 +298,6 @@ def point_response(params: ResponseParams, found: BoundedResponse, versions: tup
         if value == UNKNOWN_IMPACTS if name == "impacts" else not math.isfinite(value):
             fields[name] = None
     fields["outcome"], fields["meaning"] = _WORDS[outcome]
-    return PointResponse(
-        query=params,
-        warnings=warnings,
-        overturned=outcome >= Outcome.OVERTURNED_DIRECTLY,
-        note=note,
-        source=source,
-        data_version=versions[0] if versions and source == "cube" else None,
-        **fields,
-    )
+    fields["overturned"], fields["source"] = outcome >= Outcome.OVERTURNED_DIRECTLY, SOURCES[from_cube]
+    version = versions[0] if versions and from_cube else None
+    return PointResponse(query=params, warnings=warnings, note=note, data_version=version, **fields)

@@ -38,8 +38,9 @@ from rocking_api.models.blocks import (
     SizeThreshold,
 )
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
-from rocking_api.models.responses import PointResponse, point_response
+from rocking_api.models.params import ResponseParams
+from rocking_api.models.quantity import FREQUENCY_RATIO
+from rocking_api.models.responses import SOURCES, PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
@@ -161,7 +162,7 @@ def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockRespon
     served = FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
     found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
     about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
-    about["notes"] = [*([BY_SOLVER] if point.source == "solver" else []), *about["notes"]]
+    about["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *about["notes"]]
     margins = None if found.margins is None else _margins(found.margins)
     return BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
 
@@ -186,7 +187,7 @@ def _point(
     if not found.from_cube:
         found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres
     answer = point_response(dimensionless, found, versions)
-    service.metrics.points(answer.source, 1)
+    service.metrics.points(SOURCES[found.from_cube.item()], 1)
     answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
     return answer, found.reshape(())
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 import numpy as np
@@ -20,20 +21,10 @@ from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import (
-    FREQUENCY_RATIO,
-    SLENDERNESS,
-    AlphaDeg,
-    Format,
-    FrequencyRatio,
-    Params,
-    PulseName,
-    Restitution,
-    Slenderness,
-    alpha_of,
-)
+from rocking_api.models.params import ShapeParams, alpha_of
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between
 from rocking_api.models.responses import BY_SOLVER, OUTCOMES
-from rocking_api.routers.twin import add_twin
+from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -45,18 +36,15 @@ MAX_AGE = 600
 """How long a client may store a map without revalidation [s]."""
 
 
-class MapParams(Params):
+class MapParams(ShapeParams):
     """A window of the control space: columns uniform in log frequency ratio, rows uniform in slenderness."""
 
-    pulse: PulseName
-    restitution: Restitution
-    alpha_deg: AlphaDeg = None
     frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
     frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
     slenderness_min: Slenderness = Field(0.01, examples=[0.01])
     slenderness_max: Slenderness = Field(1.05, examples=[1.05])
-    columns: int = Field(120, description="frequency ratios [-]", json_schema_extra={"minimum": 2})
-    rows: int = Field(90, description="slendernesses [-]", json_schema_extra={"minimum": 2})
+    columns: int = between(2, math.inf, "frequency ratios [-]", default=120)
+    rows: int = between(2, math.inf, "slendernesses [-]", default=90)
     format: Format = None
 
 
@@ -75,28 +63,21 @@ class MapResponse(Answer):
     metadata_url: str = METADATA_URL_FIELD
 
 
-@router.get(
+@pair(
+    router,
     "/map",
-    summary="Outcome and peak rotation over a window of frequency ratio and slenderness",
+    "Outcome and peak rotation over a window of frequency ratio and slenderness",
     response_model=MapResponse,
-    responses=CONTENT | {304: {"description": "not modified"}},
+    responses=CONTENT,
 )
 async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
-    response = await _answer(params, request, service)
-    response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
-    return response
-
-
-async def _answer(params: MapParams, request: Request, service: Service) -> Response:
     form = negotiated_form(request, params.format)
     axes = _axes(service, params)
-    return await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
-
-
-add_twin(
-    router, "/map", _answer, "Outcome and peak rotation over a window", response_model=MapResponse, responses=CONTENT
-)
+    response = await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
+    if request.method == "GET":
+        response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
+    return response
 
 
 def _map(

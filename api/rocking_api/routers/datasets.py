@@ -145,13 +145,7 @@ async def get_dataset(name: DatasetName, request: Request, service: ServiceDep) 
 
 
 def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
-    """The open file of a data set.
-
-    Raises
-    ------
-    DatasetError
-        If it is damaged.
-    """
+    """The open file of a data set."""
     file = service.cubes.catalogue.open(name)
     try:
         product = service.cubes.catalogue.product_of(file)

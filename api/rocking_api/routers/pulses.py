@@ -15,6 +15,7 @@ from rocking._excitation import pulses
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import QUERY, ListAnswer
 from rocking_api.models.params import ListParams
+from rocking_api.models.quantity import between
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
@@ -29,9 +30,7 @@ DIGITS = 4
 class PulsesParams(ListParams):
     """How finely the pulses are sampled, and a part of their list."""
 
-    samples: int = Field(
-        65, description="samples of each pulse [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
-    )
+    samples: int = between(2, MAX_DRAWN, "samples of each pulse [-]", default=65)
 
 
 class PulseParameter(BaseModel):

@@ -33,7 +33,7 @@ from rocking_api.models.params import (
     check_point,
 )
 from rocking_api.models.pulses import options_of, with_samples
-from rocking_api.models.responses import BatchResponse, PointResponse, columns_of, point_response
+from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -61,9 +61,8 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
         found = evaluate(service.cubes, params, points, may_read=False)
     except UnreadError:
         found = await service.single.run(lambda stop: evaluate(service.cubes, params, points, stop))
-    answer = point_response(params, *found)
-    service.metrics.points(answer.source, 1)
-    return answer
+    service.metrics.points(SOURCES[found[0].from_cube.item()], 1)
+    return point_response(params, *found)
 
 
 @router.post(

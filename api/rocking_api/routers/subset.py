@@ -17,7 +17,8 @@ from rocking._datasets.cube import DIMENSIONS
 from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.params import FileFormat, Params
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import FileFormat
 from rocking_api.routers.datasets import DatasetName
 from rocking_api.service import Service, ServiceDep
 
@@ -52,13 +53,7 @@ class SubsetParams(Params):
     format: FileFormat = None
 
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Smallest and largest value of each axis in the unit of the parameters.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the smallest is above the largest, or not a number.
-        """
+        """Smallest and largest value of each axis in the unit of the parameters."""
         found = {}
         for axis, (name, *_) in AXES.items():
             ends = {f"{name}_min": -math.inf, f"{name}_max": math.inf}
