@@ -18,20 +18,8 @@ from rocking._datasets.csv_text import csv_text
 from rocking._datasets.cube import decode_dataset
 from rocking.suites.intensity import measure_of
 from rocking.suites.summary import record_margins, rotation_quantiles
+from rocking_api.models import suites as m
 from rocking_api.models.responses import Link
-from rocking_api.models.suites import (
-    FragilityCurve,
-    LimitState,
-    RecordMargin,
-    RecordSensitivity,
-    RotationQuantile,
-    Sensitivity,
-    SuiteBlock,
-    SuiteParams,
-    SuiteRecord,
-    SuiteResponse,
-    SuiteSummary,
-)
 
 T = TypeVar("T")
 M = TypeVar("M", bound=BaseModel)
@@ -45,7 +33,7 @@ class _Fragility:
 
     about: dict[str, Any]
     intensity: list[float]
-    records: list[SuiteRecord]
+    records: list[m.SuiteRecord]
     blocks: list[dict[str, Any]]
     demands: list[str]
 
@@ -57,14 +45,14 @@ class SuiteReader:
         self._catalogue = catalogue
         self._fragility = VersionCache[str, _Fragility | DatasetError]()
         self._outcomes = VersionCache[str, list[dict[str, Any]] | DatasetError]()
-        self._sensitivity = VersionCache[str, list[list[Sensitivity]] | DatasetError]()
+        self._sensitivity = VersionCache[str, list[list[m.Sensitivity]] | DatasetError]()
 
     def names(self) -> list[str]:
         """Names of all suites, ascending."""
         found = self._catalogue.names()
         return sorted(one.removeprefix(_FOLDER).removesuffix(_FILE) for one in found if _is_fragility(one))
 
-    def summaries(self, names: list[str]) -> list[SuiteSummary]:
+    def summaries(self, names: list[str]) -> list[m.SuiteSummary]:
         """Those of some suites that can be read; damaged ones are reported by /health."""
         datasets = self._catalogue.names()
         found = []
@@ -73,9 +61,9 @@ class SuiteReader:
                 found.append(self._summary(name, datasets))
         return found
 
-    def _summary(self, name: str, datasets: list[str]) -> SuiteSummary:
+    def _summary(self, name: str, datasets: list[str]) -> m.SuiteSummary:
         found = self._part(self._fragility, name, "fragility", _fragility)
-        return SuiteSummary(
+        return m.SuiteSummary(
             name=name,
             title=found.about["title"],
             measure=found.about["measure"],
@@ -86,7 +74,7 @@ class SuiteReader:
             links=_links(name, datasets),
         )
 
-    def suite(self, name: str, query: SuiteParams) -> SuiteResponse:
+    def suite(self, name: str, query: m.SuiteParams) -> m.SuiteResponse:
         """A suite."""
         found = self._part(self._fragility, name, "fragility", _fragility)
         outcomes = self._part(self._outcomes, name, "outcomes", _of_outcomes)
@@ -96,14 +84,14 @@ class SuiteReader:
             sensitivity = [[] for _ in found.blocks]
         if not len(found.blocks) == len(outcomes) == len(sensitivity):
             raise DatasetError(f"{_FOLDER}{name}: its files are of different blocks; ask again after the run has ended")
-        return SuiteResponse(
+        return m.SuiteResponse(
             query=query,
             name=name,
             **found.about,
             intensity=found.intensity,
             records=found.records,
             blocks=[
-                SuiteBlock(**block, **of_outcomes, sensitivity=levels)
+                m.SuiteBlock(**block, **of_outcomes, sensitivity=levels)
                 for block, of_outcomes, levels in zip(found.blocks, outcomes, sensitivity, strict=True)
             ],
             links=_links(name, self._catalogue.names()),
@@ -168,7 +156,7 @@ def _fragility(found: xr.Dataset) -> _Fragility:
     return _Fragility(
         about,
         found["intensity"].values.tolist(),
-        [_of(SuiteRecord, one, name=str(one["record"].item())) for one in _each(found, "record")],
+        [_of(m.SuiteRecord, one, name=str(one["record"].item())) for one in _each(found, "record")],
         [_block(one) for one in _each(found, "block")],
         found["demand"].values.tolist(),
     )
@@ -205,23 +193,23 @@ def _each(found: xr.Dataset, dimension: str) -> list[xr.Dataset]:
 
 
 def _block(found: xr.Dataset) -> dict[str, Any]:
-    numbers = {name: float(found[name]) for name in SuiteBlock.model_fields if name in found}
+    numbers = {name: float(found[name]) for name in m.SuiteBlock.model_fields if name in found}
     states = [_limit_state(one) for one in _each(found, "demand")]
     return numbers | {"alpha_deg": math.degrees(float(found["alpha"])), "limit_states": states}
 
 
-def _limit_state(one: xr.Dataset) -> LimitState:
+def _limit_state(one: xr.Dataset) -> m.LimitState:
     curves = [_curve(of_model) for of_model in _each(one, "model")]
     median = finite(float(one["first_median_intensity"].sel(model="lognormal")))
     named = _names(one["records_surviving_above_first"])
-    return _of(LimitState, one, curves=curves, first_median_intensity=median, records_surviving_above_first=named)
+    return _of(m.LimitState, one, curves=curves, first_median_intensity=median, records_surviving_above_first=named)
 
 
-def _curve(one: xr.Dataset) -> FragilityCurve:
+def _curve(one: xr.Dataset) -> m.FragilityCurve:
     code = one["fit_status"]  # the file states what it means: importing the fits takes longer than the service to start
     name = str(code.attrs["flag_meanings"]).split()[int(code)]
     meanings = dict(text.split(": ", 1) for text in str(code.attrs["comment"]).split("; "))
-    return _of(FragilityCurve, one, fit_status=name.upper(), fit_meaning=meanings[name])
+    return _of(m.FragilityCurve, one, fit_status=name.upper(), fit_meaning=meanings[name])
 
 
 def _of_outcomes(outcomes: xr.Dataset) -> list[dict[str, Any]]:
@@ -229,9 +217,9 @@ def _of_outcomes(outcomes: xr.Dataset) -> list[dict[str, Any]]:
     quantiles = rotation_quantiles(outcomes).transpose("block", "quantile", "intensity")
     return [
         {
-            "margins": [_of(RecordMargin, one) for one in _each(margins, "record")],
+            "margins": [_of(m.RecordMargin, one) for one in _each(margins, "record")],
             "rotation_quantiles": [
-                RotationQuantile(quantile=float(one["quantile"]), peak_rotation=_plain(one.values.tolist()))
+                m.RotationQuantile(quantile=float(one["quantile"]), peak_rotation=_plain(one.values.tolist()))
                 for one in quantiles[k]
             ],
         }
@@ -239,13 +227,13 @@ def _of_outcomes(outcomes: xr.Dataset) -> list[dict[str, Any]]:
     ]
 
 
-def _of_sensitivity(found: xr.Dataset) -> list[list[Sensitivity]]:
+def _of_sensitivity(found: xr.Dataset) -> list[list[m.Sensitivity]]:
     """Each block at each level."""
     return [[_sensitivity(one) for one in _each(block, "intensity")] for block in _each(found, "block")]
 
 
-def _sensitivity(one: xr.Dataset) -> Sensitivity:
-    records = [_of(RecordSensitivity, record) for record in _each(one, "record")]
+def _sensitivity(one: xr.Dataset) -> m.Sensitivity:
+    records = [_of(m.RecordSensitivity, record) for record in _each(one, "record")]
     return _of(
-        Sensitivity, one, records=records, records_changed_by_sampling=_names(one["records_changed_by_sampling"])
+        m.Sensitivity, one, records=records, records_changed_by_sampling=_names(one["records_changed_by_sampling"])
     )

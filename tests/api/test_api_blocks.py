@@ -5,7 +5,7 @@ import io
 import math
 
 import pytest
-from rocking_api.routers import blocks
+from rocking_api.models import blocks
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY

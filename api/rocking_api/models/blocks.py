@@ -8,24 +8,11 @@ from pydantic import BaseModel, Field, SerializeAsAny
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.fields import FIELDS
+from rocking_api.models import quantity as q
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.quantity import (
-    AbsoluteTolerance,
-    BodyRestitution,
-    Gravity,
-    Height,
-    MassHeight,
-    Method,
-    Offset,
-    PeakAcceleration,
-    Period,
-    PulseName,
-    TableFormat,
-    Width,
-)
 from rocking_api.models.responses import BY_SOLVER, PointResponse, declared, with_fields
 
 MAX_BLOCKS = 10_000
@@ -35,46 +22,46 @@ MAX_BLOCKS = 10_000
 class SizeParams(Params):
     """A block in SI units."""
 
-    width: Width
-    height: Height
-    restitution: BodyRestitution = "momentum"
-    gravity: Gravity = STANDARD_GRAVITY
+    width: q.Width
+    height: q.Height
+    restitution: q.BodyRestitution = "momentum"
+    gravity: q.Gravity = STANDARD_GRAVITY
 
 
 class BodyParams(SizeParams):
     """The same, and the place of its centre of mass."""
 
-    offset: Offset = 0.0
-    mass_height: MassHeight = None
+    offset: q.Offset = 0.0
+    mass_height: q.MassHeight = None
 
 
 class BlockParams(BodyParams):
     """A block and a pulse in SI units."""
 
-    pulse: PulseName
-    peak_acceleration: PeakAcceleration
-    period: Period
-    method: Method = "auto"
-    absolute_tolerance: AbsoluteTolerance = 1e-4
+    pulse: q.PulseName
+    peak_acceleration: q.PeakAcceleration
+    period: q.Period
+    method: q.Method = "auto"
+    absolute_tolerance: q.AbsoluteTolerance = 1e-4
 
 
 class BlocksParams(Params):
     """What many blocks in a body have in common."""
 
-    pulse: PulseName | None = Field(None, description="pulse, required unless a JSON body holds it", examples=["sine"])
-    restitution: BodyRestitution = Field("momentum", description="of the blocks that state none: eta [-] or momentum")
-    format: TableFormat = None
+    pulse: q.PulseName | None = Field(None, description="required unless a JSON body holds it", examples=["sine"])
+    restitution: q.BodyRestitution = Field("momentum", description="of the blocks that state none: eta [-] or momentum")
+    format: q.TableFormat = None
 
 
 class BlockRow(Params):
     """One of many blocks in a JSON body, in SI units."""
 
     name: str = Field("", description="label", max_length=200)
-    width: Width
-    height: Height
-    peak_acceleration: PeakAcceleration
-    period: Period
-    restitution: BodyRestitution | None = Field(None, description="eta [-], or momentum; absent: that of all")
+    width: q.Width
+    height: q.Height
+    peak_acceleration: q.PeakAcceleration
+    period: q.Period
+    restitution: q.BodyRestitution | None = Field(None, description="eta [-], or momentum; absent: that of all")
 
 
 class BlockRows(BlocksParams):
@@ -106,9 +93,6 @@ class BlocksResponse(Answer):
     source: str = BY_SOLVER
 
 
-OVERTURNS_ABOVE = Field(description="true: overturns just above and survives just below; false: the reverse")
-
-
 AMPLITUDES = "all amplitudes at which the outcome changes"
 NOTES = Field(description="what else is worth knowing")
 
@@ -118,25 +102,33 @@ Edge = Annotated[
 ]
 
 
-class Threshold(BaseModel):
+class _Change(BaseModel):
+    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
+
+
+class Threshold(_Change):
     """An amplitude at which the outcome changes."""
 
     peak_acceleration: float = Field(description="a_g [m/s2]")
-    overturns_above: bool = OVERTURNS_ABOVE
 
 
-class PeriodThreshold(BaseModel):
+class PeriodThreshold(_Change):
     """A period at which the outcome changes, the amplitude being what it is."""
 
     period: float = Field(description="T_p [s]")
-    overturns_above: bool = OVERTURNS_ABOVE
 
 
-class SizeThreshold(BaseModel):
+class SizeThreshold(_Change):
     """A size at which the outcome of blocks of this shape changes under this pulse."""
 
     half_diagonal: float = Field(description="R [m]")
-    overturns_above: bool = OVERTURNS_ABOVE
+
+
+class ScaleThreshold(_Change):
+    """A scale at which the outcome changes."""
+
+    scale: float = Field(description="factor of the record [-]")
+    peak_acceleration: float = Field(description="PGA of the scaled record [m/s2]")
 
 
 class Margins(BaseModel):

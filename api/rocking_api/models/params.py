@@ -13,22 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
 from rocking._base.quantities import RESTITUTION
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse
-from rocking_api.models.quantity import (
-    ALPHA_DEG,
-    FREQUENCY_RATIO,
-    SLENDERNESS,
-    AbsoluteTolerance,
-    AlphaDeg,
-    BodyFormat,
-    Contact,
-    Format,
-    FrequencyRatio,
-    Method,
-    PulseName,
-    Restitution,
-    Slenderness,
-    between,
-)
+from rocking_api.models import quantity as q
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
@@ -80,7 +65,7 @@ class Params(BaseModel):
 class ListParams(Params):
     """A part of a list."""
 
-    limit: int | None = between(1, 10_000, "most entries [-]; absent: all", default=None, examples=[10])
+    limit: int | None = q.between(1, 10_000, "most entries [-]; absent: all", default=None, examples=[10])
     cursor: str | None = Field(None, description="`next_cursor` of the answer before; absent: the start of the list")
 
     def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
@@ -94,98 +79,98 @@ class ListParams(Params):
 class LookupOptions(Params):
     """Options of a lookup."""
 
-    pulse: PulseName
-    alpha_deg: AlphaDeg = None
-    method: Method = "auto"
-    absolute_tolerance: AbsoluteTolerance = 1e-4
+    pulse: q.PulseName
+    alpha_deg: q.AlphaDeg = None
+    method: q.Method = "auto"
+    absolute_tolerance: q.AbsoluteTolerance = 1e-4
 
 
 class ResponseParams(LookupOptions):
     """One block."""
 
-    slenderness: Slenderness
-    frequency_ratio: FrequencyRatio
-    restitution: Restitution
+    slenderness: q.Slenderness
+    frequency_ratio: q.FrequencyRatio
+    restitution: q.Restitution
 
 
 class BatchOptions(LookupOptions):
     """Options of many blocks."""
 
-    format: BodyFormat = None
+    format: q.BodyFormat = None
 
 
 class TableParams(BatchOptions):
     """The same, and those of the groups that a table does not hold."""
 
-    slenderness: Slenderness | None = None
-    frequency_ratio: FrequencyRatio | None = None
-    restitution: Restitution | None = None
+    slenderness: q.Slenderness | None = None
+    frequency_ratio: q.FrequencyRatio | None = None
+    restitution: q.Restitution | None = None
 
 
 class BatchParams(BatchOptions):
     """Many blocks: numbers, or arrays of one length."""
 
-    slenderness: Slenderness | Annotated[list[Slenderness], _FAIL_FAST] = Field(description=SLENDERNESS.help)
-    frequency_ratio: FrequencyRatio | Annotated[list[FrequencyRatio], _FAIL_FAST] = Field(
-        description=FREQUENCY_RATIO.help
+    slenderness: q.Slenderness | Annotated[list[q.Slenderness], _FAIL_FAST] = Field(description=q.SLENDERNESS.help)
+    frequency_ratio: q.FrequencyRatio | Annotated[list[q.FrequencyRatio], _FAIL_FAST] = Field(
+        description=q.FREQUENCY_RATIO.help
     )
-    restitution: Restitution | Annotated[list[Restitution], _FAIL_FAST] = Field(description=RESTITUTION.help)
+    restitution: q.Restitution | Annotated[list[q.Restitution], _FAIL_FAST] = Field(description=RESTITUTION.help)
 
 
 class ShapeParams(Params):
     """A pulse and blocks of one shape and restitution."""
 
-    pulse: PulseName
-    restitution: Restitution
-    alpha_deg: AlphaDeg = None
+    pulse: q.PulseName
+    restitution: q.Restitution
+    alpha_deg: q.AlphaDeg = None
 
 
 class BlockInGroups(ShapeParams):
     """A pulse without amplitude, and a block."""
 
-    frequency_ratio: FrequencyRatio
+    frequency_ratio: q.FrequencyRatio
 
 
 class SpectrumParams(LookupOptions):
     """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
 
-    slenderness: Slenderness
-    restitution: Restitution
-    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
-    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
-    points: int = between(2, math.inf, "points of the curve [-]", default=200)
-    format: Format = None
+    slenderness: q.Slenderness
+    restitution: q.Restitution
+    frequency_ratio_min: q.FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: q.FrequencyRatio = Field(12.0, examples=[12.0])
+    points: int = q.between(2, math.inf, "points of the curve [-]", default=200)
+    format: q.Format = None
 
 
 class OverturningParams(ShapeParams):
     """Boundary curves of overturning."""
 
-    format: Format = None
+    format: q.Format = None
 
 
 class HistoryParams(BlockInGroups):
     """The motion of one block."""
 
-    slenderness: Slenderness
+    slenderness: q.Slenderness
     duration: float | None = Field(
         None,
         description="length tau = p t [-]; absent: the pulse and some free rocking",
         json_schema_extra={"exclusiveMinimum": 0, "maximum": MAX_DURATION},
     )
-    samples: int = between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)
-    contact: Contact = False
-    format: Format = None
+    samples: int = q.between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)
+    contact: q.Contact = False
+    format: q.Format = None
 
 
 def alpha_of(alpha_deg: float | None) -> float | None:
     """Slenderness angle [rad], None for the slender limit."""
-    return math.radians(float(ALPHA_DEG.convert(alpha_deg))) if alpha_deg else None
+    return math.radians(float(q.ALPHA_DEG.convert(alpha_deg))) if alpha_deg else None
 
 
 _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": as_pulse,
-    "slenderness": SLENDERNESS.convert,
-    "frequency_ratio": FREQUENCY_RATIO.convert,
+    "slenderness": q.SLENDERNESS.convert,
+    "frequency_ratio": q.FREQUENCY_RATIO.convert,
     "restitution": lambda value: (isinstance(value, str) and value == "momentum") or RESTITUTION.convert(value),
     "alpha_deg": alpha_of,
 }
@@ -217,10 +202,10 @@ def check_point(params: ResponseParams) -> None:
     """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond."""
     if not (
         params.pulse in _KNOWN
-        and SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper
-        and FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper
+        and q.SLENDERNESS.lower <= params.slenderness < q.SLENDERNESS.upper
+        and q.FREQUENCY_RATIO.lower <= params.frequency_ratio <= q.FREQUENCY_RATIO.upper
         and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
-        and (not params.alpha_deg or ALPHA_DEG.lower <= params.alpha_deg <= ALPHA_DEG.upper)
+        and (not params.alpha_deg or q.ALPHA_DEG.lower <= params.alpha_deg <= q.ALPHA_DEG.upper)
         and 0.0 <= params.absolute_tolerance < math.inf
     ):
         params.check()

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel, Field, create_model
 
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import NOTES, OVERTURNS_ABOVE, BodyParams, Edge, SizeParams
+from rocking_api.models.blocks import NOTES, BodyParams, Edge, ScaleThreshold, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.quantity import BaselineOrder, Contact, Format, Scale, Skip, TimeStep, Unit, between
 from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
@@ -117,14 +117,6 @@ class RecordDescription(BaseModel):
 
 
 _RECORD = Field(description="the record, as read")
-
-
-class ScaleThreshold(BaseModel):
-    """A scale at which the outcome changes."""
-
-    scale: float = Field(description="factor of the record [-]")
-    peak_acceleration: float = Field(description="PGA of the scaled record [m/s2]")
-    overturns_above: bool = OVERTURNS_ABOVE
 
 
 class FittedPulse(BaseModel):
