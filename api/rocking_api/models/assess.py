@@ -17,7 +17,7 @@ from rocking._excitation.records.record import Record
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import BaselineOrder, TableFormat, between
+from rocking_api.models.quantity import BaselineOrder, TableFormat, between, said
 from rocking_api.models.responses import BY_SOLVER
 
 MAX_OBJECTS = 2000
@@ -59,18 +59,16 @@ class AssessParams(Params):
     )
     period_min: float | None = between(*LENGTH, "shortest period of the pulses, with `period_max` [s]", default=None)
     period_max: float | None = between(*LENGTH, "longest period of the pulses, with `period_min` [s]", default=None)
-    shapes: str | None = Field(
-        None,
-        description="pulses, separated by commas; absent: all that leave the ground at rest",
-        examples=["sine,ricker"],
+    shapes: str | None = said(
+        "pulses, separated by commas; absent: all that leave the ground at rest", None, examples=["sine,ricker"]
     )
-    moving_ground: bool = Field(False, description="also half sine and rectangular, which leave the ground moving")
-    floor_periods: str | None = Field(
-        None, description="periods of a building of which the objects are on a floor [s], separated by commas"
+    moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
+    floor_periods: str | None = said(
+        "periods of a building of which the objects are on a floor [s], separated by commas", None
     )
-    floor_damping: str = Field("0.05", description="damping ratios of these modes [-], one or one for each")
-    floor_participation: str = Field(
-        "1", description="participation factors times mode shapes at the floor [-], one or one for each"
+    floor_damping: str = said("damping ratios of these modes [-], one or one for each", "0.05")
+    floor_participation: str = said(
+        "participation factors times mode shapes at the floor [-], one or one for each", "1"
     )
     baseline_order: BaselineOrder = None
     samples: int = between(
@@ -83,7 +81,7 @@ class AssessParams(Params):
     resolution: float = between(
         *RESOLUTIONS, "largest relative distance of the factors on a record that are tried [-]", default=RESOLUTION
     )
-    sensitivity: bool = Field(True, description="find the factors of changed objects, and sizes not overturned")
+    sensitivity: bool = said("find the factors of changed objects, and sizes not overturned", True)
     format: TableFormat = None
 
     @classmethod
@@ -133,14 +131,14 @@ class SuiteRecordBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    acceleration: Samples = Field(description="horizontal acceleration at uniform steps, in `unit`")
-    second: Samples | None = Field(
-        None, description="other horizontal component: the pair is assessed at all angles and counts as one record"
+    acceleration: Samples = said("horizontal acceleration at uniform steps, in `unit`")
+    second: Samples | None = said(
+        "other horizontal component: the pair is assessed at all angles and counts as one record", None
     )
-    vertical: Samples | None = Field(None, description="vertical acceleration, upwards")
-    time_step: float = Field(description="time between samples [s]")
-    unit: str = Field("m/s2", description="unit of the samples")
-    name: str = Field("", description="name for the answer", max_length=40)
+    vertical: Samples | None = said("vertical acceleration, upwards", None)
+    time_step: float = said("time between samples [s]")
+    unit: str = said("unit of the samples", "m/s2")
+    name: str = said("name for the answer", "", max_length=40)
 
     def motion(self, number: int, order: int | None) -> Record | tuple[Record, Record]:
         """The record, or the pair, without a baseline of a degree."""
@@ -159,8 +157,8 @@ class HazardBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    intensity: Levels = Field(description="peak ground accelerations, ascending [m/s2]")
-    annual_rate: Levels = Field(description="annual rates of exceedance [1/year]")
+    intensity: Levels = said("peak ground accelerations, ascending [m/s2]")
+    annual_rate: Levels = said("annual rates of exceedance [1/year]")
 
 
 class AssessBody(AssessParams):
@@ -168,11 +166,11 @@ class AssessBody(AssessParams):
 
     takes_lists: ClassVar = True
 
-    objects: list[dict[str, Any]] = Field(
-        description="one object for each row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS
+    objects: list[dict[str, Any]] = said(
+        "one object for each row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS
     )
-    records: list[SuiteRecordBody] = Field([], description="suite of records of the site", max_length=MAX_RECORDS)
-    hazard: HazardBody | None = Field(None, description="hazard curve of the site, with records")
+    records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS)
+    hazard: HazardBody | None = said("hazard curve of the site, with records", None)
 
 
 def _field(column: Quantity) -> Any:
@@ -180,7 +178,7 @@ def _field(column: Quantity) -> Any:
     unit = f" [{column.unit}]" if column.unit not in ("", "bool") else ""
     optional = column.name != "uplifts" and column.unit != ""
     kind = kinds.get(column.unit, float)
-    return (kind | None if optional else kind), Field(description=f"{column.meaning}{unit}")
+    return (kind | None if optional else kind), said(f"{column.meaning}{unit}")
 
 
 AssessedRow: type[BaseModel] = create_model(
@@ -193,26 +191,24 @@ AssessedRow: type[BaseModel] = create_model(
 class UnreadRow(BaseModel):
     """A row of the table that was not read."""
 
-    row: int = Field(description="number in the table, from 1 [-]")
-    column: str = Field(description="name of the column; empty: the whole row")
-    reason: str = Field(description="what was found and what is allowed")
+    row: int = said("number in the table, from 1 [-]")
+    column: str = said("name of the column; empty: the whole row")
+    reason: str = said("what was found and what is allowed")
 
 
 class AssessResponse(Answer):
     """Objects at a site, the worst first."""
 
     query: Annotated[SerializeAsAny[AssessParams], ECHO] = QUERY
-    rows: list[AssessedRow] = Field(description="one for each object and direction, the worst first")  # type: ignore[valid-type]
-    motions: list[str] = Field(description="motions of the site; from both sides each")
-    highest_factor: float = Field(description="highest factor on the motions that was searched [-]")
-    resolution: float = Field(
-        description="largest relative distance of the factors on records that were tried, 0 without records [-]"
+    rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]
+    motions: list[str] = said("motions of the site; from both sides each")
+    highest_factor: float = said("highest factor on the motions that was searched [-]")
+    resolution: float = said(
+        "largest relative distance of the factors on records that were tried, 0 without records [-]"
     )
-    bad_rows: list[UnreadRow] = Field(description="rows that were not read; the others are assessed")
-    details: dict[str, list[str]] = Field(
-        {}, description="other texts of the object of each row, by their headers in the table"
-    )
-    columns: dict[str, str] = Field(description="what columns of the table were read as, by their headers")
-    skipped: list[str] = Field(description="columns of the table that were not read; `details` has their cells")
+    bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
+    details: dict[str, list[str]] = said("other texts of the object of each row, by their headers in the table", {})
+    columns: dict[str, str] = said("what columns of the table were read as, by their headers")
+    skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
     source: str = BY_SOLVER
     metadata_url: str = METADATA_URL_FIELD

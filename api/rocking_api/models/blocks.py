@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field, SerializeAsAny
+from pydantic import BaseModel, SerializeAsAny
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.fields import FIELDS
@@ -48,30 +48,28 @@ class BlockParams(BodyParams):
 class BlocksParams(Params):
     """What many blocks in a body have in common."""
 
-    pulse: q.PulseName | None = Field(None, description="required unless a JSON body holds it", examples=["sine"])
-    restitution: q.BodyRestitution = Field("momentum", description="of the blocks that state none: eta [-] or momentum")
+    pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
+    restitution: q.BodyRestitution = q.said("of the blocks that state none: eta [-] or momentum", "momentum")
     format: q.TableFormat = None
 
 
 class BlockRow(Params):
     """One of many blocks in a JSON body, in SI units."""
 
-    name: str = Field("", description="label", max_length=200)
+    name: str = q.said("label", "", max_length=200)
     width: q.Width
     height: q.Height
     peak_acceleration: q.PeakAcceleration
     period: q.Period
-    restitution: q.BodyRestitution | None = Field(None, description="eta [-], or momentum; absent: that of all")
+    restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: that of all", None)
 
 
 class BlockRows(BlocksParams):
     """Many blocks in a JSON body, and what they have in common."""
 
-    blocks: list[BlockRow] = Field(
-        description="blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS}
-    )
-    pulse: GivenPulse | None = Field(  # type: ignore[assignment]
-        None, description="a pulse by its name, or by samples; absent: that of the query"
+    blocks: list[BlockRow] = q.said("blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS})
+    pulse: GivenPulse | None = q.said(  # type: ignore[assignment]
+        "a pulse by its name, or by samples; absent: that of the query", None
     )
 
 
@@ -88,70 +86,70 @@ class BlocksResponse(Answer):
     """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
 
     query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
-    name: list[str] | None = Field(None, description="labels; null without any")
+    name: list[str] | None = q.said("labels; null without any", None)
     metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
 
 
 AMPLITUDES = "all amplitudes at which the outcome changes"
-NOTES = Field(description="what else is worth knowing")
+NOTES = q.said("what else is worth knowing")
 
 Edge = Annotated[
     Literal["right", "left"] | None,
-    Field(description="edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"),
+    q.said("edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"),
 ]
 
 
 class _Change(BaseModel):
-    overturns_above: bool = Field(description="true: overturns just above and survives just below; false: the reverse")
+    overturns_above: bool = q.said("true: overturns just above and survives just below; false: the reverse")
 
 
 class Threshold(_Change):
     """An amplitude at which the outcome changes."""
 
-    peak_acceleration: float = Field(description="a_g [m/s2]")
+    peak_acceleration: float = q.said("a_g [m/s2]")
 
 
 class PeriodThreshold(_Change):
     """A period at which the outcome changes, the amplitude being what it is."""
 
-    period: float = Field(description="T_p [s]")
+    period: float = q.said("T_p [s]")
 
 
 class SizeThreshold(_Change):
     """A size at which the outcome of blocks of this shape changes under this pulse."""
 
-    half_diagonal: float = Field(description="R [m]")
+    half_diagonal: float = q.said("R [m]")
 
 
 class ScaleThreshold(_Change):
     """A scale at which the outcome changes."""
 
-    scale: float = Field(description="factor of the record [-]")
-    peak_acceleration: float = Field(description="PGA of the scaled record [m/s2]")
+    scale: float = q.said("factor of the record [-]")
+    peak_acceleration: float = q.said("PGA of the scaled record [m/s2]")
 
 
 class Margins(BaseModel):
     """How far the block is from another outcome, by the rigid equation itself."""
 
-    nearest_acceleration: float | None = Field(
-        description="amplitude nearest in its logarithm at which the outcome changes [m/s2]; null: none found"
+    nearest_acceleration: float | None = q.said(
+        "amplitude nearest in its logarithm at which the outcome changes [m/s2]; null: none found"
     )
-    acceleration_factor: float | None = Field(description="that over the peak acceleration of the request [-]")
-    nearest_period: float | None = Field(
-        description="period nearest in its logarithm at which the outcome changes, this amplitude [s]; null: none found"
+    acceleration_factor: float | None = q.said("that over the peak acceleration of the request [-]")
+    nearest_period: float | None = q.said(
+        "period nearest in its logarithm at which the outcome changes, this amplitude [s]; null: none found"
     )
-    period_factor: float | None = Field(description="that over the period of the request [-]")
-    periods: list[PeriodThreshold] = Field(description="all periods at which the outcome changes, ascending")
-    periods_searched: tuple[float, float] = Field(description="smallest and largest period searched [s]")
-    smallest_surviving_half_diagonal: float | None = Field(
-        description="smallest R of this shape searched that survives this pulse [m]; a larger one may overturn"
+    period_factor: float | None = q.said("that over the period of the request [-]")
+    periods: list[PeriodThreshold] = q.said("all periods at which the outcome changes, ascending")
+    periods_searched: tuple[float, float] = q.said("smallest and largest period searched [s]")
+    smallest_surviving_half_diagonal: float | None = q.said(
+        "smallest R of this shape searched that survives this pulse [m]; a larger one may overturn"
     )
-    surviving_from_half_diagonal: float | None = Field(
-        description="R from which every larger size searched survives [m]; null: the largest overturns"
+    surviving_from_half_diagonal: float | None = q.said(
+        "R from which every larger size searched survives [m]; null: the largest overturns"
     )
-    sizes: list[SizeThreshold] = Field(description="all sizes of this shape at which the outcome changes, ascending")
-    sizes_searched: tuple[float, float] = Field(description="smallest and largest half-diagonal searched [m]")
+    sizes: list[SizeThreshold] = q.said("all sizes of this shape at which the outcome changes, ascending")
+    sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched [m]")
 
 
 @with_fields("pulse", "edges")
@@ -160,7 +158,7 @@ class BodyResponse(Answer):
 
     query: BlockParams = QUERY
     edge: Edge
-    thresholds: list[Threshold] | None = Field(description=f"{AMPLITUDES}, this period, ascending")
+    thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
     notes: list[str] = NOTES
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
@@ -171,11 +169,11 @@ class BlockResponse(Answer):
     """What happens to the block."""
 
     query: BlockParams = QUERY
-    response: PointResponse = Field(description="the same request and response in dimensionless groups")
-    thresholds: list[Threshold] | None = Field(
-        description=f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
+    response: PointResponse = q.said("the same request and response in dimensionless groups")
+    thresholds: list[Threshold] | None = q.said(
+        f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
     )
-    margins: Margins | None = Field(description="null if they were not found in time, see `warnings`")
+    margins: Margins | None = q.said("null if they were not found in time, see `warnings`")
     notes: list[str] = NOTES
-    data_version: str | None = Field(description="sha256 of the data set that gave the response; null: the solver did")
+    data_version: str | None = q.said("sha256 of the data set that gave the response; null: the solver did")
     metadata: Metadata = METADATA_FIELD

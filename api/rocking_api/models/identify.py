@@ -9,7 +9,7 @@ from pydantic import Field, create_model
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import TableFormat, TimeStep, between
+from rocking_api.models.quantity import TableFormat, TimeStep, between, said
 
 MAX_SAMPLES = 20_000
 """Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
@@ -21,12 +21,10 @@ class IdentifyParams(Params):
     """How a trace is read and fitted."""
 
     edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
-    degrees: bool = Field(
-        False, description="the rotations are in degrees, not in radians, where the header of CSV states no unit"
-    )
-    time_step: TimeStep = Field(None, description="time between the rows where CSV counts them in place of times [s]")
-    confidence: float = Field(
-        0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
+    degrees: bool = said("the rotations are in degrees, not in radians, where the header of CSV states no unit", False)
+    time_step: TimeStep = said("time between the rows where CSV counts them in place of times [s]", None)
+    confidence: float = said(
+        "confidence of the intervals [-]", 0.95, json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
     )
     format: TableFormat = None
 
@@ -34,8 +32,8 @@ class IdentifyParams(Params):
 class Trace(IdentifyParams):
     """A trace in a JSON body, and how it is read and fitted."""
 
-    time: Samples = Field(description="times, ascending [s]")
-    rotation: Samples = Field(description="rotation; positive values turn on the right edge [rad]")
+    time: Samples = said("times, ascending [s]")
+    rotation: Samples = said("rotation; positive values turn on the right edge [rad]")
 
 
 _ESTIMATES: dict[str, tuple[Any, str, str]] = {
@@ -52,7 +50,7 @@ def _with_intervals(model: type[IdentifyResponse]) -> type[IdentifyResponse]:
     found: dict[str, Any] = {}
     for name, (kind, meaning, unit) in _ESTIMATES.items():
         ends = {name: meaning} | {f"{name}_{end}": f"{end} end of its interval" for end in ("lower", "upper")}
-        found |= {key: (kind, Field(description=f"{text} [{unit}]")) for key, text in ends.items()}
+        found |= {key: (kind, said(f"{text} [{unit}]")) for key, text in ends.items()}
     return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
 
 
@@ -61,15 +59,15 @@ class IdentifyResponse(Answer):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
     query: IdentifyParams = QUERY
-    edge: list[str] = Field(description="both, or right and left")
-    impact_time: list[float] = Field(description="times of the impacts of the fit [s]")
-    offset: float = Field(description="rotation at rest, at the first impact [rad]")
-    noise: float = Field(description="standard deviation of the residual [rad]")
-    sample_noise: float = Field(description="standard deviation of independent errors of the samples [rad]")
-    time: list[float] = Field(description="times of the samples [s]")
-    rotation: list[float] = Field(description="rotation as given [rad]")
-    fitted: list[float | None] = Field(description="rotation of the block [rad]; null where nothing is fitted")
-    warnings: list[str] = Field(description="why the intervals are wider than the samples alone would have them")
+    edge: list[str] = said("both, or right and left")
+    impact_time: list[float] = said("times of the impacts of the fit [s]")
+    offset: float = said("rotation at rest, at the first impact [rad]")
+    noise: float = said("standard deviation of the residual [rad]")
+    sample_noise: float = said("standard deviation of independent errors of the samples [rad]")
+    time: list[float] = said("times of the samples [s]")
+    rotation: list[float] = said("rotation as given [rad]")
+    fitted: list[float | None] = said("rotation of the block [rad]; null where nothing is fitted")
+    warnings: list[str] = said("why the intervals are wider than the samples alone would have them")
     metadata_url: str = METADATA_URL_FIELD
 
 

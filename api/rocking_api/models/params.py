@@ -66,7 +66,7 @@ class ListParams(Params):
     """A part of a list."""
 
     limit: int | None = q.between(1, 10_000, "most entries [-]; absent: all", default=None, examples=[10])
-    cursor: str | None = Field(None, description="`next_cursor` of the answer before; absent: the start of the list")
+    cursor: str | None = q.said("`next_cursor` of the answer before; absent: the start of the list", None)
 
     def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
         """The names of this part, of ascending names, and the cursor of the next one; None at the end."""
@@ -110,11 +110,9 @@ class TableParams(BatchOptions):
 class BatchParams(BatchOptions):
     """Many blocks: numbers, or arrays of one length."""
 
-    slenderness: q.Slenderness | Annotated[list[q.Slenderness], _FAIL_FAST] = Field(description=q.SLENDERNESS.help)
-    frequency_ratio: q.FrequencyRatio | Annotated[list[q.FrequencyRatio], _FAIL_FAST] = Field(
-        description=q.FREQUENCY_RATIO.help
-    )
-    restitution: q.Restitution | Annotated[list[q.Restitution], _FAIL_FAST] = Field(description=RESTITUTION.help)
+    slenderness: q.Slenderness | Annotated[list[q.Slenderness], _FAIL_FAST] = q.said(q.SLENDERNESS.help)
+    frequency_ratio: q.FrequencyRatio | Annotated[list[q.FrequencyRatio], _FAIL_FAST] = q.said(q.FREQUENCY_RATIO.help)
+    restitution: q.Restitution | Annotated[list[q.Restitution], _FAIL_FAST] = q.said(RESTITUTION.help)
 
 
 class ShapeParams(Params):
@@ -152,9 +150,9 @@ class HistoryParams(BlockInGroups):
     """The motion of one block."""
 
     slenderness: q.Slenderness
-    duration: float | None = Field(
+    duration: float | None = q.said(
+        "length tau = p t [-]; absent: the pulse and some free rocking",
         None,
-        description="length tau = p t [-]; absent: the pulse and some free rocking",
         json_schema_extra={"exclusiveMinimum": 0, "maximum": MAX_DURATION},
     )
     samples: int = q.between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)

@@ -33,6 +33,11 @@ def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any
     return Field(description=text, json_schema_extra=dict(quantity.limits), **more)
 
 
+def said(text: str, default: Any = ..., **more: Any) -> Any:
+    """A field with its description; `more` are those of `Field`."""
+    return Field(default, description=text, **more)
+
+
 def _in_range(quantity: Quantity, low: float, high: float, text: str = "", kind: Any = float, **more: Any) -> Any:
     """A field in SI units within the range of the service; a text may state another unit, as "40 cm"."""
     own = quantity.restricted(low, high)

@@ -6,12 +6,12 @@ import math
 from functools import cache
 from typing import Any
 
-from pydantic import BaseModel, Field, create_model
+from pydantic import BaseModel, create_model
 
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.blocks import NOTES, BodyParams, Edge, ScaleThreshold, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.quantity import BaselineOrder, Contact, Format, Scale, Skip, TimeStep, Unit, between
+from rocking_api.models.quantity import BaselineOrder, Contact, Format, Scale, Skip, TimeStep, Unit, between, said
 from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
 
 MAX_SCALES = 2000
@@ -29,12 +29,12 @@ CAUTION = (
 class RecordFileParams(SizeParams):
     """A block in SI units, and what the file of the record does not state."""
 
-    name: str = Field("record", description="name of the file, for messages", max_length=200)
+    name: str = said("name of the file, for messages", "record", max_length=200)
     unit: Unit = None
     time_step: TimeStep = None
-    component: str | None = Field(None, description="column or trace of a file with several", max_length=200)
-    vertical: str | None = Field(
-        None, description="column or trace of the vertical component, upwards, in the same file", max_length=200
+    component: str | None = said("column or trace of a file with several", None, max_length=200)
+    vertical: str | None = said(
+        "column or trace of the vertical component, upwards, in the same file", None, max_length=200
     )
     skip: Skip = None
     baseline_order: BaselineOrder = None
@@ -49,10 +49,8 @@ class RecordParams(RecordFileParams):
 class RecordResponseParams(BodyParams, RecordParams):
     """The same, the place of the centre of mass, and whether to search thresholds and to fit a pulse."""
 
-    thresholds: bool = Field(
-        True, description="find all scales at which the outcome changes, which takes most of the time"
-    )
-    fit: bool = Field(False, description="fit a pulse, and compare how both overturn the block")
+    thresholds: bool = said("find all scales at which the outcome changes, which takes most of the time", True)
+    fit: bool = said("fit a pulse, and compare how both overturn the block", False)
 
 
 class RecordHistoryParams(RecordParams):
@@ -68,8 +66,8 @@ class RecordHistoryParams(RecordParams):
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
-    scale_min: Scale | None = Field(None, description="smallest factor [-]; absent: that of uplift")
-    scale_max: Scale | None = Field(None, description="largest factor [-]; absent: ten times that of uplift")
+    scale_min: Scale | None = said("smallest factor [-]; absent: that of uplift", None)
+    scale_max: Scale | None = said("largest factor [-]; absent: ten times that of uplift", None)
     points: int = between(2, MAX_SCALES, "factors, evenly spaced in their logarithm [-]", default=200)
     format: Format = None
 
@@ -83,7 +81,7 @@ class RecordPulseParams(RecordParams):
 class RecordBody(RecordFileParams):
     """A record in a JSON body, with the parameters of its route."""
 
-    record: str = Field(description="text of the file")
+    record: str = said("text of the file")
 
 
 @cache
@@ -98,46 +96,44 @@ def with_record(kind: type[RecordFileParams]) -> type[RecordBody]:
 class RecordDescription(BaseModel):
     """The record, as read; SI units."""
 
-    name: str = Field(description="name of the file, without its ending, and the component")
-    source: str = Field(description="file, format, and what was done to the record")
-    remarks: list[str] = Field(description="what the reader of the file found in doubt")
-    samples: int = Field(description="number of samples [-]")
-    time_step: float = Field(description="time step [s]")
-    peak_acceleration: float = Field(description="PGA [m/s2]")
-    peak_vertical_acceleration: float | None = Field(
-        description="largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
+    name: str = said("name of the file, without its ending, and the component")
+    source: str = said("file, format, and what was done to the record")
+    remarks: list[str] = said("what the reader of the file found in doubt")
+    samples: int = said("number of samples [-]")
+    time_step: float = said("time step [s]")
+    peak_acceleration: float = said("PGA [m/s2]")
+    peak_vertical_acceleration: float | None = said(
+        "largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
     )
-    peak_velocity: float = Field(description="PGV [m/s]")
-    peak_displacement: float = Field(description="PGD [m]")
-    arias_intensity: float = Field(description="Arias intensity [m/s]")
-    significant_duration: float = Field(description="between 5 % and 95 % of the Arias intensity [s]")
-    mean_period: float | None = Field(description="mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
-    final_velocity: float = Field(description="velocity at the last sample, which an offset leaves [m/s]")
-    digest: str = Field(description="sha256 of the time step and the samples of all components")
+    peak_velocity: float = said("PGV [m/s]")
+    peak_displacement: float = said("PGD [m]")
+    arias_intensity: float = said("Arias intensity [m/s]")
+    significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
+    mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
+    final_velocity: float = said("velocity at the last sample, which an offset leaves [m/s]")
+    digest: str = said("sha256 of the time step and the samples of all components")
 
 
-_RECORD = Field(description="the record, as read")
+_RECORD = said("the record, as read")
 
 
 class FittedPulse(BaseModel):
     """A pulse fitted to the velocity of the record: a description, not a substitute."""
 
-    pulse: str = Field(description="kind of pulse")
-    period: float = Field(description="T_p [s]")
-    peak_acceleration: float = Field(description="a_g [m/s2]")
-    centre: float = Field(description="time of its centre from the first sample [s]")
-    cycles: float | None = Field(description="gamma of Mavroeidis & Papageorgiou [-]; null for others")
-    phase: float | None = Field(description="nu of Mavroeidis & Papageorgiou [rad]; null for others")
-    explained: float = Field(description="share of the sum of squares of the velocity that it takes away [-]")
-    scale_ratio: float | None = Field(
-        description="lowest scale at which the pulse overturns the block over that of the record [-]; above 1 the "
-        "pulse is unconservative; null: one of them does not overturn it"
+    pulse: str = said("kind of pulse")
+    period: float = said("T_p [s]")
+    peak_acceleration: float = said("a_g [m/s2]")
+    centre: float = said("time of its centre from the first sample [s]")
+    cycles: float | None = said("gamma of Mavroeidis & Papageorgiou [-]; null for others")
+    phase: float | None = said("nu of Mavroeidis & Papageorgiou [rad]; null for others")
+    explained: float = said("share of the sum of squares of the velocity that it takes away [-]")
+    scale_ratio: float | None = said(
+        "lowest scale at which the pulse overturns the block over that of the record [-]; above 1: unconservative; "
+        "null: one of them does not overturn it"
     )
 
 
-_SCALES = Field(
-    description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
-)
+_SCALES = said("all scales at which the outcome changes, ascending; null: not asked for, or not found in time")
 
 
 @with_fields("record", "block")
@@ -148,7 +144,7 @@ class RecordResponse(Answer):
     record: RecordDescription = _RECORD
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
-    pulse: FittedPulse | None = Field(None, description="null unless requested")
+    pulse: FittedPulse | None = said("null unless requested", None)
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
 
@@ -171,10 +167,10 @@ class RecordHistoryResponse(Motion):
 
     query: RecordHistoryParams = QUERY
     record: RecordDescription = _RECORD
-    time: list[float] = Field(description="from the first sample [s]")
-    impact_time: list[float] = Field(description="times of the impacts [s]")
-    vertical_acceleration: list[float] | None = Field(
-        None, description="of the ground over g, upwards [-]; null: the record has no vertical component"
+    time: list[float] = said("from the first sample [s]")
+    impact_time: list[float] = said("times of the impacts [s]")
+    vertical_acceleration: list[float] | None = said(
+        "of the ground over g, upwards [-]; null: the record has no vertical component", None
     )
     metadata: Metadata = METADATA_FIELD
 
@@ -185,11 +181,11 @@ class RecordScalesResponse(Answer):
 
     query: RecordScalesParams = QUERY
     record: RecordDescription = _RECORD
-    scale: list[float] = Field(description="factors of the record [-]")
-    peak_acceleration: list[float] = Field(description="PGA of the scaled record [m/s2]")
-    thresholds: list[ScaleThreshold] = Field(
-        description="scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at "
-        "most 0.5 % apart up to the lowest, 0.2 % above it"
+    scale: list[float] = said("factors of the record [-]")
+    peak_acceleration: list[float] = said("PGA of the scaled record [m/s2]")
+    thresholds: list[ScaleThreshold] = said(
+        "scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at most "
+        "0.5 % apart up to the lowest, 0.2 % above it"
     )
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD
@@ -200,12 +196,12 @@ class RecordPulseResponse(Answer):
 
     query: RecordPulseParams = QUERY
     record: RecordDescription = _RECORD
-    pulse: FittedPulse = Field(description="parameters of the pulse")
-    time: list[float] = Field(description="from the first sample [s]; every few samples of a long record")
-    record_acceleration: list[float] = Field(description="of the record, factor included [m/s2]")
-    pulse_acceleration: list[float] = Field(description="of the pulse, factor included [m/s2]")
-    record_velocity: list[float] = Field(description="of the record, factor included [m/s]")
-    pulse_velocity: list[float] = Field(description="of the pulse, factor included [m/s]")
-    caution: str = Field(CAUTION, description="why the pulse does not replace the record")
+    pulse: FittedPulse = said("parameters of the pulse")
+    time: list[float] = said("from the first sample [s]; every few samples of a long record")
+    record_acceleration: list[float] = said("of the record, factor included [m/s2]")
+    pulse_acceleration: list[float] = said("of the pulse, factor included [m/s2]")
+    record_velocity: list[float] = said("of the record, factor included [m/s]")
+    pulse_velocity: list[float] = said("of the pulse, factor included [m/s]")
+    caution: str = said("why the pulse does not replace the record", CAUTION)
     source: str = BY_SOLVER
     metadata: Metadata = METADATA_FIELD

@@ -9,7 +9,7 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field, SerializeAsAny, create_model
+from pydantic import BaseModel, SerializeAsAny, create_model
 
 from rocking._dimensional.fields import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
@@ -22,6 +22,7 @@ from rocking_api.http.encoding import Column
 from rocking_api.models.answer import ECHO, QUERY, Answer, ListAnswer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import HistoryParams, LookupOptions, OverturningParams, ResponseParams, SpectrumParams
+from rocking_api.models.quantity import said
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -47,10 +48,9 @@ _DETAILS = {
     own.EXCEEDED_ALPHA.name: "the ground can bring a block back from there",
 }
 
-BY_SOLVER = Field("solver", description="what answered: always the solver")
-_DATA = Field(
-    description="sha256 of the data set that answered, of that next below the restitution if several did; null if the "
-    "solver did"
+BY_SOLVER = said("what answered: always the solver", "solver")
+_DATA = said(
+    "sha256 of the data set that answered, of that next below the restitution if several did; null if the solver did"
 )
 
 
@@ -64,7 +64,7 @@ def declared(fields: Iterable[ResponseField], *, many: bool = False) -> Callable
             kind: Any = str if one.name == "outcome" else {"f": float, "?": bool, "U": str, "i": int}[one.dtype[0]]
             kind = kind | None if one.missing else kind
             if one.label not in model.model_fields:
-                found[one.label] = (list[kind] if many else kind), Field(description=text)
+                found[one.label] = (list[kind] if many else kind), said(text)
         return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
 
     return add
@@ -80,8 +80,8 @@ class PointResponse(Answer):
     """One block."""
 
     query: ResponseParams = QUERY
-    meaning: str = Field(description="the outcome in words")
-    note: str | None = Field(None, description="why peak_rotation, error_bound or impacts is null")
+    meaning: str = said("the outcome in words")
+    note: str | None = said("why peak_rotation, error_bound or impacts is null", None)
     data_version: str | None = _DATA
     metadata_url: str = METADATA_URL_FIELD
 
@@ -90,46 +90,44 @@ class PointResponse(Answer):
 class Columns(Answer):
     """Many blocks, in the order of the request."""
 
-    data_versions: list[str] = Field(description="sha256 of each data set used")
+    data_versions: list[str] = said("sha256 of each data set used")
     metadata_url: str = METADATA_URL_FIELD
 
 
 class BatchQuery(LookupOptions):
     """What the answer repeats of a batch."""
 
-    points: int = Field(description="number of points [-]")
+    points: int = said("number of points [-]")
 
 
 class BatchResponse(Columns):
     """A batch."""
 
-    query: Annotated[SerializeAsAny[BatchQuery], ECHO] = Field(
-        description="options of the request, and its number of points"
-    )
+    query: Annotated[SerializeAsAny[BatchQuery], ECHO] = said("options of the request, and its number of points")
 
 
 class SpectrumResponse(Columns):
     """A spectrum."""
 
     query: Annotated[SerializeAsAny[SpectrumParams], ECHO] = QUERY
-    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+    frequency_ratio: list[float] = said("omega_g/p [-]")
 
 
 class Curve(BaseModel):
     """One boundary curve."""
 
-    outcome: str = Field(description="outcome on the side where the block overturns")
-    impacts: int = Field(description="impacts before it overturns there; -1: more than 12, or not counted [-]")
-    slenderness: list[float] = Field(description="1/a [-]")
-    frequency_ratio: list[float] = Field(description="omega_g/p [-]")
+    outcome: str = said("outcome on the side where the block overturns")
+    impacts: int = said("impacts before it overturns there; -1: more than 12, or not counted [-]")
+    slenderness: list[float] = said("1/a [-]")
+    frequency_ratio: list[float] = said("omega_g/p [-]")
 
 
 class OverturningResponse(Answer):
     """The boundary curves of a pulse and a restitution."""
 
     query: Annotated[SerializeAsAny[OverturningParams], ECHO] = QUERY
-    curves: list[Curve] = Field(description="boundary curves")
-    source: str = Field(description="dataset (read) or solver (traced for this request)")
+    curves: list[Curve] = said("boundary curves")
+    source: str = said("dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
     metadata_url: str = METADATA_URL_FIELD
 
@@ -137,28 +135,28 @@ class OverturningResponse(Answer):
 class ContactResponse(BaseModel):
     """Reactions of the ground during a motion; of a block that overturns, until it passes alpha for the last time."""
 
-    horizontal_reaction: list[float] = Field(description="H/(m g) at the pivot [-]; 0 in the slender limit")
-    normal_reaction: list[float] = Field(description="N/(m g) [-]; 0 and below: the block lifts off")
-    friction_demand: list[float | None] = Field(description="|H|/N [-]; null where N <= 0; 0 in the slender limit")
-    friction_demand_over_slope: list[float | None] = Field(description="|H|/(N tan alpha) [-]; null where N <= 0")
-    largest_friction_demand: float | None = Field(description="also between the samples [-]; null if it lifts off")
-    largest_friction_demand_over_slope: float | None = Field(description="the same over tan alpha [-]")
-    smallest_normal_reaction: float = Field(description="over the weight [-]; 0 and below: it lifts off")
-    impulse_ratio: float | None = Field(
-        description="horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
+    horizontal_reaction: list[float] = said("H/(m g) at the pivot [-]; 0 in the slender limit")
+    normal_reaction: list[float] = said("N/(m g) [-]; 0 and below: the block lifts off")
+    friction_demand: list[float | None] = said("|H|/N [-]; null where N <= 0; 0 in the slender limit")
+    friction_demand_over_slope: list[float | None] = said("|H|/(N tan alpha) [-]; null where N <= 0")
+    largest_friction_demand: float | None = said("also between the samples [-]; null if it lifts off")
+    largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]")
+    smallest_normal_reaction: float = said("over the weight [-]; 0 and below: it lifts off")
+    impulse_ratio: float | None = said(
+        "horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
     )
-    lifts_off: bool = Field(description="whether the block leaves the ground")
-    warnings: str = Field(description="where the assumption of pure rocking is doubtful, in words")
+    lifts_off: bool = said("whether the block leaves the ground")
+    warnings: str = said("where the assumption of pure rocking is doubtful, in words")
 
 
 @declared(OF_SOLVER[:-1])
 class Motion(Answer):
     """A motion: outcome and samples, whatever its variable of time is."""
 
-    rotation: list[float] = Field(description="theta/alpha [-]")
-    angular_velocity: list[float] = Field(description="d(theta/alpha)/d tau, tau = p t [-]")
-    ground_acceleration: list[float] = Field(description="u_g/(g tan alpha) [-]; under a pulse a f")
-    contact: ContactResponse | None = Field(None, description="null unless requested")
+    rotation: list[float] = said("theta/alpha [-]")
+    angular_velocity: list[float] = said("d(theta/alpha)/d tau, tau = p t [-]")
+    ground_acceleration: list[float] = said("u_g/(g tan alpha) [-]; under a pulse a f")
+    contact: ContactResponse | None = said("null unless requested", None)
     source: str = BY_SOLVER
 
 
@@ -166,78 +164,78 @@ class HistoryResponse(Motion):
     """A motion under a pulse."""
 
     query: Annotated[SerializeAsAny[HistoryParams], ECHO] = QUERY
-    tau: list[float] = Field(description="time p t from the start of the pulse [-]")
-    impact_time: list[float] = Field(description="times p t of the impacts [-]")
+    tau: list[float] = said("time p t from the start of the pulse [-]")
+    impact_time: list[float] = said("times p t of the impacts [-]")
     metadata_url: str = METADATA_URL_FIELD
 
 
 class Link(BaseModel):
     """A link, as in a STAC item."""
 
-    rel: str = Field(description="self: the description; data: the file; version: this version of it; subset; zarr")
-    href: str = Field(description="path on this service")
-    type: str = Field(description="media type")
+    rel: str = said("self: the description; data: the file; version: this version of it; subset; zarr")
+    href: str = said("path on this service")
+    type: str = said("media type")
 
 
 class DatasetSummary(BaseModel):
     """An entry of the catalogue."""
 
-    name: str = Field(description="name: the path below the results folder, without suffix")
-    title: str = Field(description="title")
-    pulse: str | None = Field(description="pulse, see /v1/pulses; null: several or none")
-    restitution: float | None = Field(description="coefficient of restitution eta [-]; null: several or none")
-    extent: dict[str, tuple[float, float]] = Field(
-        description="smallest and largest alpha [rad], slenderness [-] and frequency_ratio [-]"
+    name: str = said("name: the path below the results folder, without suffix")
+    title: str = said("title")
+    pulse: str | None = said("pulse, see /v1/pulses; null: several or none")
+    restitution: float | None = said("coefficient of restitution eta [-]; null: several or none")
+    extent: dict[str, tuple[float, float]] = said(
+        "smallest and largest alpha [rad], slenderness [-] and frequency_ratio [-]"
     )
-    size: int = Field(description="size of the netCDF file [byte]")
-    sha256: str = Field(description="sha256 of the netCDF file")
-    metadata: str = Field(description="path of its description")
-    netcdf: str = Field(description="path of the file, for a download or xarray over HTTP (Range)")
-    version_url: str = Field(description="path of this version of the file; immutable")
-    zarr: str = Field(description="path for xarray.open_zarr(...)")
-    links: list[Link] = Field(description="the same paths with relation and media type")
+    size: int = said("size of the netCDF file [byte]")
+    sha256: str = said("sha256 of the netCDF file")
+    metadata: str = said("path of its description")
+    netcdf: str = said("path of the file, for a download or xarray over HTTP (Range)")
+    version_url: str = said("path of this version of the file; immutable")
+    zarr: str = said("path for xarray.open_zarr(...)")
+    links: list[Link] = said("the same paths with relation and media type")
 
 
 class PulseCubes(BaseModel):
     """The spectrum cubes of one pulse, which are also one zarr store."""
 
-    name: str = Field(description="folder of the cubes, and name of the store")
-    restitution: list[float] = Field(description="coefficients of restitution of the cubes, ascending [-]")
-    zarr: str = Field(description="path for xarray.open_zarr(...), over the dimension restitution too")
+    name: str = said("folder of the cubes, and name of the store")
+    restitution: list[float] = said("coefficients of restitution of the cubes, ascending [-]")
+    zarr: str = said("path for xarray.open_zarr(...), over the dimension restitution too")
 
 
 class DatasetCatalogue(ListAnswer):
     """Data sets."""
 
-    datasets: list[DatasetSummary] = Field(description="in the order of their names")
-    pulses: list[PulseCubes] = Field(description="the spectrum cubes of these by pulse, in the order of their names")
+    datasets: list[DatasetSummary] = said("in the order of their names")
+    pulses: list[PulseCubes] = said("the spectrum cubes of these by pulse, in the order of their names")
 
 
 class VariableDescription(BaseModel):
     """A variable of a data set."""
 
-    dimensions: list[str] = Field(description="names of its dimensions, in order")
-    shape: list[int] = Field(description="its size along each of them [-]")
-    dtype: str = Field(description="type of its values")
-    attributes: dict[str, Any] = Field(description="CF attributes: units, long_name, equation and others")
+    dimensions: list[str] = said("names of its dimensions, in order")
+    shape: list[int] = said("its size along each of them [-]")
+    dtype: str = said("type of its values")
+    attributes: dict[str, Any] = said("CF attributes: units, long_name, equation and others")
 
 
 class DatasetDescription(DatasetSummary, Answer):
     """Contents of a data set."""
 
-    dimensions: dict[str, int] = Field(description="size of each dimension [-]")
-    coordinates: dict[str, VariableDescription] = Field(description="coordinates by name")
-    variables: dict[str, VariableDescription] = Field(description="variables by name")
-    attributes: dict[str, Any] = Field(description="CF and ACDD attributes, digests of code and settings")
+    dimensions: dict[str, int] = said("size of each dimension [-]")
+    coordinates: dict[str, VariableDescription] = said("coordinates by name")
+    variables: dict[str, VariableDescription] = said("variables by name")
+    attributes: dict[str, Any] = said("CF and ACDD attributes, digests of code and settings")
 
 
 class Health(Answer):
     """State of the service."""
 
-    status: str = Field(description="ok, or degraded: data sets are missing or damaged, and the solver replaces them")
-    datasets: int = Field(description="data sets found [-]")
-    unchecked: int = Field(0, description="of these, not yet checked; retry in a moment [-]")
-    problems: dict[str, str] = Field(description="what is missing or damaged, by name")
+    status: str = said("ok, or degraded: data sets are missing or damaged, and the solver replaces them")
+    datasets: int = said("data sets found [-]")
+    unchecked: int = said("of these, not yet checked; retry in a moment [-]", 0)
+    problems: dict[str, str] = said("what is missing or damaged, by name")
 
 
 class Names:

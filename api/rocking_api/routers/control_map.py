@@ -22,7 +22,7 @@ from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import ShapeParams, alpha_of
-from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between, said
 from rocking_api.models.responses import BY_SOLVER, OUTCOMES
 from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
@@ -52,13 +52,13 @@ class MapResponse(Answer):
     """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
     query: Annotated[SerializeAsAny[MapParams], ECHO] = QUERY
-    frequency_ratio: list[float] = Field(description="omega_g/p of the columns [-]")
-    slenderness: list[float] = Field(description="1/a of the rows [-]")
-    peak_rotation: list[float | None] = Field(
-        description=f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
+    frequency_ratio: list[float] = said("omega_g/p of the columns [-]")
+    slenderness: list[float] = said("1/a of the rows [-]")
+    peak_rotation: list[float | None] = said(
+        f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
     )
-    outcome: list[int] = Field(description="final outcome as an index into `outcomes` [-]")
-    outcomes: list[str] = Field(description="names of the outcomes")
+    outcome: list[int] = said("final outcome as an index into `outcomes` [-]")
+    outcomes: list[str] = said("names of the outcomes")
     source: str = BY_SOLVER
     metadata_url: str = METADATA_URL_FIELD
 

@@ -10,7 +10,6 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Path, Query, Request, Response
-from pydantic import Field
 from starlette.exceptions import HTTPException
 from starlette.responses import StreamingResponse
 
@@ -23,6 +22,7 @@ from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import ListParams, Params
+from rocking_api.models.quantity import said
 from rocking_api.models.responses import (
     DatasetCatalogue,
     DatasetDescription,
@@ -45,7 +45,7 @@ ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".z
 class FileParams(Params):
     """Which version of a file."""
 
-    sha256: str | None = Field(None, description="only this version: 404 once the file has changed")
+    sha256: str | None = said("only this version: 404 once the file has changed", None)
 
 
 @router.get("", summary="Catalogue", response_model=DatasetCatalogue)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field, SerializeAsAny
+from pydantic import BaseModel, SerializeAsAny
 
 from rocking._boundary.amplitude import thresholds
 from rocking._model.response import Outcome
@@ -14,6 +14,7 @@ from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import BlockInGroups, alpha_of
+from rocking_api.models.quantity import said
 from rocking_api.models.responses import BY_SOLVER
 from rocking_api.routers.twin import pair
 from rocking_api.service import ServiceDep
@@ -24,33 +25,29 @@ router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 class AmplitudeParams(BlockInGroups):
     """A block and a pulse without amplitude."""
 
-    highest: float = Field(
-        100.0,
-        description="largest a = a_g/(g tan alpha) searched [-]",
-        json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6},
+    highest: float = said(
+        "largest a = a_g/(g tan alpha) searched [-]", 100.0, json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6}
     )
 
 
 class AmplitudeThreshold(BaseModel):
     """An amplitude at which the outcome changes."""
 
-    amplitude: float = Field(description="a = a_g/(g tan alpha) [-]")
-    slenderness: float = Field(description="1/a [-]")
-    overturns_above: bool = Field(
-        description="true: overturns just above and survives just below it; false: the reverse"
-    )
-    outcome: str = Field(description="outcome on the side where it overturns")
-    meaning: str = Field(description="that outcome in words")
-    impacts: int = Field(description="impacts before it overturns there [-]")
+    amplitude: float = said("a = a_g/(g tan alpha) [-]")
+    slenderness: float = said("1/a [-]")
+    overturns_above: bool = said("true: overturns just above and survives just below it; false: the reverse")
+    outcome: str = said("outcome on the side where it overturns")
+    meaning: str = said("that outcome in words")
+    impacts: int = said("impacts before it overturns there [-]")
 
 
 class AmplitudeResponse(Answer):
     """All amplitudes at which the outcome changes."""
 
     query: Annotated[SerializeAsAny[AmplitudeParams], ECHO] = QUERY
-    thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
-    largest_surviving_amplitude: float | None = Field(
-        description="amplitude below which the block does not overturn [-]; null: no overturning was found"
+    thresholds: list[AmplitudeThreshold] = said("ascending in amplitude")
+    largest_surviving_amplitude: float | None = said(
+        "amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
     source: str = BY_SOLVER
     metadata_url: str = METADATA_URL_FIELD
