@@ -72,7 +72,7 @@ KINDS: dict[type[Exception], Kind] = {
         "invalid-parameter", S.UNPROCESSABLE_ENTITY,
         "A parameter is missing, unknown, given twice, not of its type or out of range; `errors` lists all of them.",
     ),
-    MalformedBodyError: Kind("malformed-json", S.BAD_REQUEST, "The body is not JSON; `value` says what is wrong where."),
+    MalformedBodyError: Kind("malformed-json", S.BAD_REQUEST, "The body is not JSON; `value` says what and where."),
     TooLargeError: Kind(
         "too-large", S.REQUEST_ENTITY_TOO_LARGE, "The request exceeds a limit of the service: divide it."
     ),

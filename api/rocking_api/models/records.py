@@ -114,7 +114,12 @@ class RecordDescription(BaseModel):
     digest: str = said("sha256 of the time step and the samples of all components")
 
 
-_RECORD = said("the record, as read")
+class RecordAnswer(Answer):
+    """Base of the models of what is found under a record."""
+
+    record: RecordDescription = said("the record, as read")
+    source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
 
 
 class FittedPulse(BaseModel):
@@ -137,65 +142,53 @@ _SCALES = said("all scales at which the outcome changes, ascending; null: not as
 
 
 @with_fields("record", "block")
-class RecordResponse(Answer):
+class RecordResponse(RecordAnswer):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
     query: RecordResponseParams = QUERY
-    record: RecordDescription = _RECORD
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
     pulse: FittedPulse | None = said("null unless requested", None)
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
 @with_fields("record", "edges")
-class RecordBodyResponse(Answer):
+class RecordBodyResponse(RecordAnswer):
     """What happens to a body whose centre of mass is not that of the block."""
 
     query: RecordResponseParams = QUERY
-    record: RecordDescription = _RECORD
     edge: Edge
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
-class RecordHistoryResponse(Motion):
+class RecordHistoryResponse(RecordAnswer, Motion):
     """A motion under a record."""
 
     query: RecordHistoryParams = QUERY
-    record: RecordDescription = _RECORD
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")
     vertical_acceleration: list[float] | None = said(
         "of the ground over g, upwards [-]; null: the record has no vertical component", None
     )
-    metadata: Metadata = METADATA_FIELD
 
 
 @declared(OF_SOLVER, many=True)
-class RecordScalesResponse(Answer):
+class RecordScalesResponse(RecordAnswer):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
     query: RecordScalesParams = QUERY
-    record: RecordDescription = _RECORD
     scale: list[float] = said("factors of the record [-]")
     peak_acceleration: list[float] = said("PGA of the scaled record [m/s2]")
     thresholds: list[ScaleThreshold] = said(
         "scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at most "
         "0.5 % apart up to the lowest, 0.2 % above it"
     )
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
-class RecordPulseResponse(Answer):
+class RecordPulseResponse(RecordAnswer):
     """The pulse fitted to the velocity of a record, and both motions for a drawing."""
 
     query: RecordPulseParams = QUERY
-    record: RecordDescription = _RECORD
     pulse: FittedPulse = said("parameters of the pulse")
     time: list[float] = said("from the first sample [s]; every few samples of a long record")
     record_acceleration: list[float] = said("of the record, factor included [m/s2]")
@@ -203,5 +196,3 @@ class RecordPulseResponse(Answer):
     record_velocity: list[float] = said("of the record, factor included [m/s]")
     pulse_velocity: list[float] = said("of the pulse, factor included [m/s]")
     caution: str = said("why the pulse does not replace the record", CAUTION)
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD

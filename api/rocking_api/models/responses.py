@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Annotated, Any, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, SerializeAsAny, create_model
 
 from rocking._dimensional.fields import SHOWN
@@ -18,7 +16,7 @@ from rocking._model.fields import COLUMN_FIELDS, ResponseField
 from rocking._model.outcome import Outcome
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import BatchResult
-from rocking_api.http.encoding import Column
+from rocking_api.http.encoding import Column, columns_as_they_are
 from rocking_api.models.answer import ECHO, QUERY, Answer, ListAnswer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import HistoryParams, LookupOptions, OverturningParams, ResponseParams, SpectrumParams
@@ -238,43 +236,14 @@ class Health(Answer):
     problems: dict[str, str] = said("what is missing or damaged, by name")
 
 
-class Names:
-    """A column of names by their codes (points,), of which no list is made before they are sent."""
-
-    def __init__(self, codes: NDArray[Any], names: Sequence[str]) -> None:
-        self._codes = codes
-        self._names = np.array(names, dtype=np.object_)  # one object per name, not per point
-
-    def __len__(self) -> int:
-        return len(self._codes)
-
-    def __getitem__(self, points: slice) -> NDArray[np.object_]:
-        return np.asarray(self._names[self._codes[points].astype(np.intp)])
-
-
-class Counts:
-    """A column of numbers of impacts, None where `UNKNOWN_IMPACTS` stands."""
-
-    def __init__(self, counts: NDArray[np.int32]) -> None:
-        self._counts = counts
-
-    def __len__(self) -> int:
-        return len(self._counts)
-
-    def __getitem__(self, points: slice) -> NDArray[Any]:
-        counts = self._counts[points]
-        unknown = counts == UNKNOWN_IMPACTS
-        return np.where(unknown, np.array(None), counts.astype(np.object_)) if unknown.any() else counts
-
-
 def columns_of(result: BatchResult) -> dict[str, Column]:
     """The fields of `Columns` with one value for each point."""
-    columns: dict[str, Column] = {
-        **result.fields,
-        own.OVERTURNED.name: result.fields[own.OUTCOME.name] >= Outcome.OVERTURNED_DIRECTLY,
-        own.OUTCOME.name: Names(result.fields[own.OUTCOME.name], OUTCOMES),
-        own.IMPACTS.name: Counts(result.fields[own.IMPACTS.name]),
-        own.SOURCE.name: Names(result.from_cube, SOURCES),
+    codes, impacts, from_cube = result.fields[own.OUTCOME.name], result.fields[own.IMPACTS.name], result.from_cube
+    columns = columns_as_they_are(result.fields) | {
+        own.OVERTURNED.name: lambda part: (codes[part] >= Outcome.OVERTURNED_DIRECTLY).tolist(),
+        own.OUTCOME.name: lambda part: [OUTCOMES[code] for code in codes[part].tolist()],
+        own.IMPACTS.name: lambda part: [None if one == UNKNOWN_IMPACTS else one for one in impacts[part].tolist()],
+        own.SOURCE.name: lambda part: [SOURCES[one] for one in from_cube[part].tolist()],
     }
     return {field.name: columns[field.name] for field in COLUMN_FIELDS}
 

@@ -11,12 +11,19 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import Field, SerializeAsAny
 
-from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES
+from rocking._datasets.cube import AXES
 from rocking._model.checks import check_window
 from rocking._model.response import Response as Found
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
-from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.encoding import (
+    CONTENT,
+    csv_response,
+    json_response,
+    negotiated_form,
+    netcdf_response,
+    solved_variable,
+)
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
@@ -134,12 +141,9 @@ def _dataset(
     params: MapParams, frequency_ratio: NDArray[np.float64], slenderness: NDArray[np.float64], found: Found
 ) -> xr.Dataset:
     """The map with the names, types and attributes of the data sets."""
-    variables: dict[str, Any] = {}
-    for name in ("peak_rotation", "outcome", "impacts", "exceeded_alpha"):
-        dtype, about = VARIABLES[name]
-        kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
-        values = getattr(found, name).astype(dtype)
-        variables[name] = (("slenderness", "frequency_ratio"), values, MODEL_RESULT | kept)
+    axes = ("slenderness", "frequency_ratio")
+    names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")
+    variables: dict[str, Any] = {name: solved_variable(name, axes, getattr(found, name)) for name in names}
     coordinates = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
     attributes = params.model_dump(exclude={"format"}, exclude_none=True)
     return xr.Dataset(

@@ -15,6 +15,7 @@ from rocking_api.http.encoding import (
     CONTENT,
     MEDIA_TYPES,
     Form,
+    columns_as_they_are,
     csv_stream,
     dataset_of,
     json_stream,
@@ -121,6 +122,6 @@ def _answered(service: Service, batch: Batch, request: Request, form: Form, stop
         return netcdf_response(dataset_of(batch.groups, result, attributes), "response")
     columns = columns_of(result)  # JSON and CSV are written while they are sent
     if form == "csv":
-        return csv_stream(batch.groups | columns, "response")
+        return csv_stream(columns_as_they_are(batch.groups) | columns, batch.points, "response")
     answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
-    return json_stream(answer, request, columns)
+    return json_stream(answer, request, columns, batch.points)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from rocking._model.checks import check_window
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import evaluate_many
-from rocking_api.http.encoding import CONTENT, csv_stream, dataset_of, json_response, negotiated_form, netcdf_response
+from rocking_api.http.encoding import (
+    CONTENT,
+    columns_as_they_are,
+    csv_stream,
+    dataset_of,
+    json_response,
+    negotiated_form,
+    netcdf_response,
+)
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import SpectrumParams
@@ -60,10 +68,10 @@ def _spectrum(
     if form == "nc":
         attributes = params.model_dump(exclude={"format"}, exclude_none=True)
         return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum")
-    curve = {"frequency_ratio": frequency_ratio} | columns_of(result)
+    curve = columns_as_they_are({"frequency_ratio": frequency_ratio}) | columns_of(result)
     if form == "csv":
-        return csv_stream(curve, "spectrum")
-    lists = {name: column[:].tolist() for name, column in curve.items()}
+        return csv_stream(curve, frequency_ratio.size, "spectrum")
+    lists: dict[str, Any] = {name: column(slice(None)) for name, column in curve.items()}
     return json_response(
         SpectrumResponse.model_construct(query=params, data_versions=list(result.versions), **lists), request
     )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.cube import DIMENSIONS
-from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
+from rocking_api.http.encoding import MEDIA_TYPES, columns_as_they_are, csv_stream, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import Params
@@ -106,7 +106,7 @@ def _subset(
         part = part.drop_vars("pulse").drop_encoding()
         part.attrs = {**part.attrs, "source_sha256": product.sha256}
         return netcdf_response(part, "subset")
-    return csv_stream(_columns(part, wanted), "subset")
+    return csv_stream(columns_as_they_are(_columns(part, wanted)), points, "subset")
 
 
 def _columns(part: xr.Dataset, wanted: list[str]) -> dict[str, NDArray[Any]]:
