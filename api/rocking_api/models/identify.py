@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import Field, create_model
+from pydantic import Field
 
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import TableFormat, TimeStep, between, said
+from rocking_api.models.quantity import TableFormat, TimeStep, between, said, with_intervals
 
 MAX_SAMPLES = 20_000
 """Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
@@ -36,25 +36,12 @@ class Trace(IdentifyParams):
     rotation: Samples = said("rotation; positive values turn on the right edge [rad]")
 
 
-_ESTIMATES: dict[str, tuple[Any, str, str]] = {
-    "restitution": (list[float], "eta of the impacts after which it turns on the edge", "-"),
-    "alpha": (list[float], "slenderness angle", "rad"),
-    "frequency_parameter": (list[float], "p", "rad/s"),
-    "drift": (float, "drift of the sensor", "rad/s"),
-}
-"""Type, meaning and unit of what has an interval."""
-
-
-def _with_intervals(model: type[IdentifyResponse]) -> type[IdentifyResponse]:
-    """A decorator that adds the estimates and the ends of their intervals."""
-    found: dict[str, Any] = {}
-    for name, (kind, meaning, unit) in _ESTIMATES.items():
-        ends = {name: meaning} | {f"{name}_{end}": f"{end} end of its interval" for end in ("lower", "upper")}
-        found |= {key: (kind, said(f"{text} [{unit}]")) for key, text in ends.items()}
-    return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
-
-
-@_with_intervals
+@with_intervals(
+    restitution=(list[float], "eta of the impacts after which it turns on the edge", "-"),
+    alpha=(list[float], "slenderness angle", "rad"),
+    frequency_parameter=(list[float], "p", "rad/s"),
+    drift=(float, "drift of the sensor", "rad/s"),
+)
 class IdentifyResponse(Answer):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 

@@ -7,9 +7,18 @@ shifted by rounding for the error bound, stay in the latter.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BeforeValidator, Field, ValidationError, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    create_model,
+)
 from pydantic_core import PydanticCustomError
 
 from rocking._base import quantities as q
@@ -18,6 +27,8 @@ from rocking._excitation.pulses import pulse_names, pulse_parameters
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP
 from rocking._excitation.records.record import TIME_STEP, UNITS
+
+Model = TypeVar("Model", bound=BaseModel)
 
 SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
@@ -36,6 +47,15 @@ def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any
 def said(text: str, default: Any = ..., **more: Any) -> Any:
     """A field with its description; `more` are those of `Field`."""
     return Field(default, description=text, **more)
+
+
+def with_intervals(**estimates: tuple[Any, str, str]) -> Callable[[type[Model]], type[Model]]:
+    """A decorator that adds estimates to a model, by type, meaning and unit, and the ends of their intervals."""
+    found: dict[str, Any] = {}
+    for name, (kind, meaning, unit) in estimates.items():
+        ends = {name: meaning} | {f"{name}_{end}": f"{end} end of its interval" for end in ("lower", "upper")}
+        found |= {key: (kind, said(f"{text} [{unit}]")) for key, text in ends.items()}
+    return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
 
 
 def _in_range(quantity: Quantity, low: float, high: float, text: str = "", kind: Any = float, **more: Any) -> Any:

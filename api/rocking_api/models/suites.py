@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from rocking_api.models.answer import QUERY, Answer, ListAnswer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import said
+from rocking_api.models.quantity import said, with_intervals
 from rocking_api.models.responses import Link
 
 _NAME = said("name of the suite")
@@ -62,34 +62,28 @@ class SuiteRecord(BaseModel):
     digest: str = said("sha256 of the time step and the samples in m/s2")
 
 
+@with_intervals(
+    median_intensity=(float | None, "intensity of probability 1/2; null: the outcomes do not bound it", OF_MEASURE),
+    dispersion=(float | None, "standard deviation of the logarithm of the intensity; null: not bounded", "-"),
+)
 class FragilityCurve(BaseModel):
     """A curve that was fitted by maximum likelihood, with intervals of the confidence of the suite."""
 
     model: str = said("lognormal or logistic (log-logistic)")
     fit_status: str = said("FITTED, or why the outcomes determine no curve")
     fit_meaning: str = said("the status in words")
-    median_intensity: float | None = said("intensity of probability 1/2 [unit of the measure]")
-    median_intensity_lower: float | None = said("lower end of its interval [unit of the measure]")
-    median_intensity_upper: float | None = said(
-        "upper end of its interval [unit of the measure]; null if the outcomes do not bound it"
-    )
-    dispersion: float | None = said("standard deviation of the logarithm of the intensity [-]")
-    dispersion_lower: float | None = said("lower end of its interval [-]")
-    dispersion_upper: float | None = said("upper end of its interval [-]; null if it is not bounded")
     annual_rate: float | None = said(
         "annual rate of reaching the limit state [1/year]; null without a hazard curve", None
     )
     fitted: list[float | None] = said("probability at each level [-]")
 
 
+@with_intervals(fraction=(list[float], "k/N at each level, with Clopper-Pearson intervals", "-"))
 class LimitState(BaseModel):
     """How many records bring the block to a limit state, at each level."""
 
     demand: str = said("overturning, alpha (passed at some time), or a threshold of |theta|/alpha")
     exceedances: list[int] = said("number k of the N records that reach it, at each level [-]")
-    fraction: list[float] = said("k/N at each level [-]")
-    fraction_lower: list[float] = said("lower end of the Clopper-Pearson interval at each level [-]")
-    fraction_upper: list[float] = said("upper end of the Clopper-Pearson interval at each level [-]")
     first_exceedances: list[int] = said("number of records that reach it at this or a milder level [-]; for comparison")
     first_median_intensity: float | None = said(
         "lognormal median of these counts [unit of the measure]; for comparison: it is on the low side"
@@ -137,14 +131,12 @@ class RecordSensitivity(BaseModel):
     )
 
 
+@with_intervals(fraction=(float, "share of the records that overturn it, with its Clopper-Pearson interval", "-"))
 class Sensitivity(BaseModel):
     """A block at one level: friction demand, and the effect of restitution and sampling on the share that overturns."""
 
     intensity: float = said("level of intensity [unit of the measure]")
     exceedances: int = said("number of records that overturn the block [-]")
-    fraction: float = said("share of the records that overturn it [-]")
-    fraction_lower: float = said("lower end of the Clopper-Pearson interval of the probability [-]")
-    fraction_upper: float = said("upper end of the Clopper-Pearson interval of the probability [-]")
     restitution_low: float = said("smaller coefficient of restitution [-]")
     fraction_low_restitution: float = said("share that overturns it with the smaller restitution [-]")
     changed_low_restitution: int = said("number of records whose outcome is then another one [-]")
