@@ -92,9 +92,7 @@ class DatasetChecker:
         if (now := self.damaged.get(name)) == before:
             return
         self._on_change(name, now is not None)
-        fields = {"dataset": name} | ({} if now is None else {"problem": now})
-        LOG.log(
-            logging.INFO if now is None else logging.ERROR,
-            "a data set is no longer damaged" if now is None else "a data set is damaged",
-            extra={"fields": fields},
-        )
+        if now is None:
+            LOG.info("a data set is no longer damaged: %s", name)
+        else:
+            LOG.error("a data set is damaged: %s: %s", name, problem)

@@ -46,7 +46,7 @@ class Kernels:
             if (command := compile_command()) is not None:
                 compiled = await anyio.run_process(command, check=False)
                 if compiled.returncode:
-                    LOG.warning("the compiler failed", extra={"fields": {"stderr": compiled.stderr.decode()}})
+                    LOG.warning("the compiler failed: %s", compiled.stderr.decode())
             await anyio.to_thread.run_sync(load_kernels, abandon_on_cancel=True)
         finally:
             self.is_loaded = True
