@@ -262,9 +262,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
 
 @contextmanager
 def open_checked(content: bytes, path: Path | str) -> Iterator[xr.Dataset]:
-    """The data set of the bytes of a file, its digest checked, open inside of the `with` block; raises as
-    `read_dataset`.
-    """
+    """The data set of the bytes of a file whose digest at its end is right, open inside of the `with` block."""
     _raise_if_damaged(content, path)
     try:
         with open_netcdf(content) as opened:
@@ -299,7 +297,7 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
 
 
 def check_spectrum(cube: xr.Dataset, path: Path | str) -> None:
-    """Check a data set, which may be open, against the schema of spectrum cubes; raises as `read_spectrum`."""
+    """Refuse a data set, which may be open, that has not the schema of spectrum cubes."""
     present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
     for name, (dtype, _) in (VARIABLES | present).items():
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):

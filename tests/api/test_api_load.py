@@ -2,7 +2,6 @@
 
 import asyncio
 import re
-import sys
 import threading
 import time
 from types import SimpleNamespace
@@ -166,13 +165,6 @@ def test_the_thread_is_free_soon_after_timeout_or_disconnect(seconds, request_, 
         return time.process_time() - began
 
     assert asyncio.run(scenario()) < 0.1
-
-
-def test_work_is_not_traced():
-    def work(_):
-        return sys.getprofile(), sys.gettrace()
-
-    assert asyncio.run(BoundedExecutor(1, 0, 30).run(work)) == (None, sys.gettrace())
 
 
 def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(results, monkeypatch):
