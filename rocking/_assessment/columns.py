@@ -22,6 +22,7 @@ from rocking._base.quantities import (
     WIDTH,
 )
 from rocking._base.quantity import Quantity
+from rocking._dimensional.body_kinds import BODIES, RIGID
 
 INPUTS = (
     NAME,
@@ -44,7 +45,24 @@ INPUTS = (
 STAND_INS = (NUMBER, LENGTH, THICKNESS)
 """Other columns of tables, which are read as one of these."""
 
-REQUIRED = (("width", "diameter"), ("height",))
+BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
+
+_KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
+
+_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination"}
+
+SHAPES = (
+    BODY,
+    *{name: one for kind in _KINDS for name, one in kind.fields.items() if one.names[0] not in _OWN}.values(),
+)
+"""Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
+
+_LENGTHS = {name for kind in _KINDS for name in kind.needed if kind.fields[name].unit == "m"}
+
+REQUIRED = (
+    ("width", "diameter", *sorted(_LENGTHS - {"width", "diameter", "height", "mass_height"})),
+    ("height", "mass_height"),
+)
 """Columns that the header of a table has, one of each group."""
 
 OUTPUTS = (

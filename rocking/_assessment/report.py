@@ -49,13 +49,7 @@ class Project:
 
 
 def report_html(found: Assessment, project: Project, bad_rows: Sequence[BadRow] = (), reading: str = "") -> str:
-    """The report as text; `reading` says what the columns of the table of objects were read as.
-
-    Raises
-    ------
-    ImportError
-        If jinja2, the extra `report`, is not installed.
-    """
+    """The report as text; `reading` says what the columns of the table of objects were read as."""
     from jinja2 import Environment, StrictUndefined  # noqa: PLC0415  (an extra)
 
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)

@@ -49,30 +49,14 @@ PERIODS = 12
 
 @dataclass(frozen=True)
 class Motion:
-    """One motion of a site.
+    """One motion of a site."""
 
-    Attributes
-    ----------
-    name : str
-        For output.
-    motion : AbstractPulse or Record
-        The ground motion.
-    peak_acceleration : float
-        At the site [m/s2]; on a floor, that of the floor.
-    period : float
-        Of a pulse [s]; 1 for a record.
-    group : int
-        Motions of one group are one event: the components of a pair, and a pair at other angles.
-    ground : float
-        Peak ground acceleration that belongs to `peak_acceleration` [m/s2].
-    """
-
-    name: str
-    motion: AbstractPulse | Record
-    peak_acceleration: float
-    period: float
-    group: int
-    ground: float
+    name: str  # for output
+    motion: AbstractPulse | Record  # the ground motion
+    peak_acceleration: float  # at the site [m/s2]; on a floor, that of the floor
+    period: float  # of a pulse [s]; 1 for a record
+    group: int  # motions of one group are one event: the components of a pair, and a pair at other angles
+    ground: float  # peak ground acceleration that belongs to `peak_acceleration` [m/s2]
 
 
 @dataclass(frozen=True)

@@ -104,6 +104,8 @@ SCALE = Quantity(
     default=1.0,
 )
 
+TIME_STEP = Quantity("time_step", "s", "time step of the samples", symbol="dt", lower=0.0, example="0.01s")
+
 # Bodies
 
 NAME = Quantity(

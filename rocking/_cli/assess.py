@@ -325,13 +325,7 @@ def _html(found: Assessment, project: Project, table: ObjectTable) -> str:
 
 
 def _write(option: str, path: str, text: str) -> None:
-    """Write a file.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If that is not possible.
-    """
+    """Write a file."""
     from rocking._base.errors import InvalidArgumentError
 
     try:

@@ -208,13 +208,7 @@ def configuration_errors() -> Iterator[None]:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """The mapping in a file, by the ending of its name.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, holds no mapping, or is YAML without the package that reads it.
-    """
+    """The mapping in a file, by the ending of its name."""
     from rocking._base.errors import InvalidArgumentError
 
     try:

@@ -20,18 +20,7 @@ LONG = 4.0
 
 @contextmanager
 def progress(text: str) -> Iterator[Callable[[float], None]]:
-    """Show `text` and the elapsed time on a terminal until the block ends; nothing if stderr is piped.
-
-    Parameters
-    ----------
-    text : str
-        What is done.
-
-    Yields
-    ------
-    callable
-        To be called with the share of the work that is done [-], where that is known.
-    """
+    """Show `text` and the elapsed time on a terminal until the block ends; nothing if stderr is piped."""
     ended = threading.Event()
     shares: deque[float] = deque(maxlen=1)
     shown = threading.Thread(target=_show, args=(text, shares, ended), daemon=True)

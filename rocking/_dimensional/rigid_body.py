@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number, positive
+from rocking._base.quantities import HEIGHT, OFFSET
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
@@ -336,14 +337,16 @@ def body_of_size(
     offset: Scalar = 0.0,
     mass_height: Scalar | None = None,
     gravity: Scalar = STANDARD_GRAVITY,
+    gyration: Scalar | None = None,
 ) -> Block | RigidBody:
-    """The block of this size, or the body if its centre of mass is elsewhere, at most at its height.
+    """The block of this size, or the body if its centre of mass or gyration differs; that is at most at its height.
 
     Arguments and errors are those of `RigidBody.from_size`.
     """
     if mass_height is not None:
-        highest = number("height", height, 0.0, math.inf, closed="neither", unit="m")
-        mass_height = number("mass_height", mass_height, 0.0, highest, closed="right", unit="m")
-    elif not number("offset", offset, -math.inf, math.inf, unit="m"):
+        mass_height = number("mass_height", mass_height, 0.0, HEIGHT.number(height), closed="right", unit="m")
+    elif gyration is None and not OFFSET.number(offset):
         return Block(width, height, gravity)
-    return RigidBody.from_size(width, height, offset=offset, mass_height=mass_height, gravity=gravity)
+    return RigidBody.from_size(
+        width, height, offset=offset, mass_height=mass_height, gyration=gyration, gravity=gravity
+    )

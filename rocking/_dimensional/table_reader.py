@@ -76,21 +76,11 @@ class TooManyRowsError(InvalidArgumentError):
 
 @dataclass(frozen=True)
 class BadRow:
-    """A row that was not read.
+    """A row that was not read."""
 
-    Attributes
-    ----------
-    row : int
-        Its number in the table, from 1.
-    column : str
-        Name of the column, "" for the whole row.
-    reason : str
-        What was found and what is allowed.
-    """
-
-    row: int
-    column: str
-    reason: str
+    row: int  # its number in the table, from 1
+    column: str  # name of the column, "" for the whole row
+    reason: str  # what was found and what is allowed
 
     def __str__(self) -> str:
         return f"row {self.row}{f', {self.column}' if self.column else ''}: {self.reason}"
@@ -98,27 +88,17 @@ class BadRow:
 
 @dataclass(frozen=True)
 class Table(Generic[Item]):
-    """The rows of a table.
+    """The rows of a table."""
 
-    Attributes
-    ----------
-    items : list
-        One for each row that was read.
-    cells : dict of str to list of str
-        Every column of the table as it stands, by the text of its header, with its number where that is empty or not
-        the first; for the rows that were read.
-    columns : dict of str to str
-        The name of the quantity in each of these columns that is read.
-    units : dict of str to str
-        The unit of each quantity that is read: of the header, or of the first cell with one, otherwise "".
-    errors : list of (int, InvalidArgumentError)
-        Number of each row that was not read, and why; the parameter is the column, "row" the whole row.
-    """
-
-    items: list[Item]
+    items: list[Item]  # one for each row that was read
+    # every column of the table as it stands, by the text of its header, with its number where that is empty or
+    # not the first; for the rows that were read
     cells: dict[str, list[str]] = field(default_factory=dict)
+    # the name of the quantity in each of these columns that is read
     columns: dict[str, str] = field(default_factory=dict)
+    # the unit of each quantity that is read: of the header, or of the first cell with one, otherwise ""
     units: dict[str, str] = field(default_factory=dict)
+    # number of each row that was not read, and why; the parameter is the column, "row" the whole row
     errors: list[tuple[int, InvalidArgumentError]] = field(default_factory=list)
 
     @property
@@ -131,13 +111,7 @@ class Table(Generic[Item]):
 
 
 def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
-    """The content of a file; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it cannot be read.
-    """
+    """The content of a file; `-` is standard input."""
     try:
         return sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
     except OSError as error:
@@ -145,15 +119,7 @@ def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
 
 
 def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
-    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, its header lacks a column, or the decimal sign of a number is not certain.
-    ImportError
-        If the package for sheets is not installed, the extra `sheets`.
-    """
+    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input."""
     raw = read_bytes(source, schema.argument)
     if Path(source).suffix.lower() in SHEETS:
         return read_rows(rows_of_sheet(raw, schema.argument), schema)
@@ -384,7 +350,8 @@ def _values(row: Sequence[str], header: Header, decimal: str, schema: Schema[Any
             del values[one.name]
     if schema.every_length and "name" not in values and not _has_text(row, header):
         raise InvalidArgumentError("row", "numbers only", "a name or another text, which totals lack")
-    if not any(one.unit not in ("", "-", "kg") and one.name in values for one, _ in header.columns.values()):
+    dimensions = (one for one, _ in header.columns.values() if one.unit not in ("", "-", "kg") or one.name == "body")
+    if not any(one.name in values for one in dimensions):
         raise InvalidArgumentError("row", "no dimension", "one or more in each row")
     return values
 
@@ -417,13 +384,7 @@ def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
 
 
 def _check_lengths(row: Sequence[str], header: Header) -> None:
-    """Refuse a row with a length in a column that is not read.
-
-    Raises
-    ------
-    InvalidArgumentError
-        Of that column.
-    """
+    """Refuse a row with a length in a column that is not read."""
     for place, text in enumerate(header.texts[: len(row)]):
         cell = row[place].strip()
         if place in header.columns or place in header.units.values() or cell.lower() in EMPTY:

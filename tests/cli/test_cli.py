@@ -547,7 +547,7 @@ TWO_ENDS = [
     ("arguments", "option", "allowed"),
     [
         (["response", *GROUPS[:-1], "1.5"], "--restitution", "[0, 1]"),
-        (["response", *GROUPS[:-1], "bouncy"], "--restitution", "momentum for a block"),
+        (["response", *GROUPS[:-1], "bouncy"], "--restitution", "momentum, or a number"),
         (["response", "--pulse", "sinus", *GROUPS[2:]], "--pulse", "one of sine"),
         (["response", *GROUPS[:3], "nan", *GROUPS[4:]], "--slenderness", "[1e-12, inf)"),
         (["response", *GROUPS[:4], "--restitution", "0.85"], "--frequency-ratio", "a number"),
@@ -596,3 +596,43 @@ def test_help_and_version_import_nothing_heavy(option):
     if option == "--version":
         assert printed[0] == rocking.__version__
         assert not any(printed[1:])
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (("--width=40cm", "--height=1.6m", "--gyration=0.5m"), "offset_mass(width=0.4m,height=1.6m,gyration=50cm)"),
+        (("--diameter", "40cm", "--height", "1.6 m"), "cylinder(diameter=0.4m, height=160cm)"),
+        (
+            ("--left", "12cm", "--right", "18cm", "--mass-height", "40cm"),
+            "two_edges(left=0.12m, right=0.18m, mass_height=0.4m)",
+        ),
+        (("--body", "hollow(width=40cm, height=1.6m, wall=2cm)"), "hollow(width=0.4m, height=1.6m, wall=0.02m)"),
+        (("--body", "frame(width=40cm, height=3m, mass_ratio=2)"), "frame(width=0.4m, height=3m, mass_ratio=2)"),
+    ],
+)  # fmt: skip
+def test_kinds_of_bodies_are_options(options, text):
+    motion = ("--pulse", "sine", "--peak-acceleration", "0.4 g", "--period", "0.5s")
+    found = json.loads(run("response", *options, *motion, "--format", "json"))
+    expected = rocking.body(text).response("sine", peak_acceleration="0.4 g", period="0.5 s")
+    assert found["peak_rotation"] == expected.summary()["peak_rotation"]
+    history = json.loads(run("history", *options, *motion, "--format", "json"))
+    largest = max(map(abs, history["rotation_deg"]))
+    assert expected.overturned or largest == pytest.approx(math.degrees(expected.rotation), rel=1e-3)
+    spectrum = json.loads(run("spectrum", *options, *motion[:4], "--points", "3", "--format", "json"))
+    assert len(spectrum["period"]) == len(spectrum["peak_rotation_deg"]) == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--width", "1m", "--left", "1m"), "--body"),
+        (("--body", "hollow(width=40cm)", "--width", "1m"), "--width"),
+        (("--body", "hollow(width=40cm)"), "--height"),
+        (("--width", "40 cm", "--height", "1.6m", "--gyration", "5"), "missing unit: write 5m"),
+    ],
+)  # fmt: skip
+def test_what_describes_no_body_is_refused_by_its_option(options, message):
+    assert message in refused(
+        *("response", *options), *("--pulse", "sine", "--peak-acceleration", "1g", "--period", "1s")
+    )
