@@ -17,8 +17,8 @@ from rocking_api.models.answer import Answer
 from rocking_api.settings import Settings
 
 import rocking
+import rocking._base.quantities as quantities
 from rocking._assessment.columns import INPUTS, OUTPUTS, SHAPES
-from rocking._base import quantities
 from rocking._base.quantity import Quantity
 from rocking._cli.app import app
 from rocking._dimensional.body_kinds import BODIES

@@ -4,8 +4,6 @@ The command may be repeated after any interruption, including `kill -9`. It refu
 active.
 """
 
-from __future__ import annotations
-
 import argparse
 import inspect
 import os

@@ -127,7 +127,7 @@ class Object:
 
     def _set(self, values: dict[str, float]) -> None:
         for name, value in values.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+            vars(self)[name] = value  # a frozen dataclass
 
     def _check_described(self, description: str) -> None:
         """Check an object that has its dimensions from a description, such as "a mesh"."""

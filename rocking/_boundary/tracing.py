@@ -36,8 +36,7 @@ Of 112,000 points within 0.001 of curves of c2 and of the cosine at eta = 0.96, 
 the widest of 1.06 node distances.
 """
 
-UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
-"""Blocks that the pulse can uplift."""
+UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)  # blocks that the pulse can uplift
 
 
 def overturning_boundary(

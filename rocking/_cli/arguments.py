@@ -148,9 +148,8 @@ def read_body(options: BodyOptions) -> RespondingBody:
             raise InvalidArgumentError(name, value, "a parameter of --body, in its brackets")
         return body(options.body)
     if given.keys() < {"width", "height"}:
-        raise InvalidArgumentError(
-            *("height" if given else "width", None), "required with the other options that have units"
-        )
+        for name in ("width", "height"):
+            _given(options, name)
     return body(given)
 
 

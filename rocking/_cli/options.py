@@ -55,6 +55,11 @@ def option(quantity: Quantity, *names: str, text: str = "", panel: str | None = 
     return typer.Option(*names, help=described, rich_help_panel=panel, metavar=f"[{quantity.unit or 'TEXT'}]", **more)
 
 
+def said(text: str, metavar: str, *names: str, **more: Any) -> Any:
+    """An option of what is no quantity: a file, a name, a flag (without metavar)."""
+    return typer.Option(*names, help=text, metavar=metavar and f"[{metavar}]", **more)
+
+
 def _pulses(incomplete: str) -> list[str]:
     """Names of pulses, for the completion of the shell."""
     from rocking._excitation.pulses import pulse_names
@@ -140,24 +145,15 @@ class SpectrumOptions(WindowOptions):
 
 Component = Annotated[
     str | None,
-    typer.Option(
-        help="Column or trace of a file with several; rows for one series along the rows of several columns.",
-        metavar="[NAME]",
-    ),
+    said("Column or trace of a file with several; rows for one series along the rows of several columns.", "NAME"),
 ]
 Skip = Annotated[
     int | None,
-    typer.Option(
-        help="Rows of numbers above the samples of a file of columns, such as a count or a factor.", metavar="[NUMBER]"
-    ),
+    said("Rows of numbers above the samples of a file of columns, such as a count or a factor.", "NUMBER"),
 ]
 BaselineOrder = Annotated[
     int | None,
-    typer.Option(
-        help="Remove a baseline of this degree, 0 to 6, from the acceleration; none by default, but for the offset of "
-        "K-NET counts.",
-        metavar="[NUMBER]",
-    ),
+    said("Remove a baseline of this degree, 0 to 6; none by default, but for the offset of K-NET counts.", "NUMBER"),
 ]
 
 
@@ -166,16 +162,12 @@ class FileOptions:
     """What the file of a record does not state: arguments of `read_record`."""
 
     unit: Annotated[
-        str | None,
-        typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", metavar="[UNIT]"),
+        str | None, said("Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", "UNIT")
     ] = None
     time_step: Annotated[str | None, option(TIME_STEP, text="Time step if the file states none")] = None
     component: Component = None
     vertical: Annotated[
-        str | None,
-        typer.Option(
-            help="File of the vertical component, upwards, or its column or trace in the file.", metavar="[FILE|NAME]"
-        ),
+        str | None, said("File of the vertical component, upwards, or its column or trace in the file.", "FILE|NAME")
     ] = None
     skip: Skip = None
 
@@ -197,9 +189,7 @@ class OutputOptions:
         Literal["table", "csv", "json"],
         typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
     ] = "table"
-    all: Annotated[
-        bool, typer.Option("--all", help="All values in the table; CSV and JSON always have them.", metavar="")
-    ] = False
+    all: Annotated[bool, said("All values in the table; CSV and JSON always have them.", "", "--all")] = False
 
 
 @dataclass(frozen=True)
@@ -207,21 +197,17 @@ class PictureOptions:
     """Where a picture goes."""
 
     output: Annotated[
-        str | None,
-        typer.Option(
-            "--output", "-o", help="File to write, .png or .svg; by default a window opens.", metavar="[FILE]"
-        ),
+        str | None, said("File to write, .png or .svg; by default a window opens.", "FILE", "--output", "-o")
     ] = None
 
 
 GROUPS = (BodyOptions, FileOptions, OutputOptions, PictureOptions)
 """Types of arguments whose fields are options."""
 
-FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.", metavar="[-]")]
-FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.", metavar="[-]")]
+FrequencyRatioMin = Annotated[float, said("Lower end of omega_g/p.", "-")]
+FrequencyRatioMax = Annotated[float, said("Upper end of omega_g/p.", "-")]
 Duration = Annotated[
-    str | None,
-    typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
+    str | None, said("Length: a number tau = p t, or a time such as 3s for a block with units.", "-|s")
 ]
 
 

@@ -407,7 +407,8 @@ def print_csv(columns: Mapping[str, Sequence[Any]], form: Form, units: Mapping[s
 
 def print_text(result: Mapping[str, Any], form: Form) -> None:
     """Print a name with its unit and a value a line."""
-    labels = {name: _label(name, form.labels()) for name in result}
+    known = form.labels()
+    labels = {name: _label(name, known) for name in result}
     width = max(map(len, labels.values()))
     for name, value in result.items():
         if value is not None:
@@ -442,4 +443,4 @@ def _text(value: Any) -> str:
 
 def printable(text: str) -> str:
     """A text without control characters, which a terminal would obey."""
-    return "".join(one if one.isprintable() else "\ufffd" for one in text)
+    return text if text.isprintable() else "".join(one if one.isprintable() else "\ufffd" for one in text)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import OutputOptions, RecordOptions, with_options
+from rocking._cli.options import OutputOptions, RecordOptions, said, with_options
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
@@ -23,13 +23,6 @@ File = Annotated[
         metavar="FILE",
     ),
 ]
-Thresholds = Annotated[
-    bool,
-    typer.Option(
-        "--thresholds/--no-thresholds", help="Whether to find all scales at which the outcome changes.", metavar=""
-    ),
-]
-Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.", metavar="")]
 
 
 @with_options
@@ -37,8 +30,10 @@ def record(
     file: File,
     block: RecordOptions,
     output: OutputOptions,
-    thresholds: Thresholds = True,
-    fit: Fit = False,
+    thresholds: Annotated[
+        bool, said("Whether to find all scales at which the outcome changes.", "", "--thresholds/--no-thresholds")
+    ] = True,
+    fit: Annotated[bool, said("Fit a pulse, and compare how both overturn the block.", "", "--fit")] = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
     from rocking._base.errors import InvalidArgumentError

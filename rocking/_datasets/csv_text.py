@@ -1,31 +1,19 @@
 """Columns as CSV text (RFC 4180), for the command line, the service and the workflow."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from types import SimpleNamespace
 from typing import Any
 
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
-"""Text that begins so is a formula for a spreadsheet."""
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # text that begins so is a formula for a spreadsheet
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
     """A header line with the names of the columns, and the rows.
 
-    Parameters
-    ----------
-    columns : mapping of str to sequence
-        Plain Python values, equally many in each column.
-
-    Returns
-    -------
-    str
-        Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
-        comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading
-        apostrophe.
+    Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
+    comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading apostrophe.
     """
     return csv_header(columns) + csv_rows(columns)
 

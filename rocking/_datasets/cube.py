@@ -20,8 +20,6 @@ samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and A
 creation, so equal content gives equal bytes, and a digest of their values.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os
@@ -43,8 +41,7 @@ from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking._model.fields import CUBE_FIELDS, DERIVED_FIELDS
 
-DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
-"""Dimensions of a spectrum cube, in order."""
+DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")  # dimensions of a spectrum cube, in order
 
 AXES: dict[str, dict[str, Any]] = {
     "alpha": {
@@ -130,18 +127,10 @@ _GLOBAL = {
 def build_spectrum_dataset(
     variables: Mapping[str, ArrayLike], *, pulse: str | SampledPulse, restitution: float, axes: Mapping[str, ArrayLike]
 ) -> xr.Dataset:
-    """Assemble a spectrum cube.
+    """Assemble a spectrum cube of one pulse and restitution.
 
-    Parameters
-    ----------
-    variables : mapping
-        The arrays named in `VARIABLES` and any of `OPTIONAL_VARIABLES`, of shape (alpha, slenderness, frequency_ratio).
-    pulse : str or SampledPulse
-        Name of the pulse, or a pulse given by samples.
-    restitution : float
-        eta [-], [0, 1].
-    axes : mapping
-        alpha [rad], slenderness [-] and frequency_ratio [-], ascending.
+    `variables`: the arrays named in `VARIABLES` and any of `OPTIONAL_VARIABLES`, of shape (alpha, slenderness,
+    frequency_ratio); `axes`: these [rad], [-], [-], ascending.
     """
     name = as_pulse(pulse).name
     cube = xr.Dataset(
@@ -195,13 +184,7 @@ def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[st
 
 
 def stored_pulse(dataset: xr.Dataset) -> str | SampledPulse:
-    """The pulse of a data set: its name, or the pulse made again from the stored samples.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the samples are none of a pulse.
-    """
+    """The pulse of a data set: its name, or the pulse made again from the stored samples."""
     name = str(dataset["pulse"].attrs["pulse_name"])
     if not dataset.variables.keys() >= SAMPLES.keys():
         return name
@@ -220,15 +203,9 @@ def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
 def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str, int] | None = None) -> None:
     """Write a netCDF-4 file atomically; equal content gives equal bytes.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Written with a digest of its values (`content_sha256`); the file has another digest at its end
-        (`append_checksum`). `read_dataset` detects damage by them.
-    path : path
-        Parent folders are created; an existing file is replaced.
-    chunks : mapping, optional
-        Size of the chunks of the file along dimensions; by default a variable is one chunk.
+    The data set is written with a digest of its values (`content_sha256`); the file has another digest at its end
+    (`append_checksum`). `read_dataset` detects damage by them. Parent folders are created; an existing file is
+    replaced. `chunks`: sizes along dimensions; by default a variable is one chunk.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -250,33 +227,18 @@ def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str,
 def read_dataset(path: Path | str) -> xr.Dataset:
     """Read a file written by `write_dataset` into memory and check its digests.
 
-    Raises
-    ------
-    DatasetError
-        If the file is missing, cannot be read, was not written by this package, or is damaged.
+    Raises `DatasetError` if it is missing, cannot be read, was not written by this package, or is damaged.
     """
     return decode_dataset(read_content(path), path)
 
 
 def check_file(path: Path | str) -> None:
-    """Check the digest at the end of a file written by `write_dataset`.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing, cannot be read, was not written by this package, or is damaged.
-    """
+    """Check the digest at the end of a file written by `write_dataset`; raises as `read_dataset`."""
     _raise_if_damaged(read_content(path), path)
 
 
 def read_content(path: Path | str) -> bytes:
-    """The bytes of a data set file.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing or cannot be read.
-    """
+    """The bytes of a data set file; raises `DatasetError`."""
     path = Path(path)
     try:
         if path.is_file():
@@ -287,13 +249,7 @@ def read_content(path: Path | str) -> bytes:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of a file; messages name `path`.
-
-    Raises
-    ------
-    DatasetError
-        If the bytes were not written by this package or are damaged.
-    """
+    """`read_dataset` from the bytes of a file; messages name `path`."""
     _raise_if_damaged(content, path)
     try:
         with open_netcdf(content) as opened:
@@ -318,22 +274,13 @@ def _raise_if_damaged(content: bytes, path: Path | str) -> None:
 def read_spectrum(path: Path | str) -> xr.Dataset:
     """Read a spectrum cube and check it against the schema.
 
-    Raises
-    ------
-    DatasetError
-        As `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
+    Raises as `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
     """
     return decode_spectrum(read_content(path), path)
 
 
 def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of a file; messages name `path`.
-
-    Raises
-    ------
-    DatasetError
-        As `read_spectrum`.
-    """
+    """`read_spectrum` from the bytes of a file; messages name `path`."""
     cube = decode_dataset(content, path)
     present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
     for name, (dtype, _) in (VARIABLES | present).items():

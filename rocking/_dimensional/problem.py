@@ -143,7 +143,7 @@ class Problem(EqualByValue):
         eta = np.shape(self.restitution)
         return np.broadcast_shapes(self.body.shape, np.shape(self.peak_acceleration), np.shape(self.period), eta)
 
-    @property
+    @cached_property
     def kinds(self) -> frozenset[str]:
         """The kinds of responses, as of `rocking._model.fields.KINDS`."""
         motion = "record" if isinstance(self.motion, Record) else "pulse"

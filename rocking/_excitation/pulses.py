@@ -9,8 +9,6 @@ families or of one's own (`SmoothPulse`).
 A text names a pulse, mirrors it and states its parameters, with their units: "-mavroeidis_papageorgiou(phase=90 deg)".
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -198,10 +196,7 @@ def pulse_number(name: str) -> int:
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
     """The pulse itself, or the one of that name.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For anything else.
+    Raises `InvalidArgumentError` for anything else.
     """
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 

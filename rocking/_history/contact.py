@@ -34,8 +34,7 @@ MAX_STEPS = 250_000
 LAST_FLIGHT = 100.0
 """Longest flight of free rocking [tau]: within a rounding of the unstable equilibrium it lasts 2 ln(2/1e-16) = 75."""
 
-EVENT_OFFSET = 1e-12
-"""Relative distance in time of the samples on either side of an event."""
+EVENT_OFFSET = 1e-12  # relative distance in time of the samples on either side of an event
 
 PRACTICAL_FRICTION = 0.7
 """Coefficient of friction that a dry contact reliably provides [-]: rough concrete on concrete, EN 1992-1-1, 6.2.5."""
@@ -180,14 +179,10 @@ class ContactExtremes:
 def add_contact(history: xr.Dataset, motion: BodyMotion, impact_times: Floats) -> xr.Dataset:
     """Add the contact forces to a time history of this motion.
 
-    Returns
-    -------
-    xarray.Dataset
-        With horizontal_reaction(tau): H/(m g), positive as the ground acceleration; normal_reaction(tau): N/(m g);
-        friction_demand(tau): |H|/N, infinite where N <= 0; friction_demand_over_slope(tau): |H|/(N tan(alpha)), finite
-        in the slender limit, where the first and the third are 0; all [-], at an impact after it. Attributes:
-        largest_friction_demand, largest_friction_demand_over_slope, smallest_normal_reaction, lifts_off,
-        impulse_ratio, warnings, of `ContactExtremes`: over the whole motion, also between its samples.
+    Variables over tau, all [-], at an impact after it: horizontal_reaction, H/(m g), positive as the ground
+    acceleration; normal_reaction, N/(m g); friction_demand, |H|/N, infinite where N <= 0; friction_demand_over_slope,
+    |H|/(N tan(alpha)), finite in the slender limit, where the first and the third are 0. Attributes: those of
+    `ContactExtremes` over the whole motion, also between its samples.
     """
     tau, rotation, velocity = (history[name].values for name in ("tau", "rotation", "angular_velocity"))
     found = reactions_of(motion, impact_times, tau, rotation, velocity)
@@ -211,13 +206,8 @@ def reactions_of(
 ) -> Reactions:
     """The reactions at samples of the motion, all arrays (samples,); at an impact those after it.
 
-    Parameters
-    ----------
-    motion : BodyMotion
-    impact_times : float array (impacts,)
-        Times of the impacts [tau], ascending.
-    tau, rotation, velocity
-        Ascending times and `BodyMotion.sample` there.
+    `impact_times` (impacts,): times of the impacts [tau], ascending; `tau`, `rotation`, `velocity`: ascending times and
+    `BodyMotion.sample` there.
     """
     ground, vertical = motion.ground_acceleration(tau), 1.0 + motion.vertical_acceleration(tau)
     geometry = motion.contact_geometry

@@ -1,7 +1,5 @@
 """The motion of one body as a function of time, sampled at given times by the flights of the solver."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -50,11 +48,8 @@ from rocking._solver.state import (
 
 Floats = NDArray[np.float64]
 
-FREE_DURATION = 8.0
-"""Default duration of free rocking after the pulse [tau]."""
-
-MAX_FREE_IMPACTS = 10_000
-"""Largest number of impacts of free rocking."""
+FREE_DURATION = 8.0  # default duration of free rocking after the pulse [tau]
+MAX_FREE_IMPACTS = 10_000  # largest number of impacts of free rocking
 
 MAX_FLIGHTS = IMPACT_LIMIT + 12 * (MAX_PIECES + 1)
 """Most flights under a pulse: three more impacts and one uplift in each of the three intervals of a piece."""
@@ -67,18 +62,10 @@ MAX_ROTATION = 4.0
 class BodyMotion(ABC):
     """The motion of one body as a function of tau, from the start of the ground motion to a horizon.
 
-    Parameters
-    ----------
-    cell : record `BODY_CELL`
-        The body, and the rate of the ground motion.
-    horizon : float
-        tau at which to stop [-].
-    stop : StopFlag, optional
-        Cancels the work: the methods raise `StoppedError` soon after another thread sets the flag.
-    inertia_ratio : (float, float)
-        R p^2/g of the right and the left edge [-], for the contact forces; 3/4 for a rectangle.
-    tilt : float
-        Angle by which the base is inclined towards the right [rad].
+    `cell`: the body, and the rate of the ground motion. `horizon`: tau at which to stop [-]. `stop`: cancels the work:
+    the methods raise `StoppedError` soon after another thread sets the flag. `inertia_ratio`: R p^2/g of the right and
+    the left edge [-], for the contact forces; 3/4 for a rectangle. `tilt`: angle by which the base is inclined towards
+    the right [rad].
     """
 
     cell: Record
@@ -200,7 +187,8 @@ class BodyMotion(ABC):
             impact_times,
             self._flag,
         )
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return int(written)
 
     @cached_property
@@ -212,10 +200,6 @@ class BodyMotion(ABC):
     def _flag(self) -> NDArray[np.uint8]:
         return flag_array(self.stop)
 
-    def _check_stop(self) -> None:
-        if self._flag[0]:
-            check_stop(self.stop)
-
 
 def overturned(record: Record) -> bool:
     """Whether the body of this record overturns in the end."""
@@ -224,12 +208,7 @@ def overturned(record: Record) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class PulseMotion(BodyMotion):
-    """A `BodyMotion` under a pulse.
-
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    """
+    """A `BodyMotion` under a pulse."""
 
     pulse: AbstractPulse
 
@@ -272,7 +251,8 @@ class PulseMotion(BodyMotion):
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return record, written
 
     @cached_property
@@ -291,7 +271,8 @@ class PulseMotion(BodyMotion):
         bodies = NO_BODIES if equal else np.array([cell])
         response = np.empty(1, RESPONSE_RECORD)
         count = solve_batch(*groups, bodies, state, step_state(state[0]), self._flag, response, edges, followed)
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return followed[:count].copy(), state[0]
 
     def _set_response(self, record: Record) -> None:
@@ -312,10 +293,7 @@ class PulseMotion(BodyMotion):
 class SamplesMotion(BodyMotion):
     """A `BodyMotion` under samples of a ground motion.
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `rocking._solver.records.samples.sample_rows`.
+    `samples` (7, samples): of `rocking._solver.records.samples.sample_rows`.
     """
 
     samples: Floats
@@ -357,7 +335,8 @@ class SamplesMotion(BodyMotion):
         steps = samples_state.step_state(self.samples, self.cell)
         rest = self.max_rotation, history, impact_times, self._flag
         written = sample_record(self.samples, self.cell, state, start, steps, *rest)
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return state, int(written)
 
 

@@ -29,11 +29,8 @@ from rocking._solver.records.record_response import frequency_parameter_range
 if TYPE_CHECKING:
     import xarray as xr
 
-MAX_SAMPLES = 1_000_000
-"""Largest number of uniform samples of a history."""
-
-DEFAULT_SAMPLES = 400
-"""Uniform samples of a history under a pulse."""
+MAX_SAMPLES = 1_000_000  # largest number of uniform samples of a history
+DEFAULT_SAMPLES = 400  # uniform samples of a history under a pulse
 
 MIN_CONTINUED = 10_000
 """Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""

@@ -26,8 +26,7 @@ from rocking._interpolation.stencils import (
 from rocking._model.outcome import Outcome
 from rocking._numba.compilation import FloatArray, entry, kernel
 
-UNKNOWN_IMPACTS = -1
-"""Value of `impacts` where the nodes do not determine the number."""
+UNKNOWN_IMPACTS = -1  # value of `impacts` where the nodes do not determine the number
 
 _RECOVERS = int(Outcome.RECOVERS)
 
@@ -47,21 +46,15 @@ NODE = np.dtype(
 """The variables of a cube from which points are interpolated, at one node; `counted`: whether its number of impacts is
 certain in the cell above it (`rocking._lookup.cube_slice.counted_cells`)."""
 
-Nodes = NDArray[np.void]
-"""The nodes (angles, n, m) of a cube, of type `NODE`."""
+Nodes = NDArray[np.void]  # the nodes (angles, n, m) of a cube, of type `NODE`
 
 FourSlices = tuple[Nodes, Nodes, Nodes, Nodes]
 
 
 class Found(NamedTuple):
-    """Responses to be filled, arrays (points,); fields as in `rocking._solver.bounded_response`.
+    """Responses to be filled, arrays (points,); fields as in `rocking._solver.bounded_response`."""
 
-    Attributes
-    ----------
-    known : bool array
-        Whether the response is determined within the tolerance, or 1/a >= 1; the other fields are 0 elsewhere.
-    """
-
+    # whether the response is determined within the tolerance, or 1/a >= 1; the other fields are 0 elsewhere
     known: NDArray[np.bool_]
     from_cube: NDArray[np.bool_]
     peak_rotation: NDArray[np.float64]
@@ -88,18 +81,10 @@ def prepare(
 ) -> int:
     """Find the points without uplift, and the slices from which points are interpolated; the number of the former.
 
-    Parameters
-    ----------
-    slenderness, restitution : float arrays (points,)
-        Of the points [-].
-    levels : float array (n,)
-        The restitutions of the slices [-], ascending.
-    groups : int64 array (points,), filled
-        2 k for points on slice k, 2 k + 1 for those between it and the next one, -1 outside of the slices.
-    present : bool array (2 n + 1,)
-        Set to True for the groups of the points; the last element if some are outside of the slices.
-    found : Found
-        Responses of the points, all 0.
+    `slenderness`, `restitution` (points,): of the points [-]. `levels` (n,): the restitutions of the slices [-],
+    ascending. `groups` (points,): 2 k for points on slice k, 2 k + 1 for those between it and the next one, -1 outside
+    of the slices. `present` (2 n + 1,): set to True for the groups of the points; the last element if some are outside
+    of the slices. `found`: responses of the points, all 0.
     """
     known = 0
     for k in range(len(restitution)):

@@ -4,8 +4,6 @@ A missing, damaged or unreadable cube never gives a wrong result: the solver com
 `CubeCollection.problems` reports the file. Files that change are read again.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 
@@ -30,18 +28,7 @@ NO_CUBES = "no spectrum cubes; `make reproduce` builds them"
 
 
 class CubeCollection:
-    """The spectrum cubes below a results folder.
-
-    Parameters
-    ----------
-    results : path
-        Folder that the workflow fills; it need not exist yet.
-
-    Attributes
-    ----------
-    catalogue : Catalogue
-        All files of the folder.
-    """
+    """The spectrum cubes below a results folder, which the workflow fills; `catalogue` has all its files."""
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)

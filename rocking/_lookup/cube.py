@@ -72,28 +72,17 @@ class Points:
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
 
-SAFETY = 6.0
-"""Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
-
-MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
-"""Fewest and most points that a thread interpolates at a time."""
+SAFETY = 6.0  # ratio of the error bound to the measured errors [-], which are known at a few points of each cell only
+MIN_CHUNK, MAX_CHUNK = 32_768, 262_144  # fewest and most points that a thread interpolates at a time
 
 Flags = NDArray[np.bool_]
 
 
 class Window(NamedTuple):
-    """The slices from which points are interpolated.
+    """The slices from which points are interpolated."""
 
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        The one at or below the points first, then the others.
-    arguments : tuple
-        What the kernel needs of them.
-    """
-
-    slices: list[CubeSlice]
-    arguments: tuple[Any, ...]
+    slices: list[CubeSlice]  # the one at or below the points first, then the others
+    arguments: tuple[Any, ...]  # what the kernel needs of them
 
     @classmethod
     def of(cls, slices: list[CubeSlice], lower: int) -> Window:

@@ -25,34 +25,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class CubeSlice:
-    """The cube of one restitution.
+    """The cube of one restitution."""
 
-    Attributes
-    ----------
-    pulse : str or SampledPulse
-        Name of the pulse, or the pulse made again from the samples in the file.
-    restitution : float
-        eta of this cube [-].
-    restitutions : float array
-        eta of the cubes from which the interval above this one is interpolated [-], ascending.
-    axes : mapping of str to float array
-        alpha [rad], slenderness [-] and frequency_ratio [-].
-    mesh, angles : Mesh, AngleAxis
-        The same for the kernel.
-    nodes : array (angles, n, m) of `NODE`
-        The variables.
-    sha256 : str
-        Digest of the file, the version of the data.
-    """
-
-    pulse: str | SampledPulse
-    restitution: float
-    restitutions: Array
-    axes: Mapping[str, Array]
+    pulse: str | SampledPulse  # name of the pulse, or the pulse made again from the samples in the file
+    restitution: float  # eta of this cube [-]
+    restitutions: Array  # eta of the cubes from which the interval above this one is interpolated [-], ascending
+    axes: Mapping[str, Array]  # alpha [rad], slenderness [-] and frequency_ratio [-]
+    # mesh, angles: the same for the kernel
     mesh: Mesh
     angles: AngleAxis
-    nodes: Nodes
-    sha256: str
+    nodes: Nodes  # (angles, n, m) the variables
+    sha256: str  # digest of the file, the version of the data
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
@@ -65,24 +48,12 @@ class CubeSlice:
 
 
 def open_slice(path: Path | str) -> CubeSlice:
-    """Read a spectrum cube into memory.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing, damaged, or not a spectrum cube.
-    """
+    """Read a spectrum cube into memory. Raises `DatasetError` if it is missing, damaged, or not a spectrum cube."""
     return decode_slice(read_content(path), path)
 
 
 def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
-    """The same from the bytes of a file; messages name `path`.
-
-    Raises
-    ------
-    DatasetError
-        If the bytes are damaged or not those of a spectrum cube.
-    """
+    """`open_slice` from the bytes of a file; messages name `path`."""
     cube = decode_spectrum(content, path)
     try:
         return slice_of(cube, sha256_of(content))
@@ -91,13 +62,7 @@ def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
 
 
 def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
-    """Pulse and restitution of the bytes of a file from which `decode_slice` makes a cube.
-
-    Raises
-    ------
-    DatasetError
-        As `decode_slice`.
-    """
+    """Pulse and restitution of the bytes of a file from which `decode_slice` makes a cube; raises as it."""
     cube = decode_spectrum(content, path)
     try:
         Mesh.of(cube["slenderness"].values, cube["frequency_ratio"].values)
@@ -108,12 +73,8 @@ def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
 
 
 def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
-    """A spectrum cube in memory; `sha256` is the digest of its file, if it has one.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an axis has fewer than four nodes, or the samples of the pulse are none.
+    """A spectrum cube in memory, of at least four nodes along each axis; `sha256` is the digest of its file, if it has
+    one.
     """
     restitution = restitution_of(cube)
     axes = {name: cube[name].values for name in AXES}
@@ -163,13 +124,7 @@ def restitution_of(cube: xr.Dataset) -> float:
 
 
 def fetch_slice(address: str) -> CubeSlice:
-    """The same from an http or https address.
-
-    Raises
-    ------
-    DatasetError
-        As `open_slice`; also if the address cannot be fetched.
-    """
+    """`open_slice` from an http or https address."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.nc"
         try:

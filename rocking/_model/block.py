@@ -1,7 +1,5 @@
 """The rigid rectangular block: a body with equal edges, and its equation of motion (section 2 of the paper)."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from dataclasses import dataclass, fields
@@ -18,8 +16,7 @@ from rocking._model.body import AbstractBody, Array, Edge
 from rocking._model.checks import check_lengths
 from rocking._model.reactions import INERTIA_RATIO
 
-Number = Any
-"""A float; of an array of blocks an array of them."""
+Number = Any  # a float; of an array of blocks an array of them
 
 
 @dataclass(frozen=True, init=False, eq=False)

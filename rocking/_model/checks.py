@@ -1,7 +1,5 @@
 """Checks of the parameters against their declared ranges."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -25,17 +23,8 @@ def check_lengths(
 ) -> tuple[dict[str, Array], dict[str, Any], Index | None]:
     """What bodies are made from: arrays by name, those of them that are labelled, and the index of a series.
 
-    Parameters
-    ----------
-    arguments : mapping
-        Numbers, texts, quantities or arrays, also labelled ones, by name; None is left out.
-    others : mapping
-        Open ranges and units of those that are no lengths > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, or they do not broadcast.
+    `arguments`: numbers, texts, quantities or arrays, also labelled ones, by name; None is left out. `others`: open
+    ranges and units of those that are no lengths > 0.
     """
     ranges = {name: others.get(name, (0.0, math.inf, "m")) for name in arguments}
     given = {name: in_unit(name, value, ranges[name][2]) for name, value in arguments.items() if value is not None}
@@ -53,21 +42,9 @@ def check_lengths(
 def check_window(
     parameter: Quantity, low: Scalar, high: Scalar, names: tuple[str, str] | None = None
 ) -> tuple[float, float]:
-    """The ends of a window of a parameter, low < high.
+    """The ends of a window of a parameter, low < high, in its range.
 
-    Parameters
-    ----------
-    parameter : Quantity
-        The declaration.
-    low, high : float
-        The ends.
-    names : (str, str), optional
-        Names for the error message; by default that of the parameter with the endings `_min` and `_max`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an end is outside the range, or `high` is not above `low`.
+    `names` are those of the error message; by default that of the parameter with the endings `_min` and `_max`.
     """
     first, last = names or (f"{parameter.name}_min", f"{parameter.name}_max")
     lower = parameter.number(low, first)
@@ -106,10 +83,8 @@ def check_one_alpha(alpha: ArrayLike | WithUnit | None) -> float:
 def known_restitution(restitution: Any, alpha: Any) -> Any:
     """The restitution as it is; for "momentum" (2.4) of the angles [rad], 0 where that is negative.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For "momentum" without an angle, or with an angle of 0, the slender limit, in which (2.4) loses no energy.
+    Raises `InvalidArgumentError` for "momentum" without an angle, or with an angle of 0, the slender limit, in which
+    (2.4) loses no energy.
     """
     if not (isinstance(restitution, str) and restitution == "momentum"):
         return restitution
@@ -120,13 +95,7 @@ def known_restitution(restitution: Any, alpha: Any) -> Any:
 
 
 def check_groups(**given: Any) -> dict[str, Array]:
-    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays.
-
-    They keep their shapes; alpha = None is 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays
+    of their shapes; alpha = None is 0.
     """
     return {name: check_alpha(one) if name == "alpha" else _GROUPS[name].convert(one) for name, one in given.items()}

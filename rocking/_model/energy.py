@@ -1,7 +1,5 @@
 """Energy of a block at the end of the pulse, and its margin over that with which the block overturns."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -43,21 +41,10 @@ def residual_energy(
 def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     """Excess of the energy at the end of the pulse, or after the next impact, over that of the barrier [-].
 
-    Parameters
-    ----------
-    z, w : float arrays
-        |theta|/alpha and its rate with respect to tau at the end of the pulse [-].
-    eta : float array
-        Restitution [-], [0, 1].
-    alpha : float array
-        Slenderness angle [rad], 0: slender.
-
-    Returns
-    -------
-    float array
-        Positive where the block overturns: the larger of (w - X)/X(0), see `rocking._solver.free_rocking`, and
-        of the energy after the next impact, relative to that of the barrier, minus 1, (3.16). It is continuous and
-        zero at the transition.
+    `z`, `w`: |theta|/alpha and its rate with respect to tau at the end of the pulse [-]; `alpha`: slenderness angle
+    [rad], 0: slender. Positive where the block overturns: the larger of (w - X)/X(0), see
+    `rocking._solver.free_rocking`, and of the energy after the next impact, relative to that of the barrier, minus 1,
+    (3.16). It is continuous and zero at the transition.
     """
     half = np.where(alpha > 0.0, 0.5 * alpha, 1.0)
     barrier = np.where(alpha > 0.0, np.sin(half) / half, 1.0)

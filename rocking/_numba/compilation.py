@@ -7,8 +7,6 @@ There are two ways, which no kernel can tell apart (`rocking._numba.way`): the f
 time by private names of numba (`rocking._numba.internals`), the plain one by its public interface alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -20,17 +18,13 @@ from numpy.typing import NDArray
 from rocking._numba.kernel_cache import keep_on_disk
 from rocking._numba.way import INTERNALS
 
-Record = Any
-"""A numpy record of named numbers and short arrays, passed to a kernel by address."""
+Record = Any  # a numpy record of named numbers and short arrays, passed to a kernel by address
 
 Fields = list[tuple[str, type] | tuple[str, type, tuple[int, ...]]]
 """Names, types and shapes of consecutive fields of a record."""
 
-FloatArray = NDArray[np.float64]
-"""A float64 array; the kernels' docstrings give shapes."""
-
-SimdVector = Any
-"""One number for each SIMD lane, see `rocking._numba.simd`."""
+FloatArray = NDArray[np.float64]  # a float64 array; the kernels' docstrings give shapes
+SimdVector = Any  # one number for each SIMD lane, see `rocking._numba.simd`
 
 Series = NDArray[np.float64]
 """Coefficients of power series in tau, one column for each SIMD lane: shape (degree + 1, LANES)."""

@@ -1,7 +1,5 @@
 """Prefetching, for kernels that write large tables."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]

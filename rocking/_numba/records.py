@@ -1,7 +1,5 @@
 """Assignment of all fields of records at once: kernels do not list the fields, which are declared elsewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

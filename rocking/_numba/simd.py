@@ -4,8 +4,6 @@ Kernels write expressions such as `load(series, n) * x + y` as for one cell; com
 combine. numba has no such type, and automatic vectorisation does not recognise the series of a Taylor step.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable
 from typing import Any
@@ -116,8 +114,8 @@ def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any
 
 
 def _square_root(builder: Any, x: Any) -> Any:
-    kind = ir.FunctionType(_LLVM_VECTOR, [_LLVM_VECTOR])
-    return builder.call(builder.module.declare_intrinsic(f"llvm.sqrt.v{LANES}f64", fnty=kind), [x])
+    name = "llvm.sqrt.f64" if x.type == ir.DoubleType() else f"llvm.sqrt.v{LANES}f64"
+    return builder.call(builder.module.declare_intrinsic(name, fnty=ir.FunctionType(x.type, [x.type])), [x])
 
 
 def transpose(builder: Any, rows: list[Any]) -> list[Any]:
@@ -170,20 +168,26 @@ def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
 
 
 def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
-    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address."""
+    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address.
+
+    `select`, `maximum`, `minimum` and `square_root` take numbers, too, in place of all vectors and masks: rules that
+    hold for one cell and for `LANES` are stated once by them.
+    """
 
     def typed(*given: Any) -> Any:
         kinds = [kind or one for kind, one in zip(parameters, given, strict=True)]
-
-        def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            operands = [
-                context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
-                for kind, value in zip(signature.args, values, strict=True)
-            ]
-            made = generate(builder, *operands)
-            return context.get_dummy_value() if result is types.void else made
-
+        if all(isinstance(one, types.Number | types.Boolean) for one in given) and _VECTOR_TYPE in kinds:
+            kinds = [types.boolean if kind == _MASK_TYPE else types.float64 for kind in kinds]
+            return types.float64(*kinds), lower
         return result(*kinds), lower
+
+    def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        operands = [
+            context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
+            for kind, value in zip(signature.args, values, strict=True)
+        ]
+        made = generate(builder, *operands)
+        return context.get_dummy_value() if result is types.void else made
 
     # numba inspects the number of parameters
     forms: dict[int, Callable[..., Any]] = {
@@ -211,11 +215,8 @@ store = instruction(
 )
 """store(array, row, x): set a row."""
 
-splat = instruction(_splat, _VECTOR_TYPE, types.float64)
-"""splat(number): the number in every lane."""
-
-absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
-"""absolute(x), lane by lane."""
+splat = instruction(_splat, _VECTOR_TYPE, types.float64)  # splat(number): the number in every lane
+absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)  # absolute(x), lane by lane
 
 maximum = instruction(
     lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
@@ -240,11 +241,8 @@ approx_exp2 = instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
-square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)
-"""square_root(x), lane by lane, correctly rounded."""
-
-power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)
-"""2**x of integers x from -1022 to 1023."""
+square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)  # square_root(x), lane by lane, correctly rounded
+power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)  # 2**x of integers x from -1022 to 1023
 
 sine_of_quadrant = instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
 """sine_of_quadrant(n, s, c): sin(r + n pi/2) of integers n from s = sin(r) and c = cos(r)."""

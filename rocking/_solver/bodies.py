@@ -1,7 +1,5 @@
 """Responses of bodies with two edges under any motion, and how far they are from another outcome."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -23,16 +21,10 @@ Array = NDArray[np.float64]
 def solve_motion(
     motion: AbstractPulse | Record, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None
 ) -> tuple[NDArray[np.void], Array]:
-    """Response records (size,) of bodies, and what differs from edge to edge, float array (size, EDGE_COLUMNS).
+    """Response records (size,) of bodies `BODY_CELL` (size,), and what differs from edge to edge, (size, EDGE_COLUMNS).
 
-    Parameters
-    ----------
-    motion : AbstractPulse or Record
-        The ground motion.
-    cells : array (size,) of `BODY_CELL`
-        The bodies. `rate` is the frequency ratio under a pulse, and p times the time step under a record.
-    threads, stop
-        As for `rocking._solver.peak_response.solve_cells`, which raises the same errors.
+    `rate` of a cell is the frequency ratio under a pulse, and p times the time step under a record. Errors are those of
+    `rocking._solver.peak_response.solve_cells`.
     """
     if isinstance(motion, Record):
         return solve_bodies(motion_samples(motion), cells, threads, stop, each_side=True)

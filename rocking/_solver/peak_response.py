@@ -43,8 +43,7 @@ if TYPE_CHECKING:
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
 
-MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768
-"""The same for cells that are solved by exact arcs, in a tenth of the time."""
+MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768  # the same for cells that are solved by exact arcs, in a tenth of the time
 
 TRUNCATION_FRACTION = 1e-4
 """Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
@@ -53,11 +52,8 @@ NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
 
 
-NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))
-"""For blocks with equal edges."""
-
-NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)
-"""Where only responses are wanted."""
+NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges
+NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)  # where only responses are wanted
 
 
 class SolverState(threading.local):
@@ -226,18 +222,9 @@ def solve_cells(
 ) -> NDArray[np.void]:
     """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
 
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    cells : list of three or four float arrays (size,)
-        1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each as
-        `contiguous_array` gives it.
-    precision : float
-        Relative truncation error of a Taylor step [-].
-    threads : int or None
-        Number of threads, None: all cores.
-    stop : StopFlag or None
-        Cancels the work, which then raises `StoppedError`.
+    `cells` (size,): 1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each
+    as `contiguous_array` gives it. `precision`: relative truncation error of a Taylor step [-]. `threads`: number of
+    threads, None: all cores.
     """
     if pulse.samples is not None:
         return solve_pulse(pulse, cells, threads, stop)

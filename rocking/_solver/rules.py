@@ -24,23 +24,20 @@ w = 0.1. X = 1 - z = 0.6 exceeds w, so that the block does not escape; it rises 
 each further flight is lower: it survives.
 """
 
-from __future__ import annotations
-
 import math
+from typing import Any
 
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking._numba.records import copy_fields
+from rocking._numba.simd import maximum, square_root
 from rocking._solver.free_rocking import barrier_of, highest_rotation, release
 from rocking._solver.state import set_empty_response
 
 IMPACT_LIMIT = 200_000
 """Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
 
-MODES_PER_UPLIFT = 65536
-"""Number of peak modes reserved for the motion between two uplifts from rest."""
-
-MAX_UPLIFT_MODE = 32_767
-"""Largest number of uplifts that the mode of a peak counts: it is an int32."""
+MODES_PER_UPLIFT = 65536  # number of peak modes reserved for the motion between two uplifts from rest
+MAX_UPLIFT_MODE = 32_767  # largest number of uplifts that the mode of a peak counts: it is an int32
 
 NO_UPLIFT, RECOVERS, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
@@ -101,6 +98,12 @@ def known_rotation(state: Record) -> float:
 
 
 @kernel
+def peak_mode(uplifts: Any, impacts: Any, impacts_before: Any, free: Any) -> Any:
+    """Mode of a peak, a number or a SIMD vector: uplifts, impacts since the last of them, whether in free rocking."""
+    return MODES_PER_UPLIFT * (uplifts - 1) + 2 * (impacts - impacts_before) + free
+
+
+@kernel
 def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> None:
     """Update the largest peak. Of two peaks that differ by rounding the mode of the earlier one is kept.
 
@@ -111,7 +114,7 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
     peak = z / state.ratio[side]
     if peak > state.peak_rotation * (1.0 + 1e-12):
         uplifts = min(state.uplifts, MAX_UPLIFT_MODE)
-        state.peak_mode = MODES_PER_UPLIFT * (uplifts - 1) + 2 * (impacts - state.impacts_before_uplift) + free
+        state.peak_mode = peak_mode(uplifts, impacts, state.impacts_before_uplift, free)
     state.peak_rotation = max(state.peak_rotation, peak)
     state.side_peak[side] = z
 
@@ -227,12 +230,20 @@ def impacts_accumulate(
     known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
     if softening > 0.5 * weakest or height > known:
         return False
-    spread = max(
-        (right_pull * right[1] + softening) / (right_pull * right[0] - softening),
-        (left_pull * left[1] + softening) / (left_pull * left[0] - softening),
-    )
-    ratio = max(state.eta[0], state.eta[1]) * math.sqrt(spread)
-    return bool(ratio < 1.0 and 2.0 * w <= window * (weakest - softening) * (1.0 - ratio))
+    right, left = (right_pull * right[0], right_pull * right[1]), (left_pull * left[0], left_pull * left[1])
+    return bool(series_fits(w, window, max(state.eta[0], state.eta[1]), weakest, softening, right, left))
+
+
+@kernel
+def series_fits(w: Any, window: Any, eta: Any, weakest: Any, softening: Any, right: Any, left: Any) -> Any:
+    """Whether the series of `impacts_accumulate` ends within a window, a number or a SIMD vector each.
+
+    `right`, `left`: smallest and largest -z'' at z = 0 on both edges, `weakest` the smallest of both; `softening`:
+    largest change of -z'' during a flight.
+    """
+    spread = maximum((right[1] + softening) / (right[0] - softening), (left[1] + softening) / (left[0] - softening))
+    ratio = eta * square_root(spread)
+    return (ratio < 1.0) & (2.0 * w <= window * (weakest - softening) * (1.0 - ratio))
 
 
 @kernel

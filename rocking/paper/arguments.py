@@ -1,7 +1,5 @@
 """Arguments of the closed forms: ranges, and checks that they broadcast."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -39,17 +37,9 @@ _RANGES = {parameter.name: parameter for parameter in (AMPLITUDE, ANY_FREQUENCY_
 def checked(**given: ArrayLike) -> list[Array]:
     """The arguments as float64 arrays of their broadcast shape.
 
-    Parameters
-    ----------
-    **given : array_like
-        `amplitude`, `frequency_ratio` and `restitution` are checked against their ranges; others, such as times and
-        velocities, may have any value, nan included.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, the shapes do not broadcast, or labelled arguments (xarray, pandas) differ in their
-        dimensions or indexes.
+    `amplitude`, `frequency_ratio` and `restitution` are checked against their ranges; others, such as times and
+    velocities, may have any value, nan included. Labelled arguments (xarray, pandas) have to agree in dimensions and
+    indexes.
     """
     arrays = [
         _RANGES[name].convert(value) if name in _RANGES else float_array(name, value) for name, value in given.items()

@@ -25,11 +25,8 @@ from rocking.paper.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
 _SAMPLES = 48
 """Points per radian of the pulse at which a change of sign of theta is looked for [-]: no two impacts are closer."""
 
-MAX_IMPACTS = 1000
-"""Most impacts that are followed [-]."""
-
-_AMPLITUDES = 401
-"""Amplitudes at which overturning is looked for first [-]."""
+MAX_IMPACTS = 1000  # most impacts that are followed [-]
+_AMPLITUDES = 401  # amplitudes at which overturning is looked for first [-]
 
 
 class Impact(NamedTuple):

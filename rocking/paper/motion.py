@@ -13,8 +13,6 @@ a = 1 the first impact follows shortly after uplift, where (3.4) as printed lose
 there.
 """
 
-from __future__ import annotations
-
 from math import factorial
 from typing import NamedTuple
 
@@ -40,10 +38,7 @@ def cot_psi(a: Array) -> Array:
 def uplift_phase(amplitude: ArrayLike) -> Array:
     """Phase psi of the sine at uplift, (3.3).
 
-    Returns
-    -------
-    ndarray
-        psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
+    psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
     """
     a = AMPLITUDE.convert(amplitude)
     # accurate near a = 1, where arcsin(1/a) loses half the digits
@@ -93,10 +88,7 @@ def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
 def d0_star(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """D0* by the product in the first line of (3.9); -inf where e^{p T_ex} exceeds the double range.
 
-    Returns
-    -------
-    ndarray
-        D0* [-]; the velocity at the first impact is sqrt(1 - D0*), (3.15).
+    D0* [-]; the velocity at the first impact is sqrt(1 - D0*), (3.15).
     """
     decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     with np.errstate(over="ignore"):

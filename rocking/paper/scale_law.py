@@ -3,8 +3,6 @@
 The functions work on peaks that the solver or a closed form computed along an axis of restitutions.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fragility of arrays of bodies: labelled by their dimensions, and lazy where they are backed by dask."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
@@ -37,19 +35,9 @@ OWN_DIMENSIONS = ("intensity", "record", "demand", "model")
 def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     """The fragility of each body of an array, over the dimensions of its labelled arguments in place of `block`.
 
-    Parameters
-    ----------
-    analyse : callable
-        Gives the fragility, over `block`, of a sequence of blocks; or of bodies (bodies,) if one of all has two
-        different edges.
-    body : RigidBody
-        Of unlabelled arrays the axes are dim_0, dim_1, ...; the result is lazy, in the
-        chunks of the arguments, where one of them is backed by dask.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a dimension of the body is one of the result.
+    `analyse` gives the fragility, over `block`, of a sequence of blocks; or of bodies (bodies,) if one of all has two
+    different edges. Axes of unlabelled arrays are dim_0, dim_1, ...; the result is lazy, in the chunks of the
+    arguments, where one of them is backed by dask. A dimension of the body must not be one of the result.
     """
     labels, equal = body.labels, has_equal_edges(body)
     plain = {name: value for name, value in body.parameters.items() if name not in labels}

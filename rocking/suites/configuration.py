@@ -4,8 +4,6 @@ A configuration is a mapping, as read from a file; `docs/fragility.md` lists its
 out: `DEFAULTS`, and what the files of the records state, `STATED_BY_FILES`.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Mapping
@@ -47,11 +45,8 @@ STATED_BY_FILES: dict[str, Any] = dict.fromkeys(
 )
 """The same in its section `records`."""
 
-MAX_POINTS = 10_000
-"""Most levels, and most points of one axis of the map."""
-
-MAX_CELLS = 1_000_000
-"""Most points of the map."""
+MAX_POINTS = 10_000  # most levels, and most points of one axis of the map
+MAX_CELLS = 1_000_000  # most points of the map
 
 
 @dataclass(frozen=True)
@@ -68,13 +63,7 @@ class RecordFiles:
     skip: int | None = None
 
     def paths(self) -> list[Path]:
-        """The files, in the order of their names.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If there is none.
-        """
+        """The files, at least one, in the order of their names."""
         found = sorted(path for path in self.folder.glob(self.pattern) if path.is_file()) if self.pattern else []
         if not found:
             raise InvalidArgumentError(
@@ -85,13 +74,7 @@ class RecordFiles:
         return found
 
     def read(self, path: Path) -> Record:
-        """The motion of a file, without its baseline if an order is given; named after the file, without its suffix.
-
-        Raises
-        ------
-        InvalidArgumentError, RecordFileError
-            As `rocking.read_record`.
-        """
+        """The motion of a file, without its baseline if an order is given; named after the file, without its suffix."""
         motion = parse_record(  # read_record would take a file of the name `vertical` in the working directory
             read_content("path", path),
             path.name,
@@ -108,37 +91,19 @@ class RecordFiles:
 
 @dataclass(frozen=True, eq=False)
 class BlockMap(EqualByValue):
-    """Grid of sizes and shapes at one level of intensity.
+    """Grid of sizes and shapes at one level of intensity."""
 
-    Attributes
-    ----------
-    intensity : float
-        The level, in the unit of the measure.
-    half_diagonal : array
-        R [m], ascending.
-    alpha : array
-        Slenderness angles [rad], ascending.
-    """
-
-    intensity: float
-    half_diagonal: Array
-    alpha: Array
+    intensity: float  # the level, in the unit of the measure
+    half_diagonal: Array  # R [m], ascending
+    alpha: Array  # slenderness angles [rad], ascending
 
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity(EqualByValue):
-    """What `rocking.suites.suite_sensitivity` is asked for.
+    """What `rocking.suites.suite_sensitivity` is asked for."""
 
-    Attributes
-    ----------
-    intensity : array
-        Levels, ascending, in the unit of the measure.
-    restitution_step : float
-        Change of the coefficient of restitution [-].
-    """
-
-    intensity: Array
-    restitution_step: float
+    intensity: Array  # levels, ascending, in the unit of the measure
+    restitution_step: float  # change of the coefficient of restitution [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,20 +128,10 @@ class SuiteConfiguration(EqualByValue):
 
 
 def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfiguration:
-    """Check a configuration.
+    """Check a configuration as described above; `records.folder` is relative to `folder`, that of its file.
 
-    Parameters
-    ----------
-    given : mapping
-        As described above.
-    folder : Path
-        Folder of its file, to which `records.folder` is relative.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For the first key that is missing, unknown or has an invalid value; `parameter` is the key, such as
-        `map.alpha_deg`.
+    Raises `InvalidArgumentError` for the first key that is missing, unknown or has an invalid value; `parameter` is the
+    key, such as `map.alpha_deg`.
     """
     given = _with_defaults(given, DEFAULTS)
     _keys("suite", given, SuiteConfiguration.__annotations__)

@@ -1,7 +1,5 @@
 """Files of a fragility for other programs, by the ending of their names."""
 
-from __future__ import annotations
-
 import json
 from os import PathLike
 from pathlib import Path

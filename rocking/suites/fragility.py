@@ -6,8 +6,6 @@ level. The curve of first exceedance, in which a record counts from the lowest l
 state, is given for comparison only: it is the usual result of incremental dynamic analysis, and its median is too low.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -147,18 +145,9 @@ def fragility_of_outcomes(
     confidence: float = 0.95,
     signs: int = 1,
 ) -> xr.Dataset:
-    """Counts, intervals and fitted curves from the outcomes of a suite, as `fragility` describes them.
+    """Counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
 
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.outcomes.suite_outcomes`.
-    demand : sequence
-        Limit states.
-    confidence : float
-        Of all intervals [-], (0, 1).
-    signs : int
-        Columns after each other that belong to one record: 2 with its mirror image.
+    `signs`: columns after each other that belong to one record, 2 with its mirror image.
     """
     limits = check_demands(list(demand))
     levels = outcomes["intensity"].values

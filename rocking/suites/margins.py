@@ -1,7 +1,5 @@
 """The mildest intensity at which each record of a suite overturns each block, found between the levels."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -19,25 +17,12 @@ from rocking.suites.outcomes import Array, Suite
 def with_margins(
     outcomes: xr.Dataset, suite: Suite, *, threads: int | None = None, stop: StopFlag | None = None
 ) -> xr.Dataset:
-    """Outcomes with the mildest intensity at which each record overturns each block.
+    """Outcomes of `suite_outcomes` with `overturning_intensity` (block, record), nan where the block survives all.
 
-    From uplift on, or from the mildest level if the measure is a size of the block, intensities are searched up to the
-    first level at which the block overturns, or to the last one, by `rocking._boundary.scan.lowest_overturning`. A
-    range narrower than its resolution can be missed unless a level lies in it.
-
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.outcomes.suite_outcomes` for this suite.
-    suite : Suite
-        Checked arguments.
-    threads, stop
-        As for `rocking.fragility`.
-
-    Returns
-    -------
-    xarray.Dataset
-        The outcomes, and `overturning_intensity` (block, record) in the unit of the measure, nan where it survives all.
+    The mildest intensity at which each record overturns each block, in the unit of the measure. From uplift on, or from
+    the mildest level if the measure is a size of the block, intensities are searched up to the first level at which the
+    block overturns, or to the last one, by `rocking._boundary.scan.lowest_overturning`. A range narrower than its
+    resolution can be missed unless a level lies in it.
     """
     overturned = outcomes["overturned"].transpose("block", "intensity", "record").values.astype(bool)
     found = np.array(

@@ -8,8 +8,6 @@ m^2/sqrt(m^2 + s^2). For a median x and a dispersion beta therefore m = x exp(be
 Its unit of PGA is g, of PGV cm/s. The readers of openquake.engine 3.26 take both formats.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 import xml.etree.ElementTree as ET

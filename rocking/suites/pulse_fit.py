@@ -35,14 +35,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-COMPARED_ALPHA = 0.2
-"""Slenderness angle of the blocks of the comparison [rad]: five times as high as wide."""
-
-COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)
-"""Their half diagonals R [m]."""
-
-HIGHEST_AMPLITUDE = 1000.0
-"""Largest a = a_g/(g tan alpha) searched for overturning [-]."""
+COMPARED_ALPHA = 0.2  # slenderness angle of the blocks of the comparison [rad]: five times as high as wide
+COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)  # their half diagonals R [m]
+HIGHEST_AMPLITUDE = 1000.0  # largest a = a_g/(g tan alpha) searched for overturning [-]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

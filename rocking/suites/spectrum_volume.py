@@ -1,7 +1,5 @@
 """Volume under the rocking spectrum of a record: one number for its effect on blocks of many sizes and shapes."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """What the outcomes of a suite say of each block: the margin of each record, and quantiles of the peak rotation."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -14,17 +12,9 @@ QUANTILES = (0.16, 0.5, 0.84)
 def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
     """The mildest intensity at which each record overturns each block, and the levels above it that the block survives.
 
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.margins.with_margins`, or the file `outcomes.nc` of the workflow.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over (block, record): `overturning_intensity`, in the unit of the measure, nan where the block survives all;
-        `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-], the number of stronger
-        levels at which the block survives all the same.
+    From a result of `with_margins`, over (block, record): `overturning_intensity`, in the unit of the measure, nan
+    where the block survives all; `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-],
+    the number of stronger levels at which the block survives all the same.
     """
     order = ("block", "record", "intensity")
     survived = ~outcomes["overturned"].transpose(*order).values.astype(bool)

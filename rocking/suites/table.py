@@ -1,7 +1,5 @@
 """Fragility as columns, for CSV, JSON and text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -31,11 +29,8 @@ CURVE_COLUMNS = (
 def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     """One row for each limit state, block and level of a result of `rocking.fragility`.
 
-    Returns
-    -------
-    dict
-        Columns demand, width [m], height [m], intensity (unit of the measure), the counts and fractions with
-        their interval, and the fitted probability of each model, such as `lognormal`.
+    Columns demand, width [m], height [m], intensity (unit of the measure), the counts and fractions with their
+    interval, and the fitted probability of each model, such as `lognormal`.
     """
     found = _with_dimensions(fragility)
     order = ("demand", "block", "intensity")
@@ -48,11 +43,8 @@ def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
 def curve_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     """One row for each limit state, block and model: the fitted curve, its intervals, and the records named.
 
-    Returns
-    -------
-    dict
-        Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if
-        there are annual rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
+    Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if there are annual
+    rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
     """
     found = _with_dimensions(fragility)
     order = ("demand", "block", "model")
@@ -76,11 +68,8 @@ SENSITIVITY_COLUMNS = (
 def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
     """One row for each block and level of a result of `rocking.suites.suite_sensitivity`.
 
-    Returns
-    -------
-    dict
-        Columns width [m], height [m], intensity (unit of the measure), restitution and its smaller and larger
-        value `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
+    Columns width [m], height [m], intensity (unit of the measure), restitution and its smaller and larger value
+    `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
     """
     found = with_block(sensitivity)
     columns = {name: found[name].transpose("block", "intensity").values for name in SENSITIVITY_COLUMNS}

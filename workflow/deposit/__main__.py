@@ -5,8 +5,6 @@ description of DataCite, the licence of the data, a page for readers, and a scri
 package. Equal products give equal bytes of the archive in the same year.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime as dt
 import hashlib
@@ -26,8 +24,7 @@ from workflow.verify import MANIFEST, problems
 
 ROOT = Path(__file__).parents[2]
 TEXTS = Path(__file__).parent
-OLDEST = 1980, 1, 1, 0, 0, 0
-"""Time stamp of all files in the archive, the first that zip knows."""
+OLDEST = 1980, 1, 1, 0, 0, 0  # time stamp of all files in the archive, the first that zip knows
 
 
 def datacite(manifest: dict[str, Any], citation: dict[str, Any], year: int) -> dict[str, Any]:

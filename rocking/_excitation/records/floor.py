@@ -17,17 +17,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-MAX_SAMPLES = 2_000_000
-"""Most samples of a result [-]."""
-
-PERIODS = 1e-3, 100.0
-"""Shortest and longest period of a mode [s]."""
-
-TAIL_PERIODS = 10.0
-"""Time that is appended to the record, over the longest period [-]."""
-
-SERIES_TERMS = 20
-"""Terms of the series of phi_2 where abs(w) <= 1 [-]: the first one left out is below 1e-21."""
+MAX_SAMPLES = 2_000_000  # most samples of a result [-]
+PERIODS = 1e-3, 100.0  # shortest and longest period of a mode [s]
+TAIL_PERIODS = 10.0  # time that is appended to the record, over the longest period [-]
+SERIES_TERMS = 20  # terms of the series of phi_2 where abs(w) <= 1 [-]: the first one left out is below 1e-21
 
 
 def floor_motion(

@@ -1,7 +1,5 @@
 """Processing of a record, each step on request only: baseline correction, band-limited resampling."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 
@@ -13,20 +11,14 @@ from rocking._base.units import Scalar
 
 Array = NDArray[np.float64]
 
-MAX_BASELINE_ORDER = 6
-"""Largest degree of a baseline [-]: higher ones follow the motion itself."""
-
-MAX_RATIO = 1000
-"""Largest numerator and denominator of the ratio of two time steps [-]."""
-
-MAX_SAMPLES = 10_000_000
-"""Most samples of a resampled record [-], as of one that is read."""
+MAX_BASELINE_ORDER = 6  # largest degree of a baseline [-]: higher ones follow the motion itself
+MAX_RATIO = 1000  # largest numerator and denominator of the ratio of two time steps [-]
+MAX_SAMPLES = 10_000_000  # most samples of a resampled record [-], as of one that is read
 
 RATIO_TOLERANCE = 1e-9
 """Relative difference of a ratio of time steps from a fraction [-]: steps are often given in a few digits."""
 
-ZEROS = 10
-"""Zeros of the interpolation filter on either side [-]."""
+ZEROS = 10  # zeros of the interpolation filter on either side [-]
 
 STOP_BAND = 8.0
 """Parameter of the Kaiser window of the interpolation filter [-]: about 80 dB of attenuation in the stop band."""
@@ -85,11 +77,8 @@ def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
 def resample(a: Array, dt: float, time_step: Scalar) -> Array:
     """The samples of the band-limited signal at the step `time_step`, zero outside of the record.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If the ratio of the steps is not a fraction of integers up to `MAX_RATIO`, or the samples would be fewer than 2
-        or more than `MAX_SAMPLES`.
+    Raises `InvalidArgumentError` if the ratio of the steps is not a fraction of integers up to `MAX_RATIO`, or the
+    samples would be fewer than 2 or more than `MAX_SAMPLES`.
     """
     step = positive("time_step", time_step, "s")
     ratio = Fraction(dt / step).limit_denominator(MAX_RATIO)

@@ -4,8 +4,6 @@ A SIMD lane takes the next cell as soon as its cell is finished. Consecutive cel
 first flight, which is computed once. Slender blocks are solved in `rocking._solver.stages` where they have exact arcs.
 """
 
-from __future__ import annotations
-
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, kernel, light_entry

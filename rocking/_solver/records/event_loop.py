@@ -5,8 +5,6 @@ The motion is linear between its samples and zero after the last. The restoring 
 expression, so that it has one value wherever it is used.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
@@ -31,8 +29,7 @@ from rocking._solver.rules import (
     set_sign,
 )
 
-ROUNDING = 1e-15
-"""Share of a sample interval in which a flight is within rounding [-]."""
+ROUNDING = 1e-15  # share of a sample interval in which a flight is within rounding [-]
 
 
 @kernel

@@ -1,7 +1,5 @@
 """`record_response`: responses of blocks under a recorded ground motion."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -82,10 +80,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
     The factor of the vertical component is 0 for a record without one.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If `motion` is not a record, or a value is out of range.
+    Raises `InvalidArgumentError` if `motion` is not a record, or a value is out of range.
     """
     p, vertical = given.pop("frequency_parameter"), given.pop("vertical_scale")
     return {
@@ -98,10 +93,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
     """Smallest and largest frequency parameter p of a block under this record [rad/s].
 
-    Raises
-    ------
-    InvalidArgumentError
-        If `motion` is not a record.
+    Raises `InvalidArgumentError` if `motion` is not a record.
     """
     if not isinstance(motion, Record):
         raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
@@ -113,12 +105,8 @@ def solve_pulse(
 ) -> NDArray[np.void]:
     """Response records (size,) of blocks under a sampled pulse; `cells` as for `solve_cells` of `peak_response`.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If the frequency ratio is so low that the samples had to be divided into more than `MAX_DIVIDED` intervals.
-    StoppedError
-        If `stop` was set.
+    Raises `InvalidArgumentError` if the frequency ratio is so low that the samples had to be divided into more than
+    `MAX_DIVIDED` intervals. Raises `StoppedError` if `stop` was set.
     """
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
@@ -153,10 +141,7 @@ def pulse_rows(pulse: AbstractPulse, frequency_ratio: float) -> Array:
 def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.int64]:
     """Parts of each sample interval, at most `MAX_INTERVAL` long, at each frequency ratio: powers of two, or the most.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If that takes more than `MAX_DIVIDED` intervals.
+    Raises `InvalidArgumentError` if that takes more than `MAX_DIVIDED` intervals.
     """
     phases = pulse_samples(pulse)[TIME]
     longest, most = float(np.diff(phases).max()), max(1, MAX_DIVIDED // phases.size)
@@ -178,19 +163,10 @@ def solve_bodies(
     stop: StopFlag | None,
     each_side: bool = False,
 ) -> tuple[NDArray[np.void], Array]:
-    """Response records (size,) of bodies under samples, and what differs from edge to edge.
+    """Response records (size,) of bodies `BODY_CELL` (size,) under `sample_rows`, and what differs from edge to edge.
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `sample_rows`.
-    cells : array (size,) of `BODY_CELL`
-        The bodies.
-    threads, stop
-        As for `rocking._solver.peak_response.solve_cells`, which raises the same errors.
-    each_side : bool
-        Whether the peaks of each edge are wanted, as they must be where the edges differ: float array
-        (size, EDGE_COLUMNS); else the second result has no rows.
+    `each_side`: whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size,
+    EDGE_COLUMNS); else the second result has no rows. Errors are those of `rocking._solver.peak_response.solve_cells`.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))

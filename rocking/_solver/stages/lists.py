@@ -1,27 +1,13 @@
 """Lists of the cells that wait for a flight, by their places in the block, and the vectors of their first flights."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking._numba.simd import LANES, any_lane, gather, lane_bits, load_elements, select, splat, store
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.cuts import first_uplifts, uplift_piece
-from rocking._solver.stages.state import (
-    AT_UPLIFT,
-    BLOCK_SIZE,
-    BUCKETS,
-    ETA,
-    FIRST_IMPACT_TIME,
-    FIRST_IMPACT_VELOCITY,
-    MODE,
-    OMEGA,
-    PHASE,
-    PIECE,
-    SLENDERNESS,
-    UPLIFTS,
-)
+from rocking._solver.stages.state import BLOCK_SIZE, BUCKETS
 from rocking._solver.state import set_empty_response
 
 FIRST_LISTS, LONG_LISTS, SHORT_LISTS, GENERAL_LIST = 0, 2, 4, 6
@@ -164,17 +150,17 @@ def take_resting_cells(
     """Take the last cells from a list of first flights into the group; unused lanes get one of them."""
     columns = group.columns
     take_places(which, group, cells)
-    for column in range(LANES):
-        store(columns, column, splat(0.0))
+    for k in range(LANES):
+        store(columns, k, splat(0.0))
     s = gather(slenderness, group.source)
     piece, _ = first_uplifts(pulse, s)
-    store(columns, SLENDERNESS, s)
-    store(columns, OMEGA, gather(omega, group.source))
-    store(columns, ETA, gather(eta, group.source))
-    store(columns, PIECE, piece)
-    store(columns, AT_UPLIFT, select(piece >= 0.0, splat(1.0), splat(0.0)))
-    store(columns, PHASE, splat(pulse.end_phase[0]))
-    store(columns, MODE, splat(-1.0))
-    store(columns, UPLIFTS, splat(1.0))
-    store(columns, FIRST_IMPACT_TIME, splat(math.nan))
-    store(columns, FIRST_IMPACT_VELOCITY, splat(math.nan))
+    store(columns, column.SLENDERNESS, s)
+    store(columns, column.OMEGA, gather(omega, group.source))
+    store(columns, column.ETA, gather(eta, group.source))
+    store(columns, column.PIECE, piece)
+    store(columns, column.AT_UPLIFT, select(piece >= 0.0, splat(1.0), splat(0.0)))
+    store(columns, column.PHASE, splat(pulse.end_phase[0]))
+    store(columns, column.MODE, splat(-1.0))
+    store(columns, column.UPLIFTS, splat(1.0))
+    store(columns, column.FIRST_TIME, splat(math.nan))
+    store(columns, column.FIRST_VELOCITY, splat(math.nan))

@@ -1,7 +1,5 @@
 """State of the stages: a record of `LANES` cells, and one row of numbers for each cell that waits for a stage."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -17,26 +15,10 @@ from rocking._solver.state import RESPONSE_RECORD, aligned_record
 BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
 
-BUCKETS = 256
-"""Classes of slenderness, in whose order the cells of a block are followed."""
+BUCKETS = 256  # classes of slenderness, in whose order the cells of a block are followed
+LIST_COUNT = 7  # lists of cells, see `rocking._solver.stages.lists`
 
-LIST_COUNT = 7
-"""Lists of cells, see `rocking._solver.stages.lists`."""
-
-# columns of the row of a cell, of which there are LANES: the cell and its next flight,
-SLENDERNESS, OMEGA, ETA = 0, 1, 2  # 1/a, omega, eta
-PHASE, W0 = 3, 4  # phase and velocity w at the start of the flight
-AT_UPLIFT = 5  # 1 if it starts with an uplift through |a f| = 1, else 0
-PEAK, MODE = 6, 7  # largest z so far, its mode
-
-# and the response so far
-IMPACTS, UPLIFTS, IMPACTS_BEFORE = 8, 9, 10  # impacts, uplifts from rest, impacts before the last of them
-UPLIFT_TIME, FIRST_IMPACT_TIME, FIRST_IMPACT_VELOCITY = 11, 12, 13
-PIECE = 14  # piece of the pulse that holds the uplift at which the flight starts, or -1 if `PHASE` is set
-CHATTER = 15  # whether impacts have accumulated to rest
-
-FAR = 1.0
-"""Time [tau] given to cells that are not concerned: it is outside the series at the start of every flight."""
+FAR = 1.0  # time [tau] given to cells that are not concerned: it is outside the series at the start of every flight
 
 FINISHED, LONG, SHORT, REPEATED, REST, UNDECIDED = 0, 1, 2, 3, 4, 5
 """What follows for a cell: nothing, a long or a short flight with the opposite sign of rotation, a long one with the
@@ -150,18 +132,10 @@ CELLS_STATE = np.dtype(
 
 
 class StageState(NamedTuple):
-    """State of the stages of one thread.
+    """State of the stages of one thread."""
 
-    Attributes
-    ----------
-    group : record `GROUP_STATE`
-        The cells in work.
-    cells : record `CELLS_STATE`
-        All cells of a block.
-    """
-
-    group: Record
-    cells: Record
+    group: Record  # the cells in work
+    cells: Record  # all cells of a block
 
 
 def stage_state() -> StageState:
