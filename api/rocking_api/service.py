@@ -15,12 +15,10 @@ from rocking._lookup.collection import CubeCollection
 from rocking._numba.cancellation import StopFlag
 from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.dataset_summaries import DatasetSummaries
-from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
-from rocking_api.http.body import limited_body
+from rocking_api.http.body import MemoryBudget, Reservation, limited_body
 from rocking_api.http.encoding import Form
-from rocking_api.http.memory_budget import MemoryBudget
 from rocking_api.http.parameters import check_json, query_parameters, read_json, read_query
 from rocking_api.metrics import Metrics
 from rocking_api.models.params import Params
@@ -47,7 +45,7 @@ class Service:
     settings: Settings
     cubes: CubeCollection
     zarr_stores: ZarrStores
-    batcher: MicroBatcher = field(init=False)
+    single: BoundedExecutor = field(init=False)
     kernels: Kernels = field(init=False)
     executor: BoundedExecutor = field(init=False)
     metrics: Metrics = field(init=False)
@@ -62,8 +60,7 @@ class Service:
     def __post_init__(self) -> None:
         settings = self.settings
         # a separate thread: requests for one block do not wait for heavy work
-        single = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
-        self.batcher = MicroBatcher(self.cubes, single)
+        self.single = BoundedExecutor(1, settings.max_connections, settings.max_seconds)
         self.kernels = Kernels(settings.max_seconds)
         self.metrics = Metrics()
         self.executor = BoundedExecutor(
@@ -86,13 +83,20 @@ class Service:
         """
         params.check()
         await self.kernels.wait()
-        return await self.executor.run(work, request, request.state.reservation.held)
+        return await self.executor.run(work, request, self.reservation(request).held)
 
     async def read_body(self, request: Request, limit: int, hint: str = "") -> bytes:
         """The body of a request, of at most `limit` bytes, see `limited_body`; `hint` is for larger ones."""
         allowed = limit, f"at most {limit} bytes{hint}"
-        reservation = request.state.reservation
+        reservation = self.reservation(request)
         return await limited_body(request, allowed, self.settings.arrival_seconds, reservation, self.turns)
+
+    def reservation(self, request: Request) -> Reservation:
+        """The memory that is held for a request until its end."""
+        if not hasattr(request.state, "reservation"):
+            request.state.reservation = Reservation(self.memory_budget)
+        found: Reservation = request.state.reservation
+        return found
 
     async def read(
         self, request: Request, kind: type[P], form: Form, body: type[B], limit: int, hint: str = ""
@@ -129,7 +133,7 @@ class Service:
 
         Those that a process of its own reads, `in_process`, follow after them; see `BoundedExecutor.run`.
         """
-        held = request.state.reservation.held
+        held = self.reservation(request).held
         if large or in_process or held > LARGE_BODY:
             return await self.parser.run(work, request, held, is_long=in_process)
         return await self.run_io(lambda: work(StopFlag()))

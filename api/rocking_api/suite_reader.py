@@ -78,11 +78,16 @@ class SuiteReader:
         self._outcomes = VersionCache[str, list[dict[str, Any]] | DatasetError]()
         self._sensitivity = VersionCache[str, list[list[Sensitivity]] | DatasetError]()
 
-    def summaries(self) -> list[SuiteSummary]:
-        """All suites that can be read; damaged ones are reported by /health."""
+    def names(self) -> list[str]:
+        """Names of all suites, ascending."""
+        found = self._catalogue.names()
+        return sorted(one.removeprefix(_FOLDER).removesuffix(_FILE) for one in found if _is_fragility(one))
+
+    def summaries(self, names: list[str]) -> list[SuiteSummary]:
+        """Those of some suites that can be read; damaged ones are reported by /health."""
         datasets = self._catalogue.names()
         found = []
-        for name in (one.removeprefix(_FOLDER).removesuffix(_FILE) for one in datasets if _is_fragility(one)):
+        for name in names:
             with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or damaged
                 found.append(self._summary(name, datasets))
         return found

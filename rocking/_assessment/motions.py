@@ -17,7 +17,6 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, first_excess
@@ -42,7 +41,7 @@ def bodies_of(given: Sequence[tuple[Object, str]]) -> BodyArray:
 def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     """The motion of an object under a motion of a site, from the side from which it rotates more."""
     sides = [
-        RigidBody(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
+        side.rigid.changed(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
         for side in bodies_of([(one, direction)]).sides
     ]
     peak: dict[str, Any] = {"peak_acceleration": motion.peak_acceleration, "period": motion.period}

@@ -240,9 +240,9 @@ class Object:
         """The body in each plane, over the dimension `direction`."""
         import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 
-        given = Bodies.of([self]).scaled().rigid.parameters
-        names = {"direction": list(self.planes)}
-        return RigidBody(
+        rigid, names = Bodies.of([self]).scaled().rigid, {"direction": list(self.planes)}
+        given = rigid.parameters
+        return rigid.changed(
             **{key: xr.DataArray(value, names, "direction") if value.ndim else value for key, value in given.items()}
         )
 
@@ -388,8 +388,10 @@ def plane_of(body: RespondingBody) -> Plane:
     """A rigid body as a plane of an object."""
     if body.shape or not isinstance(body, RigidBody | RectangularBlock):
         raise InvalidArgumentError("body", body.description, "one rigid body, such as rocking.RigidBody")
-    if float(body.tilt) or float(body.gravity) != STANDARD_GRAVITY:
-        raise InvalidArgumentError("body", body.description, "on level ground under standard gravity")
+    one_sided = getattr(body, "sides", "both") != "both"
+    if one_sided or float(body.tilt) or float(body.gravity) != STANDARD_GRAVITY:
+        allowed = "on level ground under standard gravity, without a wall at its side"
+        raise InvalidArgumentError("body", body.description, allowed)
     if isinstance(body, RectangularBlock):
         return Plane.of(
             PolygonProperties(
@@ -474,11 +476,11 @@ class BodyArray(AbstractBody):
         given = self.rigid.parameters
         if np.array_equal(given["left"], given["right"]):
             return [self]
-        mirrored = RigidBody(**{**given, "left": given["right"], "right": given["left"]})
+        mirrored = self.rigid.changed(**{**given, "left": given["right"], "right": given["left"]})
         return [self, BodyArray(mirrored, self.own, self.change)]
 
     @property
     def column(self) -> BodyArray:
         """The bodies along the first of two axes."""
         given = {name: value[..., None] if value.ndim else value for name, value in self.rigid.parameters.items()}
-        return BodyArray(RigidBody(**given), self.own[:, None], self.change[:, None])
+        return BodyArray(self.rigid.changed(**given), self.own[:, None], self.change[:, None])

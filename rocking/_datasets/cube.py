@@ -24,7 +24,8 @@ import hashlib
 import math
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from rocking._base.errors import DatasetError
+from rocking._base.errors import DatasetError, RockingError
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
 from rocking._datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking._datasets.netcdf import open_netcdf, write_netcdf
@@ -249,20 +250,41 @@ def read_content(path: Path | str) -> bytes:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """`read_dataset` from the bytes of a file; messages name `path`."""
+    """The same from the bytes of a file; messages name `path`.
+
+    Raises
+    ------
+    DatasetError
+        If the bytes were not written by this package or are damaged.
+    """
+    with open_checked(content, path) as opened:
+        dataset = opened.load()
+        if dataset.attrs["content_sha256"] != _content_digest(dataset):
+            raise DatasetError(
+                f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again"
+            )
+    return dataset
+
+
+@contextmanager
+def open_checked(content: bytes, path: Path | str) -> Iterator[xr.Dataset]:
+    """The data set of the bytes of a file whose digest at its end is right, open inside of the `with` block.
+
+    Raises
+    ------
+    DatasetError
+        As `decode_dataset`, also for errors of the libraries inside of the block.
+    """
     _raise_if_damaged(content, path)
     try:
         with open_netcdf(content) as opened:
-            dataset = opened.load()
-        written = dataset.attrs.get("content_sha256")
-        found = _content_digest(dataset)
+            if "content_sha256" not in opened.attrs:
+                raise DatasetError(f"{path}: not written by this package (no content_sha256)")
+            yield opened
+    except RockingError:
+        raise
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise DatasetError(f"{path}: damaged, {error}; `make reproduce` builds it again") from error
-    if written is None:
-        raise DatasetError(f"{path}: not written by this package (no content_sha256)")
-    if written != found:
-        raise DatasetError(f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again")
-    return dataset
 
 
 def _raise_if_damaged(content: bytes, path: Path | str) -> None:
@@ -282,6 +304,18 @@ def read_spectrum(path: Path | str) -> xr.Dataset:
 def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
     """`read_spectrum` from the bytes of a file; messages name `path`."""
     cube = decode_dataset(content, path)
+    check_spectrum(cube, path)
+    return cube
+
+
+def check_spectrum(cube: xr.Dataset, path: Path | str) -> None:
+    """Check a data set, which may be open, against the schema of spectrum cubes.
+
+    Raises
+    ------
+    DatasetError
+        As `read_spectrum`.
+    """
     present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
     for name, (dtype, _) in (VARIABLES | present).items():
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
@@ -291,7 +325,6 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
             raise DatasetError(f"{path}: axis `{name}` is missing or does not ascend; build it again")
     if "pulse" not in cube.coords or "restitution" not in cube.coords:
         raise DatasetError(f"{path}: no scalar coordinates `pulse` and `restitution`; build it again")
-    return cube
 
 
 def _encoding(dataset: xr.Dataset, chunks: Mapping[str, int]) -> dict[str, dict[str, Any]]:

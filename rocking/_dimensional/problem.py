@@ -224,7 +224,7 @@ class Problem(EqualByValue):
         for name, value in columns.items():
             cells[name] = value
         for side, edge in enumerate((right, left)):
-            cells["slenderness"][..., side] = body.gravity * np.tan(edge.alpha) / self.peak_acceleration  # (5.3)
+            cells["slenderness"][..., side] = body.gravity * edge.resistance / self.peak_acceleration  # (5.3)
             cells["eta"][..., side] = np.maximum(etas[side], 0.0)  # departs from (2.4) where that is negative
         return cells.ravel()
 

@@ -110,6 +110,12 @@ class BodyMotion(ABC):
         """Of impacts that leave the right edge [-]."""
         return float(self.cell["eta"][0])
 
+    @property
+    def slenderness(self) -> float:
+        """g tan(alpha) over the largest ground acceleration [-]; of the left edge if nothing lifts the right one."""
+        right, left = self.cell["slenderness"].tolist()
+        return float(right if right < math.inf else left)
+
     @cached_property
     def alpha(self) -> float:
         """Slenderness angle of the right edge [rad], 0 for the slender limit."""
@@ -238,7 +244,7 @@ class PulseMotion(BodyMotion):
 
     def ground_acceleration(self, tau: Floats) -> Floats:
         f = self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau)
-        return np.asarray(f / self.cell["slenderness"][0])
+        return np.asarray(f / self.slenderness)
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
         followed, solved = self._flights
@@ -268,6 +274,7 @@ class PulseMotion(BodyMotion):
         values = cell["slenderness"][0], cell["rate"], cell["eta"][0], cell["alpha"]
         groups = [np.array([value]) for value in values]
         equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
+        equal = equal and cell["slenderness"][0] == cell["slenderness"][1]
         bodies = NO_BODIES if equal else np.array([cell])
         response = np.empty(1, RESPONSE_RECORD)
         count = solve_batch(*groups, bodies, state, step_state(state[0]), self._flag, response, edges, followed)
@@ -323,7 +330,7 @@ class SamplesMotion(BodyMotion):
         return self.times
 
     def ground_acceleration(self, tau: Floats) -> Floats:
-        u = self.samples[SHAPE] / self.cell["slenderness"][0]
+        u = self.samples[SHAPE] / self.slenderness
         return np.asarray(np.interp(tau, self.times, u, right=0.0))
 
     def vertical_acceleration(self, tau: Floats) -> Floats:

@@ -298,7 +298,7 @@ def sample_free_rocking(
             written += 1
         steps.z0[0] = 0.0
         steps.w0[0] = -body.eta[body.side] * evaluate_series(steps.rate, 0, steps.order - 1, h)  # (2.3)
-        sign = -sign
+        sign *= body.turn
         set_sign(body, sign)
         set_edge_lane(steps, 0, body, body.side)
         if steps.w0[0] <= REST_VELOCITY or written == len(impact_times):

@@ -172,7 +172,7 @@ def _sampled(
         ),
     }  # fmt: skip
     attributes: dict[str, Any] = {
-        "slenderness": float(motion.cell["slenderness"][0]),
+        "slenderness": motion.slenderness,
         "restitution": motion.restitution,
         "alpha": motion.alpha,
         "outcome": Outcome(int(record["outcome"])).name,

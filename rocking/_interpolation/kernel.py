@@ -66,8 +66,9 @@ class Found(NamedTuple):
     @classmethod
     def zeros(cls, size: int) -> Found:
         """Responses of some points before they are filled: without uplift, as the codes are 0."""
-        kinds = np.bool_, np.bool_, np.float64, np.int8, np.int32, np.bool_, np.float64
-        return cls(*(np.zeros(size, kind) for kind in kinds))  # type: ignore[arg-type]  # in order
+        known, from_cube, exceeded = np.zeros((3, size), np.bool_)
+        peak, bound = np.zeros((2, size))
+        return cls(known, from_cube, peak, np.zeros(size, np.int8), np.zeros(size, np.int32), exceeded, bound)
 
 
 @entry

@@ -72,6 +72,17 @@ class AngleAxis(NamedTuple):
         windows = [slice_window(size, k // 2) if k % 2 else (k // 2, 1) for k in range(2 * size - 1)]
         return cls(contiguous_array(angles), angles**2, np.array(windows, dtype=np.int64))
 
+    def needed(self, alpha: Array) -> set[int]:
+        """Indices of the angles from which points at some angles [rad] are interpolated."""
+        low, high = alpha.min(), alpha.max()
+        found: set[int] = set()
+        for angle in (low,) if low == high else np.unique(alpha):
+            if self.angles[0] <= angle <= self.angles[-1]:
+                k = int(self.angles.searchsorted(angle, "right")) - 1
+                first, count = self.windows[2 * k + bool(self.angles[k] != angle)].tolist()
+                found.update(range(first, first + count))
+        return found
+
 
 @kernel
 def cell_of(nodes: FloatArray, value: float) -> int:

@@ -145,8 +145,10 @@ class AbstractBlock(AbstractBody):
     def right(self) -> Edge:
         """The right edge; the left one is alike."""
         inertia_ratio = INERTIA_RATIO if self.contact_is_known else math.nan
-        values = self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio
-        return Edge(*map(np.asarray, values))
+        alpha, p, eta, ratio = map(
+            np.asarray, (self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio)
+        )
+        return Edge(alpha, p, eta, ratio)
 
     @property
     def left(self) -> Edge:

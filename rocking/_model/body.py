@@ -6,6 +6,8 @@ About the edge s (right: theta > 0) a rigid body on a ground that accelerates by
 
 (2.2) for equal edges and w = 0, with R_s^2 = h^2 + b_s^2, tan(alpha_s) = b_s/h and p_s^2 = g R_s/(r^2 + R_s^2), where
 b_s is the distance of the centre of mass from the edge, h its height and r the radius of gyration about it.
+
+A body against a wall (one-sided) rotates about one edge only and rebounds at theta = 0 with -e times its velocity.
 """
 
 import math
@@ -32,6 +34,12 @@ class Edge:
     restitution: Array
     # R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion [-]
     inertia_ratio: Array
+    blocked: bool = False  # by a wall; its other values are then those of the other edge
+
+    @property
+    def resistance(self) -> Array:
+        """Horizontal acceleration over g at which the body starts to rotate about the edge: tan(alpha_s), or inf."""
+        return np.full(np.shape(self.alpha), np.inf) if self.blocked else np.tan(self.alpha)
 
 
 def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gravity: Array, tilt: Array) -> Edge:
@@ -52,6 +60,16 @@ def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gr
         restitution=(square - b * c) / (square + c * c),
         inertia_ratio=radius * radius / about_edge,
     )
+
+
+def rebound_of(alpha: Array) -> Array:
+    """Velocity ratio e of a wall that falls back against transverse walls, from momentum at its base and back [-].
+
+    e = -(1 - 3/2 sin^2 alpha)^2 (1 - 3/2 cos^2 alpha), 1/2 for a slender wall, 0 where that is negative; after
+    Sorrentino et al. (2008), from a secondary source. Measured values differ: state them.
+    """
+    square = np.sin(alpha) ** 2
+    return np.maximum((1.0 - 1.5 * square) ** 2 * (0.5 - 1.5 * square), 0.0)
 
 
 class AbstractBody(ABC):
@@ -120,7 +138,7 @@ class AbstractBody(ABC):
     @property
     def uplift_acceleration(self) -> Array:
         """Smallest horizontal ground acceleration that starts rocking, g tan(alpha) of the weaker edge [m/s2]."""
-        return np.asarray(self.gravity * np.tan(np.minimum(self.right.alpha, self.left.alpha)))
+        return np.asarray(self.gravity * np.minimum(self.right.resistance, self.left.resistance))
 
     @property
     def shape(self) -> tuple[int, ...]:

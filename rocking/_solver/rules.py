@@ -2,8 +2,9 @@
 
 A body rests until the ground acceleration exceeds what one of its edges resists (uplift). It rotates about that edge (a
 flight) until the rotation is zero again (impact), and continues about the other edge with the velocity times the
-restitution of the edge that it leaves. Impacts that accumulate end in rest (chatter). When the ground motion has ended,
-the energy alone decides the outcome.
+restitution of the edge that it leaves. A body against a wall (one-sided) has an edge of infinite slenderness, which
+resists any acceleration: after an impact it rotates about the same edge again, with -eta times its velocity. Impacts
+that accumulate end in rest (chatter). When the ground motion has ended, the energy alone decides the outcome.
 
 All functions work on a solver state with the fields `BODY_FIELDS` and `PROGRESS_FIELDS` of `rocking._solver.state`. The
 event loops (`rocking._solver.kernels.event_loop` of pulses, `rocking._solver.records.event_loop` of samples) know where
@@ -54,7 +55,7 @@ def set_edge(state: Record, side: int, slenderness: float, eta: float, ratio: fl
 @kernel
 def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> None:
     """Set a body with equal edges; alpha = 0 is the slender limit."""
-    state.alpha, state.pull[0], state.each_side = alpha, 0.0, 0
+    state.alpha, state.pull[0], state.each_side, state.turn = alpha, 0.0, 0, -1.0
     set_edge(state, 0, slenderness, eta, 1.0, 1.0)
     set_edge(state, 1, slenderness, eta, 1.0, 1.0)
 
@@ -64,6 +65,7 @@ def set_body(state: Record, cell: Record, each_side: bool) -> None:
     """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
     differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]
     state.alpha, state.pull[0], state.each_side = cell.alpha, 0.0, int(each_side or differ)
+    state.turn = -1.0 if max(cell.slenderness[0], cell.slenderness[1]) < math.inf else 1.0
     set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
     set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
 
@@ -121,7 +123,10 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
 
 @kernel
 def count_impact(state: Record, time: float, w: float) -> float:
-    """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it."""
+    """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it.
+
+    sgn(theta) after it is `state.turn` times that before.
+    """
     if state.impacts == 0:
         state.first_impact_time, state.first_impact_velocity = time, state.sign * w
     state.impacts += 1
@@ -135,7 +140,7 @@ def overturn(state: Record, further_impacts: int) -> None:
     state.outcome = DIRECTLY if state.impacts == 0 else AFTER_IMPACT
     state.peak_rotation, state.peak_mode = math.nan, -1
     state.side_peak[0], state.side_peak[1] = math.nan, math.nan
-    state.final_sign = state.sign if further_impacts % 2 == 0 else -state.sign
+    state.final_sign = state.sign if further_impacts % 2 == 0 else state.turn * state.sign
 
 
 @kernel
@@ -146,7 +151,7 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
     does not escape about the present edge overturns after the next impact, about the other edge, or else after the one
     after that, about the present edge: later flights about an edge start with less than the energy that did not suffice
     there. Equal edges: the second impact decides nothing, and neither does the first if w > 0, since the energy was
-    below the barrier already.
+    below the barrier already. One edge only: the same, the next impact decides at most.
     """
     side = state.side
     state.end_rotation, state.end_velocity, state.end_sign = z, w, state.sign
@@ -160,7 +165,7 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
     update_peak(state, side, top * state.ratio[side], state.impacts, 1)
     further = 2 if state.each_side == 1 else (1 if w <= 0.0 else 0)
     for impact in range(1, further + 1):
-        other = 1 - side
+        other = 1 - side if state.turn < 0.0 else side
         change = state.eta[side] * (state.speed[side] / state.speed[other])
         squared *= change * change  # of the velocity after the impact, in the units of the other edge
         edge_alpha = state.alpha * state.ratio[other]

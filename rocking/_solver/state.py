@@ -35,6 +35,7 @@ BODY_FIELDS = [
     ("ratio", np.float64, EDGES),  # alpha_s/alpha
     ("stiffness", np.float64, EDGES),  # (p_s/p)^2
     ("speed", np.float64, EDGES),  # ratio p_s/p: velocity w over that in the units of the edge
+    ("turn", np.float64),  # sgn(theta) after an impact over that before: -1, or 1 if it rocks about one edge only
     ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
     ("pull", np.float64, EDGES),  # see `rocking._solver.rules.pulls_of`; 0 until it is known
     ("softening", np.float64),
@@ -47,7 +48,8 @@ BODY_CELL = np.dtype(
         ("rate", np.float64),  # samples: p times the unit of their times [tau]; pulses: frequency ratio omega_g/p
         ("vertical", np.float64),  # factor of the vertical component
         ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
-        ("slenderness", np.float64, EDGES),  # g tan(alpha_s)/(largest horizontal acceleration)
+        # g tan(alpha_s)/(largest horizontal acceleration); inf: never lifted about this edge, the body rebounds there
+        ("slenderness", np.float64, EDGES),
         ("eta", np.float64, EDGES),
         ("ratio", np.float64),  # alpha_s/alpha of the left edge
         ("stiffness", np.float64),  # (p_s/p)^2 of the left edge

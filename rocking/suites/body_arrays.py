@@ -49,7 +49,7 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
 
     def part(chunk: xr.Dataset) -> xr.Dataset:
         with without_place():
-            bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
+            bodies = body.changed(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
         names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
         found = _over(analyse(blocks_of(bodies) if equal else _in_a_row(bodies)), names, bodies.shape).assign_coords(
             chunk.coords
@@ -66,14 +66,14 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
 def has_equal_edges(bodies: RigidBody) -> bool:
     """Whether all bodies have two equal edges."""
     edge = bodies.right
-    return bool(
+    return bodies.sides == "both" and bool(
         np.all((bodies.left.alpha == edge.alpha) & (bodies.left.frequency_parameter == edge.frequency_parameter))
     )
 
 
 def _in_a_row(bodies: RigidBody) -> RigidBody:
     """The bodies as an array (bodies,), in C order."""
-    return RigidBody(
+    return bodies.changed(
         **{name: np.broadcast_to(value, bodies.shape).ravel() for name, value in bodies.parameters.items()}
     )
 

@@ -50,7 +50,7 @@ def body_outcomes(
     motions = [one for record in checked_records(records) for one in (record, mirrored(record))]
     levels = checked_levels(intensity, chosen)
     eta = None if restitution == "momentum" else np.array(RESTITUTION.number(restitution))
-    column = RigidBody(
+    column = body.changed(
         **{name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
     )
     shape = (*body.shape, levels.size, len(motions))

@@ -24,7 +24,7 @@ LAYERS = (
     ("rocking/_spectra",),
     ("rocking/_datasets",),
     ("rocking/_boundary", "rocking/_history", "rocking/_interpolation"),
-    ("rocking/_solver", "rocking/paper"),
+    ("rocking/_solver", "rocking/paper", "rocking/standards"),
     ("rocking/_model", "rocking/_excitation"),
     ("rocking/_numba",),
     ("rocking/_base/cells", "rocking/_base/kinds", "rocking/_base/quantities"),

@@ -38,15 +38,21 @@ class Kernels:
     ----------
     seconds : float
         How long a request waits for them [s].
+
+    Attributes
+    ----------
+    is_loaded : bool
+        Whether nothing is being compiled or loaded.
     """
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
         self._loading: asyncio.Future[None] | None = None
+        self.is_loaded = True
 
     async def load(self) -> None:
         """Load them."""
-        self._loading = asyncio.get_running_loop().create_future()
+        self._loading, self.is_loaded = asyncio.get_running_loop().create_future(), False
         try:
             if (command := compile_command()) is not None:
                 compiled = await anyio.run_process(command, check=False)
@@ -54,12 +60,8 @@ class Kernels:
                     LOG.warning("the compiler failed", extra={"fields": {"stderr": compiled.stderr.decode()}})
             await anyio.to_thread.run_sync(load_kernels, abandon_on_cancel=True)
         finally:
+            self.is_loaded = True
             self._loading.cancel()  # waiting requests continue, and meet the same error if there is one
-
-    @property
-    def is_loaded(self) -> bool:
-        """Whether nothing is being compiled or loaded."""
-        return self._loading is None or self._loading.done()
 
     async def wait(self) -> None:
         """Return once they are loaded; usually at once.

@@ -12,7 +12,7 @@ from fastapi import Request
 from pydantic import BaseModel, Field, GetJsonSchemaHandler, computed_field
 from pydantic_core import core_schema
 
-from rocking_api.models.params import Params
+from rocking_api.models.params import ListParams, Params
 
 VERSION = version("rocking")
 
@@ -57,6 +57,15 @@ class Answer(BaseModel):
     @property
     def units(self) -> dict[str, str]:
         return units_of(type(self))
+
+
+class ListAnswer(Answer):
+    """Base of the models of lists."""
+
+    query: ListParams = QUERY
+    next_cursor: str | None = Field(
+        None, description="`cursor` of the request for the next entries; null: there are no more"
+    )
 
 
 @cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -41,8 +41,8 @@ def _list_pulses(schema: dict[str, Any]) -> None:
     names = pulse_names()
     varied = "|".join(name for name in names if pulse_parameters(name))
     schema["anyOf"] = [
-        {"enum": [*names, *(f"-{name}" for name in names)]},
-        {"pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
+        {"title": "Pulse_name", "type": "string", "enum": [*names, *(f"-{name}" for name in names)]},
+        {"type": "string", "pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
     ]
 
 
@@ -141,6 +141,27 @@ class Params(BaseModel):
         errors = self.out_of_range(self)
         if errors:
             raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
+
+
+class ListParams(Params):
+    """A part of a list."""
+
+    limit: int | None = Field(
+        None,
+        description="most entries [-]; absent: all",
+        examples=[10],
+        json_schema_extra={"minimum": 1, "maximum": 10_000},
+    )
+    cursor: str | None = Field(
+        None, description="where the list goes on: `next_cursor` of the answer before; absent: at its start"
+    )
+
+    def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
+        """The names of this part, of ascending names, and the cursor of the next one; None at the end."""
+        self.check()
+        rest = [name for name in names if self.cursor is None or name > self.cursor]
+        part = rest[: self.limit]
+        return part, part[-1] if len(part) < len(rest) else None
 
 
 class LookupOptions(Params):
@@ -281,5 +302,7 @@ def check_point(params: ResponseParams) -> None:
         and SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper
         and FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper
         and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
+        and (not params.alpha_deg or ALPHA_DEG.lower <= params.alpha_deg <= ALPHA_DEG.upper)
+        and 0.0 <= params.absolute_tolerance < math.inf
     ):
         params.check()

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field, SerializeAsAny, create_model
 
-from rocking._base.errors import finite
 from rocking._dimensional.fields import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model.fields import (
+    BOUNDED_FIELDS,
     COLUMN_FIELDS,
     DERIVED_FIELDS,
     ERROR_BOUND,
     EXCEEDED_ALPHA,
+    FROM_CUBE,
     IMPACTS,
     OUTCOME,
     OVERTURNED,
@@ -26,15 +27,20 @@ from rocking._model.fields import (
     ResponseField,
 )
 from rocking._model.response import Outcome
-from rocking_api.execution.evaluation import BatchResult, PointResult
+from rocking._solver.bounded_response import BoundedResponse
+from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.encoding import Column
-from rocking_api.models.answer import ECHO, QUERY, Answer
+from rocking_api.models.answer import ECHO, QUERY, Answer, ListAnswer
 from rocking_api.models.metadata import METADATA_URL_FIELD
 from rocking_api.models.params import HistoryParams, LookupOptions, OverturningParams, ResponseParams, SpectrumParams
 
 Model = TypeVar("Model", bound=BaseModel)
 
 OUTCOMES = [outcome.name for outcome in Outcome]
+
+_WORDS = {int(outcome): (outcome.name, outcome.sentence) for outcome in Outcome}
+
+_OF_POINT = [field for field in BOUNDED_FIELDS if field is not FROM_CUBE]
 
 _PEAK = Field(description=PEAK_ROTATION.description())
 _OVERTURNED = Field(description=OVERTURNED.description())
@@ -232,11 +238,11 @@ class PulseCubes(BaseModel):
     zarr: str = Field(description="path for xarray.open_zarr(...), over the dimension restitution too")
 
 
-class DatasetCatalogue(Answer):
-    """All data sets."""
+class DatasetCatalogue(ListAnswer):
+    """Data sets."""
 
     datasets: list[DatasetSummary] = Field(description="in the order of their names")
-    pulses: list[PulseCubes] = Field(description="the spectrum cubes by pulse, in the order of their names")
+    pulses: list[PulseCubes] = Field(description="the spectrum cubes of these by pulse, in the order of their names")
 
 
 class VariableDescription(BaseModel):
@@ -315,31 +321,29 @@ def columns_of(result: BatchResult) -> dict[str, Column]:
     return {field.name: columns[field.name] for field in COLUMN_FIELDS}
 
 
-def point_response(params: ResponseParams, point: PointResult) -> PointResponse:
+def point_response(params: ResponseParams, found: BoundedResponse, versions: tuple[str, ...]) -> PointResponse:
     """The response for one block."""
-    outcome = Outcome(point.outcome)
-    overturned = outcome >= Outcome.OVERTURNED_DIRECTLY
+    fields: dict[str, Any] = {one.name: getattr(found, one.name).item() for one in _OF_POINT}
+    fields |= {name: values.item() for name, values in found.derived.items()}
+    outcome, source = fields["outcome"], "cube" if found.from_cube.item() else "solver"
     note, warnings = None, []
-    if overturned:
+    if outcome >= Outcome.OVERTURNED_DIRECTLY:
         note = "the block overturns: there is no peak"
-    elif math.isinf(point.error_bound):
+    elif math.isinf(fields["error_bound"]):
         note = "the outcome changes within the rounding of the question: there is no bound"
         warnings = [note]
-    elif point.impacts == UNKNOWN_IMPACTS:
+    elif fields["impacts"] == UNKNOWN_IMPACTS:
         note = "the data set does not determine the number of impacts: method=solver counts them"
-    derived: dict[str, Any] = {name: finite(value) for name, value in point.derived.items()}
+    for name, value in fields.items():
+        if value == UNKNOWN_IMPACTS if name == "impacts" else not math.isfinite(value):
+            fields[name] = None
+    fields["outcome"], fields["meaning"] = _WORDS[outcome]
     return PointResponse(
         query=params,
         warnings=warnings,
-        peak_rotation=finite(point.peak_rotation),
-        overturned=overturned,
-        outcome=outcome.name,
-        meaning=outcome.sentence,
-        impacts=None if point.impacts == UNKNOWN_IMPACTS else point.impacts,
-        exceeded_alpha=point.exceeded_alpha,
-        error_bound=finite(point.error_bound),
+        overturned=outcome >= Outcome.OVERTURNED_DIRECTLY,
         note=note,
-        source=point.source,
-        data_version=point.data_version,
-        **derived,
+        source=source,
+        data_version=versions[0] if versions and source == "cube" else None,
+        **fields,
     )

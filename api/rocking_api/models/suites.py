@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from rocking_api.models.answer import QUERY, Answer
+from rocking_api.models.answer import QUERY, Answer, ListAnswer
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Params
 from rocking_api.models.responses import Link
@@ -44,8 +44,8 @@ class SuiteSummary(BaseModel):
     links: list[Link] = Field(description="the suite, and its data sets")
 
 
-class SuiteCatalogue(Answer):
-    """All suites of the results folder."""
+class SuiteCatalogue(ListAnswer):
+    """Suites of the results folder."""
 
     suites: list[SuiteSummary] = Field(description="the suites that can be read")
 

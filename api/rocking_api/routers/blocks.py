@@ -16,9 +16,10 @@ from rocking._dimensional.response import BodyResponse as Found
 from rocking._dimensional.response import respond
 from rocking._dimensional.rigid_body import body_of_size
 from rocking._dimensional.table import BlockTable, read_table, respond_table
+from rocking._lookup.cube import Points
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
-from rocking_api.execution.evaluation import evaluate, point_results
+from rocking_api.execution.evaluation import evaluate
 from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
 from rocking_api.http.errors import TooLargeError
@@ -179,15 +180,15 @@ def _point(
         frequency_ratio=groups["frequency_ratio"],
         restitution=groups["restitution"],
     )
-    points = {name: getattr(dimensionless, name) for name in ("slenderness", "frequency_ratio", "restitution")}
-    found, versions = evaluate(service.cubes, dimensionless, **points, stop=stop)
+    dimensionless.check()
+    points = Points.of_one(*(groups[name] for name in ("slenderness", "frequency_ratio", "restitution", "alpha")))
+    found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:
         found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres
-    (point,) = point_results(found, versions)
-    service.metrics.points(point.source, 1)
-    answer = point_response(dimensionless, point)
+    answer = point_response(dimensionless, found, versions)
+    service.metrics.points(answer.source, 1)
     answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
-    return answer, found
+    return answer, found.reshape(())
 
 
 def _margins(found: FoundMargins) -> Margins:

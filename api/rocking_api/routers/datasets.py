@@ -22,7 +22,7 @@ from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, valida
 from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.params import Params
+from rocking_api.models.params import ListParams, Params
 from rocking_api.models.responses import (
     DatasetCatalogue,
     DatasetDescription,
@@ -49,19 +49,20 @@ class FileParams(Params):
 
 
 @router.get("", summary="Catalogue", response_model=DatasetCatalogue)
-async def get_datasets(request: Request, service: ServiceDep) -> Response:
-    """All data sets in the results folder that can be read."""
+async def get_datasets(params: Annotated[ListParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """The data sets in the results folder that can be read."""
 
-    def work() -> list[Summary]:
+    def work() -> tuple[list[Summary], str | None]:
         found = []
-        for name in service.cubes.catalogue.names():
+        names, cursor = params.part(service.cubes.catalogue.names())
+        for name in names:
             with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or damaged: see /health
                 found.append(service.summaries.summary(name))
-        return found
+        return found, cursor
 
-    summaries = await service.run_io(work)
+    summaries, cursor = await service.run_io(work)
     listed = [DatasetSummary(**_summary(summary)) for summary in summaries]
-    catalogue = DatasetCatalogue(datasets=listed, pulses=_pulses(summaries))
+    catalogue = DatasetCatalogue(query=params, datasets=listed, pulses=_pulses(summaries), next_cursor=cursor)
     return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
 
 
@@ -81,7 +82,7 @@ async def get_archive(request: Request, service: ServiceDep) -> Response:
         return names, max((version.size for version in versions if version is not None), default=0)
 
     names, largest = await service.run_io(work)
-    request.state.reservation.add(largest)
+    service.reservation(request).replace(largest)
     headers = {"Content-Disposition": 'attachment; filename="rocking-data.zip"', "Cache-Control": REVALIDATE}
     return StreamingResponse(archive(catalogue, names), media_type="application/zip", headers=headers)
 

@@ -10,10 +10,11 @@ import numpy as np
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
+from rocking._base.errors import InvalidArgumentError
 from rocking._excitation import pulses
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.params import Params
+from rocking_api.models.answer import QUERY, ListAnswer
+from rocking_api.models.params import ListParams
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
@@ -25,8 +26,8 @@ DIGITS = 4
 """Decimals of the samples [-]: enough for a drawing, at a fifth of the length."""
 
 
-class PulsesParams(Params):
-    """How finely the pulses are sampled."""
+class PulsesParams(ListParams):
+    """How finely the pulses are sampled, and a part of their list."""
 
     samples: int = Field(
         65, description="samples of each pulse [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
@@ -59,8 +60,8 @@ class PulseDescription(BaseModel):
     )
 
 
-class PulsesResponse(Answer):
-    """All excitations."""
+class PulsesResponse(ListAnswer):
+    """Excitations."""
 
     query: PulsesParams = QUERY
     pulses: list[PulseDescription] = Field(description="those of the package, then those registered in this process")
@@ -69,10 +70,15 @@ class PulsesResponse(Answer):
 @router.get("/pulses", summary="The excitations")
 async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse:
     """Name, definition, parameters and duration of each pulse; `period` of the other routes is T_p."""
-    params.check()
-    return PulsesResponse.model_construct(
-        query=params, pulses=[_described(name, params.samples) for name in pulses.pulse_names()]
-    )
+    names = pulses.pulse_names()
+    if params.cursor not in (None, *names):
+        raise InvalidArgumentError("cursor", params.cursor, f"one of {', '.join(names)}")
+    place = {name: f"{k:04d}" for k, name in enumerate(names)}  # in their own order
+    asked = params.model_copy(update={"cursor": place.get(params.cursor or "")})
+    part, cursor = asked.part(list(place.values()))
+    described = [_described(names[int(k)], params.samples) for k in part]
+    following = None if cursor is None else names[int(cursor)]
+    return PulsesResponse.model_construct(query=params, pulses=described, next_cursor=following)
 
 
 def _described(name: str, samples: int) -> PulseDescription:

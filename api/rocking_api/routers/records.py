@@ -148,7 +148,7 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
 
     record = await service.run_parser(read, request, large=True)
     kept = record.acceleration.nbytes * (1 if record.vertical is None else 2)
-    request.state.reservation.replace(kept)  # the body is released
+    service.reservation(request).replace(kept)  # the body is released
     return params, record
 
 

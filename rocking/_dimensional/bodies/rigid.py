@@ -28,6 +28,16 @@ VERTICES = Quantity(
 )
 PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, ...), z upwards", example="vase.stl")
 UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft", default="m")
+SIDES = Quantity("sides", "", "edges about which it rocks: both; left or right: a wall stops it at the other side")
+REBOUND = Quantity(
+    "rebound",
+    "-",
+    "velocity after a rebound from the wall over the one before, without its sign",
+    symbol="e",
+    lower=0.0,
+    upper=1.0,
+    closed="both",
+)
 DIRECTION = Quantity(
     "direction",
     "rad",
@@ -71,13 +81,23 @@ def two_edges(
     gyration: Annotated[float | None, GYRATION] = None,
     top_height: Annotated[float | None, TOP_HEIGHT] = None,
     inclination: Annotated[float, INCLINATION] = 0.0,
+    sides: Annotated[str, SIDES] = "both",
+    rebound: Annotated[float | None, REBOUND] = None,
     gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
 ) -> "RigidBody":
     """A body from the distances of its edges from the centre of mass, and the height of that."""
     from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
 
     return RigidBody(
-        left, right, mass_height, gyration, inclination=inclination, gravity=gravity, top_height=top_height
+        left,
+        right,
+        mass_height,
+        gyration,
+        inclination=inclination,
+        gravity=gravity,
+        top_height=top_height,
+        sides=sides,
+        rebound=rebound,
     )
 
 

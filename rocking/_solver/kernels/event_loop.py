@@ -60,7 +60,7 @@ def on_impact(flight: Record, w: float) -> None:
     """
     phase = flight.phase + flight.omega * flight.length
     flight.next_w = count_impact(flight, flight.length, w)
-    flight.next_phase, flight.next_sign = phase, -flight.sign
+    flight.next_phase, flight.next_sign = phase, flight.turn * flight.sign
     while flight.interval < flight.interval_count - 1 and phase >= flight.interval_phase[flight.interval + 1]:
         flight.interval += 1
     if (

@@ -109,7 +109,7 @@ def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) ->
     block.w0 = count_impact(block, time, w)
     stuck = k == block.interval and s <= block.s + ROUNDING * h
     block.interval, block.s, block.at_rest = k, s, 0
-    set_sign(block, -block.sign)
+    set_sign(block, block.turn * block.sign)
     f, vertical = ground_at(block, samples, k, s)
     lifted = lifting_sign(block, f, vertical)
     if lifted == 0.0:
