@@ -11,11 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-WIDTH, HEIGHT = 440.0, 170.0
-"""Of the area between the axes [pixels]."""
-
-MOST_POINTS = 2000
-"""Points of a line beyond which it is thinned, largest and smallest values kept [-]."""
+WIDTH, HEIGHT = 440.0, 170.0  # of the area between the axes [pixels]
+MOST_POINTS = 2000  # points of a line beyond which it is thinned, largest and smallest values kept [-]
 
 STYLES = tuple(
     (colour, dash)

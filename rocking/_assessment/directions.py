@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-LEAST_COMPONENT = 1e-9
-"""Cosine up to which a motion has no component along a direction [-]."""
+LEAST_COMPONENT = 1e-9  # cosine up to which a motion has no component along a direction [-]
 
 
 def factors_by_direction(

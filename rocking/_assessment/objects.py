@@ -24,14 +24,9 @@ from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_v
 
 Array = NDArray[np.float64]
 
-LENGTHS = 1e-4, 1e3
-"""Smallest and largest dimension of an object [m]."""
-
-STEP = 15
-"""Between the directions around an object [degrees]."""
-
-CYLINDER = 0.75
-"""12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]."""
+LENGTHS = 1e-4, 1e3  # smallest and largest dimension of an object [m]
+STEP = 15  # between the directions around an object [degrees]
+CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]
 
 
 @dataclass(frozen=True)

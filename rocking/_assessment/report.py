@@ -27,14 +27,12 @@ TEMPLATE = "report.html"
 COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
 """Of the verdicts; people who are colour-blind tell them apart (Okabe and Ito 2008)."""
 
-DRAWING = 150.0
-"""Larger dimension of an object in its drawing [pixels]."""
+DRAWING = 150.0  # larger dimension of an object in its drawing [pixels]
 
 MOST_DETAILED = 60
 """Rows, from the worst one on, that have pictures and the friction needed [-]: each takes 0.1 s or so."""
 
-STRONGEST = 3.0
-"""Height of the axis of an envelope over the peak acceleration of the site [-]."""
+STRONGEST = 3.0  # height of the axis of an envelope over the peak acceleration of the site [-]
 
 
 @dataclass(frozen=True)

@@ -28,23 +28,15 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-STRENGTHS = 1e-3, 1e3
-"""Smallest and largest PGA [m/s2] and PGV [m/s]."""
-
-LENGTH = 0.01, 10.0
-"""Shortest and longest period of a pulse, and ratio of PGV to PGA [s]."""
-
-PAIR_ANGLES = 12
-"""Directions in which the components of a pair are assessed, over 180 degrees [-]; even."""
+STRENGTHS = 1e-3, 1e3  # smallest and largest PGA [m/s2] and PGV [m/s]
+LENGTH = 0.01, 10.0  # shortest and longest period of a pulse, and ratio of PGV to PGA [s]
+PAIR_ANGLES = 12  # directions in which the components of a pair are assessed, over 180 degrees [-]; even
 
 SHAPE_PIECES = 2000
 """Linear pieces for a pulse that is not given by samples [-]: from its largest value they depart by 2e-6."""
 
-MOST_SAMPLES = 20_000_000
-"""Most samples of all motions of a floor together [-]."""
-
-PERIODS = 12
-"""Periods of each shape where the site has a range of periods, in equal ratios from its ends [-]."""
+MOST_SAMPLES = 20_000_000  # most samples of all motions of a floor together [-]
+PERIODS = 12  # periods of each shape where the site has a range of periods, in equal ratios from its ends [-]
 
 
 @dataclass(frozen=True)

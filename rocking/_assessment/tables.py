@@ -149,5 +149,4 @@ _ABOUT = {"name", "mass", "friction", "restitution", "tolerance", "pedestal", "n
 """What is stated of an object beside its body."""
 
 
-SCHEMA = Schema("objects", (*INPUTS, *STAND_INS, *SHAPES), REQUIRED, _object, every_length=True)
-"""A table of objects."""
+SCHEMA = Schema("objects", (*INPUTS, *STAND_INS, *SHAPES), REQUIRED, _object, every_length=True)  # a table of objects

@@ -18,8 +18,7 @@ if TYPE_CHECKING:  # they load numpy, which help does without
 
     from rocking._base.units import Values
 
-MAX_LABEL = 25
-"""Characters of a label that xarray writes in one line, with a unit [-]."""
+MAX_LABEL = 25  # characters of a label that xarray writes in one line, with a unit [-]
 
 
 @dataclass(frozen=True)

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD)} | {"period_min": "s", "period_max": "s"}
 """Options with units."""
 
-MAX_ERRORS = 20
-"""Lines of a file that an error names at most."""
+MAX_ERRORS = 20  # lines of a file that an error names at most
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,7 @@ SHOWN = (
 )
 """Columns that fit a screen; CSV, JSON and files have all of them."""
 
-MOST = 5
-"""Objects that are named beside a warning at most."""
+MOST = 5  # objects that are named beside a warning at most
 
 HINTS = {
     "records": "--pair",

@@ -30,8 +30,7 @@ Configuration = Annotated[
     ),
 ]
 
-MAX_NESTING = 100
-"""Most brackets within brackets of a suite in YAML."""
+MAX_NESTING = 100  # most brackets within brackets of a suite in YAML
 
 MAX_LINE = 4096
 """Most characters of a line of TOML: the time of tomllib grows with the square of the parts of a key such as a.b.c."""

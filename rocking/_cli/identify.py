@@ -12,8 +12,7 @@ from rocking._cli.options import OutputOptions, option, said, with_options
 if TYPE_CHECKING:
     import xarray as xr
 
-MAX_SAMPLES = 1_000_000
-"""Most rows of a file that are read."""
+MAX_SAMPLES = 1_000_000  # most rows of a file that are read
 
 
 @with_options

@@ -201,8 +201,7 @@ class PictureOptions:
     ] = None
 
 
-GROUPS = (BodyOptions, FileOptions, OutputOptions, PictureOptions)
-"""Types of arguments whose fields are options."""
+GROUPS = (BodyOptions, FileOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
 
 FrequencyRatioMin = Annotated[float, said("Lower end of omega_g/p.", "-")]
 FrequencyRatioMax = Annotated[float, said("Upper end of omega_g/p.", "-")]

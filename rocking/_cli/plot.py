@@ -32,17 +32,10 @@ if TYPE_CHECKING:
 
 plot = typer.Typer(no_args_is_help=True, help="Draw a picture: png, svg, or a window.")
 
-SIZE = (5.2, 3.4)
-"""Width and height of a picture [in]."""
-
-POINTS = 600
-"""Points of a spectrum, columns of a map."""
-
-ROWS = 300
-"""Rows of a map."""
-
-AMPLITUDE = (1.0, 12.0)
-"""Amplitudes a of a map [-]."""
+SIZE = (5.2, 3.4)  # width and height of a picture [in]
+POINTS = 600  # points of a spectrum, columns of a map
+ROWS = 300  # rows of a map
+AMPLITUDE = (1.0, 12.0)  # amplitudes a of a map [-]
 
 
 @plot.command()

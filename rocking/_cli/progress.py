@@ -8,14 +8,9 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-DELAY = 1.0
-"""Time after which the indicator appears [s]; commands that are faster do not load what it needs."""
-
-REFRESH = 0.2
-"""Time between updates of the indicator [s]."""
-
-LONG = 4.0
-"""Time after which the indicator says that first calls are longer [s]."""
+DELAY = 1.0  # time after which the indicator appears [s]; commands that are faster do not load what it needs
+REFRESH = 0.2  # time between updates of the indicator [s]
+LONG = 4.0  # time after which the indicator says that first calls are longer [s]
 
 
 @contextmanager

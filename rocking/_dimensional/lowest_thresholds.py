@@ -38,8 +38,7 @@ Index = NDArray[np.intp]
 Solved = tuple[Array, NDArray[np.bool_], Array, NDArray[np.int32]]
 """Peak |theta|/alpha, whether the body overturns, margin of the outcome, and impacts."""
 
-HIGHEST = 100.0
-"""Largest peak acceleration searched over that of uplift [-]."""
+HIGHEST = 100.0  # largest peak acceleration searched over that of uplift [-]
 
 GRID = np.union1d(np.linspace(1.0 / HIGHEST, 1.0, 2001), np.geomspace(1.0 / HIGHEST, 1.0, 2001))[::-1]
 """1/a [-] of the nodes of `rocking.thresholds`, from uplift on."""
@@ -72,8 +71,7 @@ CLOSE, LAYERS = 32, 4
 Layers of outcomes lie close together there, the more of them the more flights there are.
 """
 
-AT_ONCE = 4
-"""Coarse nodes solved at a time, before the bodies that have overturned are left out."""
+AT_ONCE = 4  # coarse nodes solved at a time, before the bodies that have overturned are left out
 
 
 @dataclass(eq=False)

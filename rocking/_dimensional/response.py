@@ -49,11 +49,8 @@ Array = NDArray[np.float64]
 
 T = TypeVar("T")
 
-SEARCH_SECONDS = 12.0
-"""Time limit of the search along one line for one block [s]."""
-
-RELATIVE_OFFSET = 1e-9
-"""Relative distance below the lowest change of outcome at which the contact is judged [-]."""
+SEARCH_SECONDS = 12.0  # time limit of the search along one line for one block [s]
+RELATIVE_OFFSET = 1e-9  # relative distance below the lowest change of outcome at which the contact is judged [-]
 
 for _field in FIELDS:
     _cached = cached_property(partial(lambda found, about: found._value(about), about=_field))
@@ -414,8 +411,7 @@ class BodyResponse(ResponseFields, EqualByValue):
             raise InvalidArgumentError(name, f"shape {self.problem.shape}", "a response of one body under one motion")
 
 
-EDGE_NAMES = {1: "right", -1: "left", 0: None}
-"""Edges in words."""
+EDGE_NAMES = {1: "right", -1: "left", 0: None}  # edges in words
 
 _UNITS = {
     "peak_acceleration": "m s-2",

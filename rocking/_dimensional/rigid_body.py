@@ -31,8 +31,7 @@ RANGES = {
 }
 """Open ranges and units of the arguments that are no lengths."""
 
-SIDES = "both", "left", "right"
-"""Edges about which a body rocks."""
+SIDES = "both", "left", "right"  # edges about which a body rocks
 
 
 @final

@@ -23,14 +23,9 @@ from rocking._base.units import UNITS, unit_name
 
 Item = TypeVar("Item")
 
-HEADER_ROWS = 12
-"""The header is searched in this many rows at the top."""
-
-MAX_COLUMNS = 1000
-"""Most columns of a table."""
-
-MAX_NAME = 200
-"""Longest name of a column with its unit [characters]."""
+HEADER_ROWS = 12  # the header is searched in this many rows at the top
+MAX_COLUMNS = 1000  # most columns of a table
+MAX_NAME = 200  # longest name of a column with its unit [characters]
 
 EMPTY = {
     *("", "-", "--", "\u2013", "\u2014", "?", "n/a", "na", "n.a.", "#n/a", "none", "null", "nan", "nil"),

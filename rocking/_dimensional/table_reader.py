@@ -50,11 +50,8 @@ Item = TypeVar("Item")
 
 DELIMITERS = ",;\t|"
 
-SHEETS = (".xlsx", ".ods")
-"""Endings of files that are not text."""
-
-MAX_CHARACTERS = 20_000_000
-"""Longest table that is read."""
+SHEETS = (".xlsx", ".ods")  # endings of files that are not text
+MAX_CHARACTERS = 20_000_000  # longest table that is read
 
 EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 """Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
@@ -66,8 +63,7 @@ _TOTAL = re.compile(
 )
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
 
-MARK = "\ufeff"
-"""What some programs put before a text of UTF-8."""
+MARK = "\ufeff"  # what some programs put before a text of UTF-8
 
 
 class TooManyRowsError(InvalidArgumentError):

@@ -48,11 +48,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-HIGHEST = 100.0, 10.0
-"""Largest strength searched over that of uplift [-]: of pulses, and of records."""
-
-BEYOND = 10.0, 2.0
-"""That for a block over its own strength [-], where it is larger."""
+HIGHEST = 100.0, 10.0  # largest strength searched over that of uplift [-]: of pulses, and of records
+BEYOND = 10.0, 2.0  # that for a block over its own strength [-], where it is larger
 
 WORDS = {
     "peak_acceleration": ("peak acceleration", " m/s2", "a peak acceleration of {} m/s2", " m/s2"),
