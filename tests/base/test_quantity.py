@@ -1,13 +1,14 @@
 """The declaration of a quantity: conversion, ranges, and what options, JSON and tables derive from it."""
 
 import math
+from functools import partial
 from typing import Annotated
 
 import numpy as np
 import pytest
 import typer
-from pydantic import BaseModel, ValidationError, create_model
-from rocking_api.models.quantity import described, reader
+from pydantic import BaseModel, BeforeValidator, ValidationError, create_model
+from rocking_api.models.quantity import described
 
 import rocking._base.quantities as quantities
 from rocking._base.cells import read_cell, read_header
@@ -103,8 +104,8 @@ def test_what_is_refused_has_its_name_its_value_and_what_is_allowed(one, value, 
 def test_a_field_of_pydantic_has_the_declaration():
     model: type[BaseModel] = create_model(
         "Model",
-        width=(Annotated[float, reader(WIDTH), described(WIDTH)], ...),
-        restitution=(Annotated[float | str, reader(RESTITUTION)], "momentum"),
+        width=(Annotated[float, BeforeValidator(partial(WIDTH.read, si=True)), described(WIDTH)], ...),
+        restitution=(Annotated[float | str, BeforeValidator(RESTITUTION.read)], "momentum"),
     )
     assert model(width="40 cm").width == model.model_validate_strings({"width": "0.4"}).width == 0.4
     assert model.model_json_schema()["properties"]["width"]["exclusiveMinimum"] == 0.0
