@@ -129,6 +129,9 @@ TOP_HEIGHT = Quantity("top_height", "m",
 INCLINATION = Quantity("inclination", "rad", "angle by which the base is inclined towards the right",
     lower=-math.pi / 2, upper=math.pi / 2, default=0.0, example="2 deg")
 
+REBOUND = Quantity("rebound", "-", "velocity after a rebound from the wall over the one before, without its sign",
+    symbol="e", lower=0.0, upper=1.0, closed="both")
+
 GRAVITY = Quantity("gravity", "m/s2", "acceleration of gravity", symbol="g", lower=0.0, default=STANDARD_GRAVITY)
 
 MASS = Quantity("mass", "kg", "mass, or the weight of it; not needed for the outcome", symbol="m", lower=0.0,

@@ -13,6 +13,7 @@ from rocking._base.quantities import (
     LEFT,
     MASS_HEIGHT,
     OFFSET,
+    REBOUND,
     RIGHT,
     TOP_HEIGHT,
     WIDTH,
@@ -29,15 +30,6 @@ VERTICES = Quantity(
 PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, ...), z upwards", example="vase.stl")
 UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft", default="m")
 SIDES = Quantity("sides", "", "edges about which it rocks: both; left or right: a wall stops it at the other side")
-REBOUND = Quantity(
-    "rebound",
-    "-",
-    "velocity after a rebound from the wall over the one before, without its sign",
-    symbol="e",
-    lower=0.0,
-    upper=1.0,
-    closed="both",
-)
 DIRECTION = Quantity(
     "direction",
     "rad",
