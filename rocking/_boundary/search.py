@@ -108,7 +108,7 @@ def without_layers(codes: Codes) -> Codes:
 
 def counted_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = outcome_code(found)
+    codes = outcome_codes(found.outcome, found.impacts)
     return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
