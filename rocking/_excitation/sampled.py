@@ -112,7 +112,7 @@ class SampledPulse(AbstractPulse):
         inner = sloped[1:][np.diff(rises[sloped]) != 0.0]
         fields = {"name": name, "start": 0.0, "end": float(phases[-1]), "stationary": tuple(phases[inner].tolist())}
         for key, value in (fields | {"phases": phases, "values": values}).items():
-            object.__setattr__(self, key, value)
+            vars(self)[key] = value
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], period: float | None = None) -> SampledPulse:

@@ -186,7 +186,8 @@ class BodyMotion(ABC):
             impact_times,
             self._flag,
         )
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return int(written)
 
     @cached_property
@@ -197,10 +198,6 @@ class BodyMotion(ABC):
     @cached_property
     def _flag(self) -> NDArray[np.uint8]:
         return flag_array(self.stop)
-
-    def _check_stop(self) -> None:
-        if self._flag[0]:
-            check_stop(self.stop)
 
 
 def overturned(record: Record) -> bool:
@@ -253,7 +250,8 @@ class PulseMotion(BodyMotion):
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return record, written
 
     @cached_property
@@ -270,7 +268,8 @@ class PulseMotion(BodyMotion):
         equal = equal and cell["slenderness"][0] == cell["slenderness"][1]
         edges = NO_EDGES if equal else np.empty((1, EDGE_COLUMNS))
         count = solve_batch(np.array([cell]), state, step_state(state[0]), self._flag, response, edges, followed)
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return followed[:count].copy(), state[0]
 
     def _set_response(self, record: Record) -> None:
@@ -333,7 +332,8 @@ class SamplesMotion(BodyMotion):
         steps = samples_state.step_state(self.samples, self.cell)
         rest = self.max_rotation, history, impact_times, self._flag
         written = sample_record(self.samples, self.cell, state, start, steps, *rest)
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return state, int(written)
 
 

@@ -61,7 +61,7 @@ class MasonryArch:
             "gravity": positive("gravity", gravity, "m/s2"),
         }
         for name, value in checked.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+            vars(self)[name] = value  # a frozen dataclass
 
     def angle(self, joint: float) -> float:
         """Direction from the centre of the circle to a joint, or between two [rad]."""

@@ -105,7 +105,7 @@ class Record:
             component.flags.writeable = False
         given = {"vertical": None, **components, "time_step": step, **about}
         for key, value in given.items():
-            object.__setattr__(self, key, value)
+            vars(self)[key] = value
 
     def __repr__(self) -> str:
         """Name, length, step and peak accelerations."""

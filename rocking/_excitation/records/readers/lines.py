@@ -58,13 +58,13 @@ class TextFile:
         """Convert UTF-16 to UTF-8, as numbers are read from bytes, and CR CR LF to LF; leave out a last comment."""
         if self.content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             try:
-                object.__setattr__(self, "content", self.content.decode("utf-16").encode())
+                vars(self)["content"] = self.content.decode("utf-16").encode()
             except UnicodeDecodeError as error:
                 raise self.error(None, f"UTF-16 with {error.reason}", "text") from None
         if b"\r\r\n" in self.content:  # a line end written twice by a system that adds a carriage return
-            object.__setattr__(self, "content", self.content.replace(b"\r\r\n", b"\n"))
+            vars(self)["content"] = self.content.replace(b"\r\r\n", b"\n")
         if end := _CLOSING.search(self.content, max(1, len(self.content) - MAX_CLOSING)):
-            object.__setattr__(self, "content", self.content[: end.start()])
+            vars(self)["content"] = self.content[: end.start()]
 
     @cached_property
     def head(self) -> list[str]:
