@@ -25,6 +25,7 @@ from rocking._assessment.search import (
 from rocking._assessment.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
 from rocking._assessment.site import Motion, Site, record_doubts
 from rocking._assessment.sliding import sliding_displacement
+from rocking._assessment.standards import checked_clauses, demand_over_capacity
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._base.units import Scalar
@@ -54,6 +55,7 @@ def assess(
     samples: Scalar = 0,
     seed: Scalar = 0,
     resolution: Scalar = RESOLUTION,
+    standards: str | Iterable[str] = (),
     stop: StopFlag | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
@@ -75,6 +77,9 @@ def assess(
         Of these variants, 0 to 2^53.
     resolution : float
         Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1].
+    standards : str or iterable of str
+        Checks by standards of which the demand over capacity is stated beside the exact outcome: "static", "ishiyama",
+        "asce43", "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
     stop : StopFlag, optional
         Cancels the work.
     progress : callable, optional
@@ -107,6 +112,7 @@ def assess(
     variants = integer("samples", samples, 0, MAX_SAMPLES)
     chosen_seed = integer("seed", seed, 0, 2**53)
     share_apart = checked_resolution(resolution)
+    clauses = checked_clauses(standards)
     parts = 1 + (5 if sensitivity else 0)
 
     def advance(share: float) -> None:
@@ -149,6 +155,8 @@ def assess(
         "friction_needed": uplift / STANDARD_GRAVITY,
     }
     columns |= _sliding(given, body, motions, sensitivity, stop)
+    ratios = demand_over_capacity(body, motions, clauses, stop)
+    columns |= {f"{name}_ratio": -least(-each) for name, each in ratios.items()}
     columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
         columns |= changed_objects(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
-from rocking._assessment.columns import VERDICTS
+from rocking._assessment.columns import CLAUSES, VERDICTS
 from rocking._assessment.motions import envelope_of, frictions_of
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
@@ -106,6 +106,7 @@ def report_html(
         site=found.site,
         found=found,
         lines=lines,
+        clauses=CLAUSES,
         counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
         worst=_worst(lines),
         tables=tables,

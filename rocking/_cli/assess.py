@@ -144,6 +144,14 @@ Sensitivity = Annotated[
         metavar="",
     ),
 ]
+Standards = Annotated[
+    str,
+    typer.Option(
+        help="Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
+        "circolare_nonlinear.",
+        metavar="[NAME,NAME,...]",
+    ),
+]
 Output = Annotated[
     str | None,
     typer.Option(
@@ -199,6 +207,7 @@ def assess(
     shapes: Shapes = None,
     moving_ground: MovingGround = False,
     sensitivity: Sensitivity = True,
+    standards: Standards = "",
     samples: Samples = 0,
     seed: Seed = 0,
     resolution: Resolution = 0.005,
@@ -261,6 +270,7 @@ def assess(
                 given,
                 site,
                 sensitivity=sensitivity,
+                standards=standards,
                 samples=samples,
                 seed=seed,
                 resolution=resolution,
