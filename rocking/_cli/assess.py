@@ -286,8 +286,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
         )
         return
     if form.kind == "csv":
-        units = {one.name: one.unit for one in OUTPUTS if one.header != one.name}
-        printing.print_csv(found.with_details(columns), form, units)
+        typer.echo(found.to_csv(), nl=False)
         return
     printing.print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
     if found.resolution:

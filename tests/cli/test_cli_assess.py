@@ -267,6 +267,8 @@ def test_report_is_self_contained_and_escapes_names(table, monkeypatch):
     assert page.tags.count("math") == 4
     assert page.text.index("What it means") < page.text.index("All objects") < page.text.index("Model and assumptions")
     assert f"rocking {rocking.__version__}" in page.text
+    assert CliRunner().invoke(app, [*argv, "--detail", "all"]).exit_code == 2
+    assert file.read_text().count('<section class="block page"') == 5  # each direction of each object
 
 
 COLLECTION = Path(__file__).parents[2] / "docs" / "howto" / "collection.csv"
