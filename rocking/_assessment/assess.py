@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.columns import CLOSE, OUTPUTS, VERDICTS
 from rocking._assessment.motions import first_exceedances
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.result import Assessment
@@ -37,9 +37,6 @@ from rocking.suites.hazard import curve_rates, outcome_rates
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
-
-CLOSE = 0.2
-"""Margin below which a warning is given [-]: a ground motion is not known better."""
 
 WIDE = 0.1
 """Relative distance of the bounds of an annual rate above which a warning is given [-]."""
@@ -247,7 +244,8 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
     for k, one in enumerate(given):
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
-            texts.append(f"the lowest factor {factor:.3g} lies within {100 * CLOSE:g} % of the motions of the site")
+            side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
+            texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
         if math.isfinite(columns["slides_at"][k]):
             when = f"friction {one.friction:.3g}, more is needed from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"

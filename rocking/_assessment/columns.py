@@ -121,3 +121,6 @@ OUTPUTS = (
 
 VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")
 """From the best to the worst."""
+
+CLOSE = 0.2
+"""Distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better."""

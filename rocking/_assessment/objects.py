@@ -31,6 +31,14 @@ CYLINDER = 0.75
 """12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]."""
 
 
+class RowDetails(dict[str, str]):
+    """Other texts of a row of a table, with the whole row as it stands."""
+
+    def __init__(self, others: Mapping[str, str], row: Mapping[str, str]) -> None:
+        super().__init__(others)
+        self.row = row
+
+
 @dataclass(frozen=True)
 class Object:
     """A free-standing object on a rectangular or round base. Lengths in metres, or texts such as "40 cm".
@@ -200,6 +208,11 @@ class Object:
         """
         corners = tuple((float(x), float(y)) for x, y in checked_vertices(vertices))
         return OutlineObject(name, vertices=corners, **others)
+
+    @property
+    def cells(self) -> Mapping[str, str]:
+        """The row of the table that it was read from as it stands, by its headers; of other objects empty."""
+        return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
     def planes(self) -> dict[str, Plane]:

@@ -132,8 +132,10 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert [row["verdict"] for row in rows] == [row["verdict"] for row in answer["rows"]] + ["not read"]
     assert float(rows[0]["factor"]) == answer["rows"][0]["factor"]
     assert rows[-1]["object"] == "row 3"
-    assert "colour" in rows[0]  # kept, although it is not read
-    assert [row.pop("colour") for row in rows] == [*answer["details"]["colour"], ""]
+    given = list(csv.DictReader(io.StringIO(TABLE)))
+    assert list(rows[0])[: len(given[0])] == list(given[0])  # as they stand, also those that are not read
+    assert [{name: row.pop(name) for name in given[0]} for row in rows] == [given[2], given[0], given[0], given[1]]
+    assert answer["details"]["colour"] == ["", "red", "red"]
     accepted = client.post(URL, json=ROWS, headers={"accept": "text/csv"})
     assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]
     assert {"name", "width", "height"} <= {*answer["columns"].values()}

@@ -242,7 +242,7 @@ class AssessResponse(Answer):
     )
     bad_rows: list[UnreadRow] = Field(description="rows that were not read; the others are assessed")
     details: dict[str, list[str]] = Field(
-        {}, description="other texts of the object of each row, by their headers in the table"
+        {}, description="cells of the object of each row as they stand, by the headers of the table"
     )
     columns: dict[str, str] = Field(description="what columns of the table were read as, by their headers")
     skipped: list[str] = Field(description="columns of the table that were not read; `details` has their cells")
