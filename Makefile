@@ -51,7 +51,10 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	@echo 'of long enumerations a sample is tried: make test-all tries all'
 	$(PYTEST)
 
-test-all: .venv/project browser ## run all tests, with all of what `make test` tries a sample (SEED= for other random requests)
+build/clients/bin/openapi-python-client: | .venv/project
+	$(PYTHON) -m venv build/clients && build/clients/bin/pip install --quiet openapi-python-client datamodel-code-generator
+
+test-all: .venv/project browser build/clients/bin/openapi-python-client ## run all tests, with all of what `make test` tries a sample (SEED= for other random requests)
 	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) $(PYTEST)
 
 PYTEST := pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --max-worker-restart 0

@@ -57,12 +57,14 @@ def integrate_record(
     scale: arb | int = 1,
     vertical: Sequence[float] | None = None,
     left: Edge | None = None,
+    one_sided: bool = False,
     max_impacts: int = 20_000,
 ) -> ExactResponse:
     """Return the response; floats are exact, the acceleration is divided by its largest absolute value.
 
     The horizontal ground acceleration is multiplied by `scale`; `vertical` is over g, upwards. `left` is the left edge
-    where it is not like the right one. After `max_impacts` the outcome is CAPPED.
+    where it is not like the right one; a `one_sided` body has none and rebounds on the right one. After `max_impacts`
+    the outcome is CAPPED.
     """
     peak = arb(max(abs(a) for a in acceleration))
     factor = scale / (peak * arb(slenderness))
@@ -71,7 +73,7 @@ def integrate_record(
     angle = None if alpha is None else arb(alpha)
     pressing = [1 + arb(w) for w in vertical] if vertical is not None else [arb(1)] * len(ground)
     edges = {side: _Edge(Edge(1.0, 1.0, restitution) if side == 1 or left is None else left, angle) for side in (1, -1)}
-    return _Integration(ground, pressing, length, edges, angle, max_impacts).run()
+    return _Integration(ground, pressing, length, edges, angle, one_sided, max_impacts).run()
 
 
 def response_and_amplification(
@@ -113,10 +115,11 @@ class _Integration:
         length: arb,
         edges: dict[int, _Edge],
         alpha: arb | None,
+        one_sided: bool,
         max_impacts: int,
     ) -> None:
         self.ground, self.pressing, self.length, self.edges = ground, pressing, length, edges
-        self.alpha, self.max_impacts = alpha, max_impacts
+        self.alpha, self.max_impacts, self.sides = alpha, max_impacts, (1,) if one_sided else (1, -1)
         self.fallen = None if alpha is None else arb.pi() / (2 * alpha)
         self.k, self.s = 0, arb(0)
         self.z, self.v, self.side = arb(0), arb(0), 0
@@ -164,7 +167,7 @@ class _Integration:
     def _lifted(self, s: arb) -> int:
         """The side of the rotation that the ground starts, 0 where it starts none."""
         u, pressing = self._at(self.ground, s), self._at(self.pressing, s)
-        return next((side for side in (1, -1) if self._restoring(side, u, pressing) < 0), 0)
+        return next((side for side in self.sides if self._restoring(side, u, pressing) < 0), 0)
 
     def _uplift(self) -> bool:
         """From rest: move to the first time with q < 0 on an edge, or return False."""
@@ -253,13 +256,19 @@ class _Integration:
             time = self.k * self.length + self.s
             response.first_impact_time = (time - response.uplift_time).mid()
             response.first_impact_velocity = (self.side * self.v).mid()
-        self.side, self.z, self.v = -self.side, arb(0), abs(self.edges[self.side].eta * self.v).mid()
+        self.z, self.v = arb(0), abs(self.edges[self.side].eta * self.v).mid()
+        self._change_side()
         lifted = self._lifted(self.s)
         if lifted != 0:
             if self.v == 0:
                 self.side = lifted
             return False
         return bool(self.v < REST_VELOCITY)
+
+    def _change_side(self) -> None:
+        """The side of the flight after an impact: the other one, if there are two."""
+        if len(self.sides) == 2:
+            self.side = -self.side
 
     def _free_rocking(self) -> ExactResponse:
         """Decide the outcome after the last sample by energy, in the units of each edge.
@@ -276,7 +285,7 @@ class _Integration:
         speed = edge.block.impact_speed(z, v)
         for impact in (1, 2):
             speed *= edge.eta * edge.speed
-            self.side = -self.side
+            self._change_side()
             edge = self.edges[self.side]
             speed /= edge.speed
             if speed > edge.block.barrier_speed():

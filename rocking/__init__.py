@@ -3,13 +3,14 @@
 Bodies, one or arrays of them: `Block`, `RigidBody`, `EquivalentBlock`, each with `response`, `history`, `spectrum`,
     `thresholds` and `boundary`.
 Motions: a name of `PULSE_NAMES`, or `pulse` of it; `SampledPulse`, `SinusoidalPulse`, `WaveletPulse`, `SmoothPulse` of
-    one's own; `Record` and `read_record`; `floor_motion` and `isolated_motion` of a structure under a record.
+    one's own; `Record` and `read_record`; `floor_motion` and `isolated_motion` of a structure under a record;
+    `elastic_spectrum`.
 Objects at a site: `Object`, `read_objects`, `Site`, `assess`, `overturning_probability`.
 Suites of records: `fragility`, and the package `rocking.suites`.
 Measurements and old rocks: `identify_free_rocking`, `calibrate`, `survival`, `unexceeded`.
 Blocks in the groups of the paper: `peak_response`, `time_history`, `thresholds`, `overturning_boundary`, `open_cube`,
     and the formulas of `rocking.paper`.
-Pictures: `rocking.plot`.
+Checks by standards: `rocking.standards`. Pictures: `rocking.plot`.
 
 >>> import rocking
 >>> block = rocking.Block(width="40 cm", height="160 cm")

@@ -1,5 +1,6 @@
 from . import paper as paper
 from . import plot as plot
+from . import standards as standards
 from . import suites as suites
 from ._assessment.assess import assess as assess
 from ._assessment.objects import Object as Object
@@ -13,6 +14,7 @@ from ._base.version import __version__ as __version__
 from ._boundary.amplitude import thresholds as thresholds
 from ._boundary.tracing import overturning_boundary as overturning_boundary
 from ._dimensional.block import Block as Block
+from ._dimensional.body_kinds import body as body
 from ._dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
 from ._dimensional.response import BodyResponse as BodyResponse
 from ._dimensional.rigid_body import RigidBody as RigidBody
@@ -25,6 +27,7 @@ from ._excitation.pulses import SinusoidalPulse as SinusoidalPulse
 from ._excitation.pulses import SmoothPulse as SmoothPulse
 from ._excitation.pulses import WaveletPulse as WaveletPulse
 from ._excitation.pulses import pulse as pulse
+from ._excitation.records.elastic_spectrum import elastic_spectrum as elastic_spectrum
 from ._excitation.records.floor import floor_motion as floor_motion
 from ._excitation.records.floor import isolated_motion as isolated_motion
 from ._excitation.records.readers.read_record import read_record as read_record

@@ -28,7 +28,7 @@ from rocking_api.models.pulses import with_samples
 from rocking_api.routers.control_map import MapParams
 from rocking_api.settings import Settings
 
-from rocking._base.column import name_and_unit
+from rocking._base.cells import name_and_unit
 from rocking._base.errors import InvalidArgumentError, positive
 from rocking._cli.fragility import read_suite
 from rocking._dimensional.table import read_table

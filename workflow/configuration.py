@@ -3,8 +3,6 @@
 Every error is one line that names the key, its value and what is allowed.
 """
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, pairwise
@@ -29,11 +27,8 @@ from rocking.suites.configuration import suite_configuration
 from workflow.pulses import configured_pulse, different
 from workflow.scripts.axes import steps_between
 
-NODES = 200_000_000
-"""Largest number of nodes of the cubes of a tenth of the restitution, which are in memory together."""
-
-BYTES = 95
-"""Memory per node while cubes are solved [bytes], measured from 0.5 to 12 million nodes."""
+NODES = 200_000_000  # largest number of nodes of the cubes of a tenth of the restitution, which are in memory together
+BYTES = 95  # memory per node while cubes are solved [bytes], measured from 0.5 to 12 million nodes
 
 DATA_OF_FIGURES = {
     "figure-04": ["sine"],
@@ -274,18 +269,9 @@ PAPER = {"figures": FIGURES, "claims": section(restitution=ETAS)}
 def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
     """Raise an error for a configuration that no run could finish.
 
-    Parameters
-    ----------
-    config : mapping
-        Of data sets, with the figures and claims of the paper or without; or of a suite of records, with the keys
-        `title` and `suite`.
-    folder : path
-        Folder of the file of the configuration.
-
-    Raises
-    ------
-    ConfigurationError
-        One line for the first invalid value: key, value and what is allowed.
+    `config`: of data sets, with the figures and claims of the paper or without; or of a suite of records, with the keys
+    `title` and `suite`. `folder`: folder of the file of the configuration. Raises `ConfigurationError`: one line for
+    the first invalid value: key, value and what is allowed.
     """
     if "suite" in config:
         _check_suite(config, folder)

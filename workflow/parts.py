@@ -4,8 +4,6 @@ Their names end in a digest of the code and the settings that they were made fro
 taken for a current one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any

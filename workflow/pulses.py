@@ -4,8 +4,6 @@ The samples of a pulse are an input of the jobs that depend on them, a file whos
 samples of the same name make the products of this pulse again, and no others.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -21,18 +19,11 @@ from workflow import parts
 KEYS = ("name", "acceleration", "time", "period", "file")
 """Keys of a pulse given by samples: arguments of `rocking.SampledPulse`, or a file for acceleration and time."""
 
-NAME = re.compile(r"[a-z0-9_]{1,40}")
-"""Names of pulses, which name folders."""
+NAME = re.compile(r"[a-z0-9_]{1,40}")  # names of pulses, which name folders
 
 
 def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:
-    """A pulse of a configuration; paths are relative to `folder`, that of the configuration.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is neither a name of the catalogue nor samples with another name.
-    """
+    """A pulse of a configuration: a name of the catalogue, or samples, in files relative to `folder`."""
     if not isinstance(entry, Mapping):
         made = pulse(entry)
         if made.name.partition("(")[0] not in PULSE_NAMES:
@@ -57,13 +48,7 @@ def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:
 
 
 def different(pulses: Iterable[str | SampledPulse]) -> dict[str, str | SampledPulse]:
-    """The pulses by their names.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If two have one name.
-    """
+    """The pulses by their names, which have to differ."""
     found: dict[str, str | SampledPulse] = {}
     for one in pulses:
         name = one if isinstance(one, str) else one.name

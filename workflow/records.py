@@ -5,8 +5,6 @@ contains a digest of the code and the settings of the job, so that it is missing
 Snakemake has noted what the products were made from (it has not for a job that went on after its run was killed).
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
@@ -69,13 +67,7 @@ def write_record(record: Path, products: Iterable[Path]) -> None:
 
 
 def read_record(record: Path) -> dict[str, Any]:
-    """The digests that `write_record` wrote.
-
-    Raises
-    ------
-    ValueError
-        If the file is not a record.
-    """
+    """The digests that `write_record` wrote. Raises `ValueError` if the file is not a record."""
     content = json.loads(record.read_bytes())
     if not isinstance(content, dict) or not content:
         raise ValueError(f"{record}: no record of products")

@@ -7,8 +7,6 @@ A cluster may start a job of a killed run long after another run has begun: it f
 `run.lock`, and ends.
 """
 
-from __future__ import annotations
-
 import fcntl
 import os
 import select
@@ -23,14 +21,9 @@ from rocking._datasets.checksum import PARTIAL
 RUN_ID = "ROCKING_RUN"
 """Environment variable: id of the process with which a process ends, the run for a job and make for a run."""
 
-RUN_NUMBER = "ROCKING_RUN_NUMBER"
-"""Environment variable: random number of the run of a job."""
-
-FOLDER = Path(".snakemake")
-"""Folder of the locks and of the files of Snakemake."""
-
-LOCK_TIMEOUT = 3.0
-"""Time for which a lock is tried [s]: the system needs a moment to end a process that was killed."""
+RUN_NUMBER = "ROCKING_RUN_NUMBER"  # environment variable: random number of the run of a job
+FOLDER = Path(".snakemake")  # folder of the locks and of the files of Snakemake
+LOCK_TIMEOUT = 3.0  # time for which a lock is tried [s]: the system needs a moment to end a process that was killed
 
 _held: dict[Path, IO[str]] = {}
 
@@ -40,14 +33,10 @@ class RunningError(RuntimeError):
 
 
 def acquire(folder: Path) -> None:
-    """Lock a folder until this process ends, and remove unfinished files of killed jobs.
+    """Lock a folder until this process ends, and remove unfinished files of killed jobs. Raises `RunningError` if it is
+    locked.
 
     If only the run was killed, this waits for its jobs, which end by themselves within moments.
-
-    Raises
-    ------
-    RunningError
-        If another run holds the lock.
     """
     folder = folder.resolve()
     if folder in _held:
@@ -88,13 +77,7 @@ def _locked(file: IO[str], timeout: float) -> bool:
 
 
 def join_run() -> None:
-    """In a job: share the lock of the folder until the job ends, and end with the run.
-
-    Raises
-    ------
-    RunningError
-        If the run of this job was killed and another one has begun.
-    """
+    """In a job: share the lock of the folder until the job ends; end with the run, or at once if another has begun."""
     jobs = _held[FOLDER] = (FOLDER / "jobs.lock").open("a", encoding="utf-8")
     fcntl.flock(jobs, fcntl.LOCK_SH)
     number = os.environ.get(RUN_NUMBER)  # a cluster may not pass it on

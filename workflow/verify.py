@@ -4,8 +4,6 @@
 `workflow/manifests/`. The bytes of a file depend on the code that made it as well, which it names.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys
@@ -21,8 +19,7 @@ MANIFEST = "results/manifest.json"
 LISTS = {MANIFEST: "manifest", "results/checks.txt": "check_results"}
 """Products that the manifest cannot list, and the job of each."""
 
-SUITES = "results/suites/*/manifest.json"
-"""Manifests of the suites of records."""
+SUITES = "results/suites/*/manifest.json"  # manifests of the suites of records
 
 
 def problems(folder: Path) -> Iterator[str]:

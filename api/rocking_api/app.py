@@ -5,19 +5,15 @@ from __future__ import annotations
 import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from threading import Lock
 
 import anyio
 import anyio.to_thread
 from fastapi import FastAPI
-from pydantic import BaseModel
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
-from rocking._lookup.collection import CubeCollection
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
-from rocking_api.http.host import HostCheck
-from rocking_api.http.memory_budget import MemoryBudgetMiddleware
+from rocking_api.http.openapi import describe
 from rocking_api.http.request_log import RequestLog
 from rocking_api.models.answer import VERSION
 from rocking_api.models.bodies import BODIES
@@ -46,7 +42,6 @@ from rocking_api.routers import (
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
-from rocking_api.zarr_store import ZarrStores
 
 LOG = logging.getLogger("rocking.service")
 
@@ -76,13 +71,9 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         responses=RESPONSES,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request
     )
-    cubes = CubeCollection(settings.results)
-    service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
+    service = app.state.service = Service(settings)
     # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream", "application/zip")
-    app.add_middleware(  # counts before compression
-        MemoryBudgetMiddleware, budget=service.memory_budget, seconds=settings.reading_seconds
-    )
     app.add_middleware(
         GZipMiddleware, minimum_size=2000, exclude_content_types=(*DEFAULT_EXCLUDED_CONTENT_TYPES, *binary)
     )
@@ -93,8 +84,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
             allow_methods=["GET", "HEAD", "POST"],
             expose_headers=["ETag", "Content-Range", "Accept-Ranges", "Repr-Digest", "X-Request-ID", "Retry-After"],
         )
-    app.add_middleware(HostCheck)
-    app.add_middleware(RequestLog, metrics=service.metrics, access_log=settings.access_log)
+    app.add_middleware(RequestLog, metrics=service.metrics)
     app.state.when_ready = when_ready
     add_handlers(app)
     pages.add_error_pages(app)
@@ -102,7 +92,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
     app.mount("/guide", guide.GuideFiles(settings.guide))
-    _describe_bodies(app)
+    describe(app, lambda: [Problem, *sorted(BODIES, key=lambda body: body.__name__)])
     return app
 
 
@@ -116,8 +106,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         background.start_soon(service.dataset_checker.watch)
         yield
         background.cancel_scope.cancel()
-    for executor in (service.executor, service.parser):
+    for executor in (service.executor, service.single, service.parser):
         executor.close()
+    service.metrics.close()
 
 
 async def _load_kernels(service: Service, when_ready: Callable[[], None]) -> None:
@@ -129,22 +120,3 @@ async def _warn_without_cubes(service: Service) -> None:
     names = await anyio.to_thread.run_sync(service.cubes.catalogue.names, abandon_on_cancel=True)
     if not any(name.startswith("spectra/") for name in names):
         LOG.warning("no spectrum cubes in %s; the solver is used instead", service.settings.results)
-
-
-def _describe_bodies(app: FastAPI) -> None:
-    """Add the models that the OpenAPI description refers to but no route declares as a parameter."""
-    generate, lock = app.openapi, Lock()
-
-    def described() -> dict[str, object]:
-        with lock:  # several threads may ask for it first
-            if app.openapi_schema is None:
-                schemas = generate()["components"]["schemas"]
-                bodies = sorted(BODIES, key=lambda body: body.__name__)
-                models: list[type[BaseModel]] = [Problem, *bodies]
-                for model in models:
-                    schema = model.model_json_schema(ref_template="#/components/schemas/{model}")
-                    schemas.update(schema.pop("$defs", {}))
-                    schemas[model.__name__] = schema
-            return generate()
-
-    app.openapi = described  # type: ignore[method-assign]  # FastAPI's documented way to extend the description

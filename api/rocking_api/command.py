@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
+import subprocess
 import tempfile
 from contextlib import ExitStack
-from types import FrameType
 from typing import Any
 
 import typer
-import uvicorn  # noqa: F401  (`rocking serve` names the extra if this import fails; the server is imported by `main`)
+import uvicorn
 from pydantic import ValidationError
 
+from rocking_api.execution.kernels import compile_command
 from rocking_api.settings import Settings
+
+LOG: dict[str, Any] = {
+    "version": 1,
+    "disable_existing_loggers": False,
+    "formatters": {"line": {"format": "%(asctime)s %(levelname)s %(name)s: %(message)s"}},
+    "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "line"}},
+    "loggers": {name: {"handlers": ["stderr"], "level": "INFO", "propagate": False} for name in ("rocking", "uvicorn")},
+}
+"""For logging.config.dictConfig."""
+
+HEALTHCHECK_SECONDS = 60
+"""Time after which uvicorn replaces a worker that does not answer it [s]; loading the package takes some of it."""
 
 
 def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
-    """Serve a folder of results on an address until SIGINT or SIGTERM.
+    """Serve a folder of results on an address until SIGINT or SIGTERM; then finish the requests that run.
 
     Parameters
     ----------
@@ -29,16 +40,13 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
     port : int
         Port to listen on, 0 to 65535; 0 takes a free one.
     workers : int
-        Number of processes that serve, >= 1; more than one where processes can be forked, not on Windows.
+        Number of processes that serve, >= 1; uvicorn replaces those that end.
 
     Raises
     ------
     typer.Exit
         With code 2 if a setting is not allowed; the message names it.
     """
-    if workers > 1 and "fork" not in multiprocessing.get_all_start_methods():
-        typer.echo(f"Error: --workers = {workers} is not allowed; allowed: 1 on a system that cannot fork", err=True)
-        raise typer.Exit(2)
     given: dict[str, Any] = {} if results is None else {"results": results}
     try:
         settings = Settings(**given)
@@ -49,21 +57,28 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
         allowed = wrong.get("ctx", {}).get("error", wrong["msg"])
         typer.echo(f"Error: {name} = {wrong['input']!r} is not allowed; allowed: {allowed}", err=True)
         raise typer.Exit(2) from None
-    if results is not None and not settings.results.is_dir():
-        typer.echo(f"Error: --results = {results!r} is not allowed; allowed: a folder that exists", err=True)
-        raise typer.Exit(2)
+    if results is not None:
+        if not settings.results.is_dir():
+            typer.echo(f"Error: --results = {results!r} is not allowed; allowed: a folder that exists", err=True)
+            raise typer.Exit(2)
+        os.environ["ROCKING_RESULTS"] = results
     with ExitStack() as stack:
         if workers > 1:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="rocking-metrics-"))
-            os.environ["PROMETHEUS_MULTIPROC_DIR"] = folder
-            signal.signal(signal.SIGTERM, _leave)  # until the workers run; the folder is removed
-        from rocking_api.server import serve  # noqa: PLC0415  (prometheus_client reads the variable on import)
-
-        stopped_by = serve(settings, host, port, workers)
-    if stopped_by == signal.SIGTERM:  # end as one process does
-        signal.signal(stopped_by, signal.SIG_DFL)
-        signal.raise_signal(stopped_by)
-
-
-def _leave(number: int, _: FrameType | None) -> None:
-    raise SystemExit(128 + number)
+            os.environ["PROMETHEUS_MULTIPROC_DIR"] = folder  # of prometheus_client
+            if (command := compile_command()) is not None:  # once, not in each worker
+                subprocess.run(command, check=False)
+        uvicorn.run(
+            "rocking_api.server:application",
+            factory=True,
+            host=host,
+            port=port,
+            workers=workers,
+            ws="none",
+            server_header=False,
+            log_config=LOG,
+            access_log=settings.access_log,
+            limit_concurrency=settings.max_connections,
+            timeout_graceful_shutdown=settings.stop_seconds,
+            timeout_worker_healthcheck=HEALTHCHECK_SECONDS,
+        )

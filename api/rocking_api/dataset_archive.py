@@ -8,10 +8,13 @@ from collections.abc import Iterator
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, UnknownDatasetError
 from rocking._datasets.checksum import find_damage, sha256_of
-from rocking_api.http.memory_budget import CHUNK_BYTES
 
 OLDEST = 1980, 1, 1, 0, 0, 0
 """Time stamp of all files in the archive, the first that zip knows: equal files give equal bytes."""
+
+
+CHUNK_BYTES = 128 * 1024
+"""Bytes that are sent at once."""
 
 
 class _Sink(bytearray):

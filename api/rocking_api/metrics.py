@@ -8,15 +8,11 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
-from functools import cache, partial
-from pathlib import Path
+from functools import cache
 
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, Counter, Gauge, Histogram, generate_latest
-from prometheus_client.metrics_core import Metric
 from prometheus_client.multiprocess import MultiProcessCollector, mark_process_dead
 from prometheus_client.process_collector import ProcessCollector
-from prometheus_client.registry import Collector
 
 from rocking_api.execution.executor import BoundedExecutor
 
@@ -27,11 +23,6 @@ BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0,
 
 FOLDER = "PROMETHEUS_MULTIPROC_DIR"
 """Environment variable with the folder of the metrics of several workers."""
-
-
-def forget_process(process: int) -> None:
-    """Remove what a worker that has ended has reported of its present state; its counts are kept."""
-    mark_process_dead(process)  # type: ignore[no-untyped-call]
 
 
 class Metrics:
@@ -63,7 +54,7 @@ class Metrics:
         if FOLDER in os.environ:
             self._all_workers = CollectorRegistry()
             MultiProcessCollector(self._all_workers)  # type: ignore[no-untyped-call]
-            self._all_workers.register(WorkerProcesses(Path(os.environ[FOLDER])))
+            ProcessCollector(registry=self._all_workers)  # of the one that answers
 
     def request(self, method: str, route: str, status: int, seconds: float) -> None:
         """Count a request; `route` is its pattern, so that names of data sets do not create time series."""
@@ -86,23 +77,10 @@ class Metrics:
         self._damaged.labels(name).set(is_damaged)
 
     def text(self) -> bytes:
-        """In the text format of Prometheus; with several workers those of all, their processes by `pid`."""
+        """In the text format of Prometheus; with several workers the counts of all."""
         return generate_latest(self._all_workers or self.registry)
 
-
-class WorkerProcesses(Collector):
-    """Memory, processor time and open files of each worker, which has a file of gauges in the folder of the metrics."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-
-    def collect(self) -> Iterator[Metric]:
-        """The metrics of `ProcessCollector`, with the process id as label `pid`."""
-        found: dict[str, Metric] = {}
-        for path in sorted(self._folder.glob("gauge_livesum_*.db")):
-            process = path.stem.rpartition("_")[2]
-            for metric in ProcessCollector(pid=partial(str, process), registry=None).collect():
-                merged = found.setdefault(metric.name, Metric(metric.name, metric.documentation, metric.type))
-                for sample in metric.samples:
-                    merged.add_sample(sample.name, {**sample.labels, "pid": process}, sample.value)
-        yield from found.values()
+    def close(self) -> None:
+        """Remove what a worker that ends has reported of its present state; its counts are kept."""
+        if self._all_workers is not None:
+            mark_process_dead(os.getpid())  # type: ignore[no-untyped-call]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Annotated, TypeVar
 
 import anyio
@@ -15,12 +14,10 @@ from rocking._lookup.collection import CubeCollection
 from rocking._numba.cancellation import StopFlag
 from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.dataset_summaries import DatasetSummaries
-from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, Work
 from rocking_api.execution.kernels import Kernels
-from rocking_api.http.body import limited_body
+from rocking_api.http.body import MemoryBudget, Reservation, limited_body
 from rocking_api.http.encoding import Form
-from rocking_api.http.memory_budget import MemoryBudget
 from rocking_api.http.parameters import check_json, query_parameters, read_json, read_query
 from rocking_api.metrics import Metrics
 from rocking_api.models.params import Params
@@ -40,59 +37,45 @@ SEARCH_SHARE = 0.2
 """Share of the time limit for the search along one line [-]."""
 
 
-@dataclass
 class Service:
     """One per application, made in `create_app`."""
 
-    settings: Settings
-    cubes: CubeCollection
-    zarr_stores: ZarrStores
-    batcher: MicroBatcher = field(init=False)
-    kernels: Kernels = field(init=False)
-    executor: BoundedExecutor = field(init=False)
-    metrics: Metrics = field(init=False)
-    dataset_checker: DatasetChecker = field(init=False)
-    io_limiter: CapacityLimiter = field(init=False)
-    parser: BoundedExecutor = field(init=False)
-    memory_budget: MemoryBudget = field(init=False)
-    summaries: DatasetSummaries = field(init=False)
-    suites: SuiteReader = field(init=False)
-    turns: anyio.Lock = field(default_factory=anyio.Lock)
-
-    def __post_init__(self) -> None:
-        settings = self.settings
-        # a separate thread: requests for one block do not wait for heavy work
-        single = BoundedExecutor(1, settings.max_queue, settings.max_seconds)
-        self.batcher = MicroBatcher(self.cubes, single)
-        self.kernels = Kernels(settings.max_seconds)
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        queue, seconds = settings.max_queue, settings.max_seconds
+        self.cubes = CubeCollection(settings.results)
+        self.zarr_stores = ZarrStores(self.cubes.catalogue)
+        self.kernels = Kernels(seconds)
         self.metrics = Metrics()
-        self.executor = BoundedExecutor(
-            settings.max_workers, settings.max_queue, settings.max_seconds, self.metrics.heavy, trials=True
-        )
+        # a separate thread: requests for one block do not wait for heavy work
+        self.single = BoundedExecutor(1, settings.max_connections, seconds)
+        self.executor = BoundedExecutor(settings.max_workers, queue, seconds, self.metrics.heavy, trials=True)
+        self.parser = BoundedExecutor(1, queue, seconds, trials=True)
         self.dataset_checker = DatasetChecker(self.cubes, self.metrics.damaged)
         self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.suites = SuiteReader(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)
-        self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds, trials=True)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
+        self.turns = anyio.Lock()
 
     async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
-        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            At once, if a parameter is out of range.
-        """
+        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`."""
         params.check()
         await self.kernels.wait()
-        return await self.executor.run(work, request, request.state.reservation.held)
+        return await self.executor.run(work, request, self.reservation(request).held)
 
     async def read_body(self, request: Request, limit: int, hint: str = "") -> bytes:
         """The body of a request, of at most `limit` bytes, see `limited_body`; `hint` is for larger ones."""
         allowed = limit, f"at most {limit} bytes{hint}"
-        reservation = request.state.reservation
+        reservation = self.reservation(request)
         return await limited_body(request, allowed, self.settings.arrival_seconds, reservation, self.turns)
+
+    def reservation(self, request: Request) -> Reservation:
+        """The memory that is held for a request until its end."""
+        if not hasattr(request.state, "reservation"):
+            request.state.reservation = Reservation(self.memory_budget)
+        found: Reservation = request.state.reservation
+        return found
 
     async def read(
         self, request: Request, kind: type[P], form: Form, body: type[B], limit: int, hint: str = ""
@@ -101,11 +84,6 @@ class Service:
 
         An object of JSON is read as `body`, which has the fields of `kind`; these may be in the query as well. Beside a
         file or a list they are in the query.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If parameters or body do not fit, see `check_json`, `read_json` and `limited_body`.
         """
         query = query_parameters(request)
         raw = await self.read_body(request, limit, hint)
@@ -129,7 +107,7 @@ class Service:
 
         Those that a process of its own reads, `in_process`, follow after them; see `BoundedExecutor.run`.
         """
-        held = request.state.reservation.held
+        held = self.reservation(request).held
         if large or in_process or held > LARGE_BODY:
             return await self.parser.run(work, request, held, is_long=in_process)
         return await self.run_io(lambda: work(StopFlag()))

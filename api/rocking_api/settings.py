@@ -48,16 +48,11 @@ class Settings(BaseSettings):
     max_queue: int = Field(default=16, ge=0, description="requests of heavy work that may wait; more are refused")
     max_seconds: float = Field(default=60.0, gt=0.0, description="time limit of a request of heavy work [s]")
     max_bytes_in_flight: int = Field(
-        default=64 * 1024 * 1024,
-        ge=1,
-        description="limit of bodies, batches and unread responses, all together [bytes]",
+        default=64 * 1024 * 1024, ge=1, description="limit of bodies and batches, all together [bytes]"
     )
     arrival_seconds: float = Field(default=20.0, gt=0.0, description="time for a body to arrive [s]")
-    reading_seconds: float = Field(
-        default=15.0, gt=0.0, description="time for a client to read a part of a large response [s]"
-    )
     stop_seconds: int = Field(default=30, ge=1, description="time for running requests at shutdown [s]")
-    access_log: bool = Field(default=True, description="one line of JSON for each request")
+    access_log: bool = Field(default=True, description="one line of the log for each request")
     # pydantic-settings would report text that is no JSON by an error without its value
     cors_origins: Annotated[tuple[str, ...], NoDecode, BeforeValidator(_origins)] = Field(
         default=(), description="web origins that may read the responses"

@@ -2,177 +2,123 @@
 
 from __future__ import annotations
 
-from rocking._base.column import Column
-from rocking._dimensional.table_header import HEIGHT, NAME, NUMBER, RESTITUTION, WIDTH
+from rocking._base.quantities import (
+    DEPTH,
+    DIAMETER,
+    FRICTION,
+    HEIGHT,
+    LENGTH,
+    MASS,
+    MASS_HEIGHT,
+    NAME,
+    NOTES,
+    NUMBER,
+    OFFSET_DEPTH,
+    OFFSET_WIDTH,
+    PEDESTAL,
+    RESTITUTION,
+    THICKNESS,
+    TOLERANCE,
+    WIDTH,
+)
+from rocking._base.quantity import Quantity
+from rocking._dimensional.body_kinds import BODIES, RIGID
 
 INPUTS = (
     NAME,
     WIDTH,
-    Column(
-        "depth",
-        "m",
-        "depth of the base",
-        (
-            *("d", "base depth", "depth of base", "depth of the base", "tiefe", "profondita", "profondeur", "p"),
-            *("profundidad", "profundidade", "diepte", "vathos", "\u03b2\u03b1\u03b8\u03bf\u03c2"),
-        ),
-        absent_beside=("diameter",),
-    ),
-    Column(
-        "diameter",
-        "m",
-        "diameter of a round base",
-        (
-            *("dia", "diam", "base diameter", "diameter base", "diameter of base", "diameter of the base"),
-            *(
-                "durchmesser",
-                "diametro",
-                "diametre",
-                "diametros",
-                "\u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2",
-            ),
-        ),
-        absent_beside=("width",),
-    ),
+    DEPTH,
+    DIAMETER,
     HEIGHT,
-    Column(
-        "mass_height",
-        "m",
-        "height of the centre of mass above the base; by default half of the height",
-        (
-            *("height of the centre of mass", "height of the center of mass", "centre of mass height"),
-            *("center of mass height", "cg height", "com height", "schwerpunkthohe", "altezza del baricentro"),
-            *("hauteur du centre de masse", "altura del centro de masa"),
-        ),
-    ),
-    Column(
-        "offset_width", "m", "centre of mass from the middle of the width", ("offset", "offset x", "eccentricity x")
-    ),
-    Column("offset_depth", "m", "centre of mass from the middle of the depth", ("offset y", "eccentricity y")),
-    Column(
-        "mass",
-        "kg",
-        "mass, or the weight of it; not needed for the outcome",
-        (
-            *("weight", "masse", "gewicht", "massa", "peso", "maza", "varos", "poids"),
-            *("\u03bc\u03b1\u03b6\u03b1", "\u03b2\u03b1\u03c1\u03bf\u03c2"),
-        ),
-        absent_beside=("height",),
-        assumed="kg",
-    ),
-    Column(
-        "friction",
-        "-",
-        "coefficient of friction at the base",
-        (
-            *("friction coefficient", "coefficient of friction", "mu", "reibung", "reibungskoeffizient"),
-            *("reibungszahl", "haftreibung", "attrito", "coefficiente di attrito", "frottement", "friccion", "trivi"),
-            *("coefficient de frottement", "coeficiente de friccion", "\u03bc", "\u03c4\u03c1\u03b9\u03b2\u03b7"),
-        ),
-        highest=10.0,
-    ),
+    MASS_HEIGHT,
+    OFFSET_WIDTH,
+    OFFSET_DEPTH,
+    MASS,
+    FRICTION,
     RESTITUTION,
-    Column("tolerance", "m", "how far the dimensions are uncertain", ("dimension tolerance", "toleranz", "tolleranza")),
-    Column("pedestal", "", "what the object stands on", ("sockel", "piedistallo", "socle", "pedestal type", "vathro")),
-    Column(
-        "notes",
-        "",
-        "anything else",
-        (
-            *("note", "remark", "remarks", "comment", "comments", "bemerkung", "bemerkungen", "anmerkungen"),
-            *("osservazioni", "remarques", "notas", "observaciones", "simeioseis", "material", "location", "room"),
-        ),
-        joined=True,
-    ),
+    TOLERANCE,
+    PEDESTAL,
+    NOTES,
 )
 """What an object has."""
 
-STAND_INS = (
-    NUMBER,
-    Column(
-        "length",
-        "m",
-        "horizontal length: the depth beside a width, otherwise the width",
-        (
-            *("l", "base length", "length of base", "lange", "laenge", "longueur", "lunghezza", "largo", "longitud"),
-            *("comprimento", "lengte", "mikos", "\u03bc\u03b7\u03ba\u03bf\u03c2"),
-        ),
-        stands_for=("width", "depth"),
-    ),
-    Column(
-        "thickness",
-        "m",
-        "thickness: the depth beside a width",
-        (
-            *("thick", "thk", "t", "dicke", "starke", "staerke", "spessore", "epaisseur", "e", "espesor", "grosor"),
-            *("espessura", "dikte", "pachos", "\u03c0\u03b1\u03c7\u03bf\u03c2"),
-        ),
-        stands_for=("depth",),
-    ),
-)
-"""Other columns of tables, which are read as one of these."""
+STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are read as one of these
 
-REQUIRED = (("width", "diameter"), ("height",))
+BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
+
+_KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
+
+_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination", "sides", "rebound"}
+
+SHAPES = (
+    BODY,
+    *{name: one for kind in _KINDS for name, one in kind.fields.items() if one.names[0] not in _OWN}.values(),
+)
+"""Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
+
+_LENGTHS = {name for kind in _KINDS for name in kind.needed if kind.fields[name].unit == "m"}
+
+REQUIRED = (
+    ("width", "diameter", *sorted(_LENGTHS - {"width", "diameter", "height", "mass_height"})),
+    ("height", "mass_height"),
+)
 """Columns that the header of a table has, one of each group."""
 
+CLAUSES = {
+    "static": "static check: PGA over g b/h",
+    "ishiyama": "Ishiyama (1982): the smaller one of PGA and PGV over their lower bounds",
+    "asce43": "ASCE 43-05 A.2, best estimate: spectral demand over capacity at alpha, at most PGA over g b/h",
+    "circolare_linear": "Circolare 2009 C8A.4.2.3, linear kinematic check with q = 2: PGA/q over g b/h",
+    "circolare_nonlinear": "Circolare 2009 C8A.4.2.3, nonlinear kinematic check: S_De(T_s) over 0.4 b",
+}
+"""Checks by standards and their demand over capacity; a body passes below 1. Spectra are of the motion, which on a
+floor is that of the floor."""
+
 OUTPUTS = (
-    Column("object", "", "name of the object"),
-    Column(
-        "direction",
-        "",
+    Quantity("object", "", "name of the object"),
+    Quantity("direction", "",
         "along which it rocks: width, depth, any of a round base, the plane of an outline, or an angle from the x axis "
-        "of a mesh",
-    ),
-    Column("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
-    Column("uplifts", "bool", "whether a motion of the site makes it uplift"),
-    Column("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
-    Column("factor", "-", "lowest factor tried on the motions of the site at which one of them overturns it"),
-    Column("governing", "", "that motion"),
-    Column("overturned_by", "", "motions that overturn it at the strength of the site or below"),
-    Column(
-        "share",
-        "-",
-        "share of the motions of the site, a pair of components being one, that overturn it at a factor up to 1",
-    ),
-    Column("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
-    Column("share_upper", "-", "upper end of it"),
-    Column("rotation", "rad", "largest rotation under the motions that do not overturn it"),
-    Column("displacement", "m", "largest movement of its top under them"),
-    Column(
-        "annual_rate", "1/year", "annual rate of overturning, where a hazard curve is given that reaches far enough"
-    ),
-    Column("annual_rate_lower", "1/year", "that rate at least"),
-    Column("annual_rate_upper", "1/year", "that rate at most; not known where the hazard curve begins too high"),
-    Column("friction_needed", "-", "coefficient of friction that uplift needs"),
-    Column("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
-    Column(
-        "slides_under",
-        "",
-        "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, too",
-    ),
-    Column("slides_at", "s", "earliest of these times"),
-    Column(
-        "sliding",
-        "m",
-        "largest displacement if it only slides, with the vertical components, where it slides first",
-    ),
-    Column(
-        "smallest_width",
-        "m",
-        "smallest base at this height from which on no base that was tried is overturned at a factor up to 1",
-    ),
-    Column("largest_height", "m", "largest height on this base up to which no height that was tried is overturned so"),
-    Column("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
-    Column("factor_more_restitution", "-", "the factor with one higher by 0.05"),
-    Column("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
-    Column("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
-    Column(
-        "sampled_share",
-        "-",
-        "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1",
-    ),
-    Column("warnings", "", "what is in doubt"),
-)
+        "of a mesh"),
+    Quantity("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
+    Quantity("uplifts", "bool", "whether a motion of the site makes it uplift"),
+    Quantity("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
+    Quantity("factor", "-", "lowest factor tried on the motions of the site at which one of them overturns it"),
+    Quantity("governing", "", "that motion"),
+    Quantity("overturned_by", "", "motions that overturn it at the strength of the site or below"),
+    Quantity("share", "-",
+        "share of the motions of the site, a pair of components being one, that overturn it at a factor up to 1"),
+    Quantity("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
+    Quantity("share_upper", "-", "upper end of it"),
+    Quantity("rotation", "rad", "largest rotation under the motions that do not overturn it"),
+    Quantity("displacement", "m", "largest movement of its top under them"),
+    Quantity("annual_rate", "1/year",
+        "annual rate of overturning, where a hazard curve is given that reaches far enough"),
+    Quantity("annual_rate_lower", "1/year", "that rate at least"),
+    Quantity("annual_rate_upper", "1/year", "that rate at most; not known where the hazard curve begins too high"),
+    Quantity("friction_needed", "-", "coefficient of friction that uplift needs"),
+    Quantity("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
+    Quantity("slides_under", "",
+        "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, "
+        "too"),
+    Quantity("slides_at", "s", "earliest of these times"),
+    Quantity("sliding", "m",
+        "largest displacement if it only slides, with the vertical components, where it slides first"),
+    Quantity("smallest_width", "m",
+        "smallest base at this height from which on no base that was tried is overturned at a factor up to 1"),
+    Quantity("largest_height", "m",
+        "largest height on this base up to which no height that was tried is overturned so"),
+    Quantity("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
+    Quantity("factor_more_restitution", "-", "the factor with one higher by 0.05"),
+    Quantity("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
+    Quantity("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
+    Quantity("sampled_share", "-",
+        "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1"),
+    *(Quantity(f"{name}_ratio", "-", f"{meaning}; the largest of the motions") for name, meaning in CLAUSES.items()),
+    Quantity("warnings", "", "what is in doubt"),
+)  # fmt: skip
 
 VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")
 """From the best to the worst."""
+
+CLOSE = 0.2
+"""Distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better."""

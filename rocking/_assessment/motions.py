@@ -14,13 +14,12 @@ from rocking._assessment.search import least, problems_of
 from rocking._assessment.site import LENGTH, Motion, static_acceleration
 from rocking._assessment.sliding import first_exceedance
 from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, first_excess
-from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag, check_stop
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ def bodies_of(given: Sequence[tuple[Object, str]]) -> BodyArray:
 def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     """The motion of an object under a motion of a site, from the side from which it rotates more."""
     sides = [
-        RigidBody(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
+        side.rigid.changed(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
         for side in bodies_of([(one, direction)]).sides
     ]
     peak: dict[str, Any] = {"peak_acceleration": motion.peak_acceleration, "period": motion.period}
@@ -52,26 +51,27 @@ def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     return max(found, key=lambda each: float(np.abs(each["rotation"]).max()))
 
 
-def friction_of(one: Object, direction: str, motions: Sequence[Motion]) -> xr.Dataset:
-    """The friction that an object needs under each motion, see `Assessment.friction`."""
-    import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+def frictions_of(
+    given: Sequence[tuple[Object, str]], motions: Sequence[Motion], stop: StopFlag | None = None
+) -> tuple[Array, Array]:
+    """Friction that objects in a direction need under each motion, and when their own is first exceeded [s].
 
-    body = bodies_of([(one, direction)])
-    needed = [
-        max(contact_extremes(each.body_motion()).largest_friction_demand for each in problems_of(body, motion))
-        for motion in motions
-    ]
-    given: Any = math.nan if one.friction is None else one.friction  # a number, see `Object`
-    exceeded = first_exceedances(body, np.array([given]), motions)[0]
-    variables = {
-        "friction_needed": ("motion", needed, {"units": "1", "long_name": "largest coefficient of friction needed"}),
-        "exceeded_at": (
-            "motion",
-            exceeded,
-            {"units": "s", "long_name": "time at which that of the object is exceeded"},
-        ),
-    }
-    return xr.Dataset(variables, {"motion": [motion.name for motion in motions]})
+    Arrays (objects, motions), as the variables of `Assessment.friction`.
+    """
+    body = bodies_of(given)
+    sides, uplift = body.rigid.parameters, np.asarray(body.uplift_acceleration)
+    mirrored = np.asarray(sides["left"] != sides["right"])
+    needed = np.empty((len(given), len(motions)))
+    for k, motion in enumerate(motions):
+        static = static_acceleration(motion)
+        needed[:, k] = static / STANDARD_GRAVITY  # of bodies that do not uplift
+        problems = problems_of(body, motion)
+        for row in np.flatnonzero(static > uplift).tolist():
+            both = problems if mirrored[row] else problems[:1]
+            found = (contact_extremes(one.body_motion(stop=stop, index=row)) for one in both)
+            needed[row, k] = max(one.largest_friction_demand for one in found)
+    own: list[Any] = [math.nan if one.friction is None else one.friction for one, _ in given]
+    return needed, first_exceedances(body, np.array(own, dtype=np.float64), motions, stop)
 
 
 def first_exceedances(
@@ -101,23 +101,9 @@ def first_exceedances(
 def envelope_of(
     given: Sequence[tuple[Object, str]], motions: Sequence[Motion], highest: float, stop: StopFlag | None = None
 ) -> tuple[Array, dict[str, Array]]:
-    """Lowest peak accelerations that overturn objects, for the pulse shapes of a site over the period.
+    """Periods [s], and by shape of pulse the lowest peak accelerations [m/s2] (objects, periods) that overturn objects.
 
-    Parameters
-    ----------
-    given : sequence of (Object, str)
-        Objects and directions.
-    motions : sequence of Motion
-        Of the site; records have none.
-    highest : float
-        Peak acceleration that is searched [m/s2].
-    stop : StopFlag, optional
-        Cancels the work.
-
-    Returns
-    -------
-    (float array (periods,), dict of str to float array (objects, periods))
-        Periods [s], and for each shape the peak acceleration, nan where none was found [m/s2].
+    Of objects in directions; nan where none up to `highest` [m/s2] was found.
     """
     pulses = {one.motion.name: one.motion for one in motions if isinstance(one.motion, AbstractPulse)}
     if not pulses or not given:

@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.units import EXAMPLES, UNITS, USUAL, Quantity, split_quantity, unit_name
+from rocking._base.units import EXAMPLES, UNITS, USUAL, WithUnit, split_quantity, unit_name
 
 _MAX_FLOAT = sys.float_info.max
 
@@ -110,7 +110,7 @@ def _short(value: Any) -> str:
 
 
 def in_range(
-    parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
+    parameter: str, value: ArrayLike | WithUnit, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> NDArray[np.float64]:
     """Return `value` as a float64 array (shape kept) after checking that all of it is finite and in the range.
 
@@ -149,7 +149,7 @@ def in_range(
 
 
 def number(
-    parameter: str, value: ArrayLike | Quantity, low: float, high: float, *, closed: str = "both", unit: str = "-"
+    parameter: str, value: ArrayLike | WithUnit, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> float:
     """Return `value` as a float after checking that it is one finite number in the range; as `in_range`."""
     if type(value) is float and low < value < high:  # all that is left to do for most
@@ -159,12 +159,12 @@ def number(
     return float(in_range(parameter, value, low, high, closed=closed, unit=unit))
 
 
-def positive(parameter: str, value: ArrayLike | Quantity, unit: str) -> float:
+def positive(parameter: str, value: ArrayLike | WithUnit, unit: str) -> float:
     """Return `value` as a float after checking that it is one finite number > 0; as `in_range`."""
     return number(parameter, value, 0.0, math.inf, closed="neither", unit=unit)
 
 
-def integer(parameter: str, value: ArrayLike | Quantity, low: float, high: float) -> int:
+def integer(parameter: str, value: ArrayLike | WithUnit, low: float, high: float) -> int:
     """Return `value` as an int after checking that it is one whole number from `low` to `high`; as `in_range`."""
     found = number(parameter, value, low, high)
     if not found.is_integer():
@@ -340,7 +340,7 @@ def _interval(low: float, high: float, closed: str, unit: str) -> str:
 
 
 def broadcast(
-    given: Mapping[str, ArrayLike | Quantity | None], checked: Sequence[NDArray[np.float64]]
+    given: Mapping[str, ArrayLike | WithUnit | None], checked: Sequence[NDArray[np.float64]]
 ) -> list[NDArray[np.float64]]:
     """The `checked` arrays of some arguments, broadcast against each other.
 

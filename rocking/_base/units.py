@@ -16,16 +16,16 @@ from numpy.typing import ArrayLike
 from rocking._base.constants import STANDARD_GRAVITY
 
 
-class Quantity(Protocol):
+class WithUnit(Protocol):
     """A number with a unit, or several, as the library pint has them."""
 
     def to(self, unit: Any, /) -> Any:
         """The same in another unit."""
 
 
-Scalar = float | str | Quantity
+Scalar = float | str | WithUnit
 """A number in the SI unit, a text such as "40 cm", or a quantity."""
-Values = ArrayLike | Quantity
+Values = ArrayLike | WithUnit
 """The same, or an array."""
 
 UNITS: dict[str, dict[str, float]] = {

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import needed, number, reject_given
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION
 from rocking._base.units import Scalar
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.scan import Index, Lines, checked_resolution, outcome_changes
@@ -23,11 +24,10 @@ from rocking._excitation.records.vertical import (
     check_one_vertical_scale,
     highest_vertical_scale,
 )
-from rocking._model.checks import check_number, check_one_alpha, known_restitution
+from rocking._model.checks import check_one_alpha, known_restitution
 from rocking._model.fields import IMPACTS, OUTCOME
 from rocking._model.labelled import variable
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import frequency_parameter_range, record_cells, record_response
@@ -137,7 +137,7 @@ def thresholds(
     if highest is None:
         highest = 10.0 if isinstance(motion, Record) else 100.0
     top = number("highest", highest, 1.0, 1e6, closed="right")
-    eta = check_number(RESTITUTION, known_restitution(restitution, alpha))
+    eta = RESTITUTION.number(known_restitution(restitution, alpha))
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         given = needed("a record", frequency_parameter=frequency_parameter)
@@ -146,7 +146,7 @@ def thresholds(
         return _record_changes(motion, groups, vertical_scale, top, checked_resolution(resolution), stop)
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
-    omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
+    omega = FREQUENCY_RATIO.number(needed("a pulse", frequency_ratio=frequency_ratio))
     return amplitude_changes(block_solver(made, alpha, stop=stop), omega, eta, top)
 
 

@@ -1,37 +1,22 @@
 """Which cells of a grid the traced boundaries cross."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._boundary.curves import curves_at
 
-MARGIN = 0.1
-"""Share of a cell by which a curve is widened: a chord of a curve lies that close to it [-]."""
-
-STEP = 0.2
-"""Distance of the points by which a curve is followed, in cells [-]."""
+MARGIN = 0.1  # share of a cell by which a curve is widened: a chord of a curve lies that close to it [-]
+STEP = 0.2  # distance of the points by which a curve is followed, in cells [-]
 
 Array = NDArray[np.float64]
 
 
 def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Array) -> NDArray[np.bool_]:
-    """Cells of a spectrum grid through which an overturning boundary passes, or next to which it does.
+    """Cells (n - 1, m - 1) of a spectrum grid through which an overturning boundary passes, or next to which it does.
 
-    Parameters
-    ----------
-    boundary : Dataset
-        Ragged curves as of `overturning_boundary`, with `alpha` (curve) [rad].
-    alpha : float
-        Slenderness angle [rad], 0 for the slender limit.
-    rows, columns : float arrays (n,), (m,)
-        slenderness and frequency_ratio.
-
-    Returns
-    -------
-    bool array (n - 1, m - 1)
+    `boundary`: ragged curves as of `overturning_boundary`, with alpha(curve) [rad]; `alpha`: the angle [rad], 0 for the
+    slender limit; `rows` (n,), `columns` (m,): slenderness and frequency_ratio.
     """
     curves = curves_at(boundary, alpha)
     row = _index(rows, curves["slenderness"].values)

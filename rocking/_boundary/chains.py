@@ -15,32 +15,18 @@ from rocking._boundary.search import Codes, Floats
 
 @dataclass(eq=False)
 class Chains:
-    """Points of the outlines of overturning regions, chain after chain; all arrays (points,).
+    """Points of the outlines of overturning regions, chain after chain; all arrays (points,)."""
 
-    Attributes
-    ----------
-    chain : int array
-        Number of the chain.
-    eta : float array
-        Restitution [-].
-    slenderness, log_omega : float arrays [-]
-        The last point within the region along a line omega = const.
-    own, neighbour : int arrays
-        Region codes of the region and of its neighbour.
-    side : int array
-        1 where the region lies at larger 1/a than its neighbour, else 0.
-    width : float array
-        Of the region there along 1/a [-].
-    """
-
-    chain: Index
-    eta: Floats
+    chain: Index  # number of the chain
+    eta: Floats  # restitution [-]
+    # slenderness, log_omega: the last point within the region along a line omega = const [-]
     slenderness: Floats
     log_omega: Floats
+    # own, neighbour: region codes of the region and of its neighbour
     own: Codes
     neighbour: Codes
-    side: NDArray[np.int64]
-    width: Floats
+    side: NDArray[np.int64]  # 1 where the region lies at larger 1/a than its neighbour, else 0
+    width: Floats  # of the region there along 1/a [-]
 
     def take(self, index: Index) -> Chains:
         """The points of some indices."""

@@ -1,7 +1,5 @@
 """Chords of boundary curves, halved until their distance from the curves is small enough."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,17 +11,13 @@ SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
 """Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the
 distance at which it may lie [-]."""
 
-WIDENINGS = 4
-"""Times that the distance at which the two sides of a curve are looked for is widened [-]."""
+WIDENINGS = 4  # times that the distance at which the two sides of a curve are looked for is widened [-]
 
 SURE = 0.5
 """Share of the largest distance below which it is not measured where the chords on both sides agree on it [-]."""
 
-FINE = 0.02
-"""Share of the largest distance to which a distance near it is measured [-]."""
-
-HALVINGS = 12
-"""Times that a chord is halved at most [-]."""
+FINE = 0.02  # share of the largest distance to which a distance near it is measured [-]
+HALVINGS = 12  # times that a chord is halved at most [-]
 
 
 def refine_chords(
@@ -32,26 +26,11 @@ def refine_chords(
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
     Regions of many impacts lie side by side with equal codes, and a chord can join two of them. It is taken out: the
-    curve is not found at its middle.
+    curve is not found at its middle. `largest`: distance in the plane of 1/a and log omega [-], `uncounted` for regions
+    of many impacts; `end`: width in log omega of the chords that end a region, which are not halved.
 
-    Parameters
-    ----------
-    chains : Chains
-        The curves.
-    classify : Classify
-        The solver, with region codes.
-    largest : float
-        Distance in the plane of 1/a and log omega [-].
-    uncounted : float
-        The same for regions of many impacts [-].
-    end : float
-        Width in log omega of the chords that end a region, which are not halved [-].
-
-    Returns
-    -------
-    chains, error, uncounted_error, unknown
-        The curves, bounds of the largest distance of a chord from its curve, without regions of
-        many impacts and for these, and the number of chords whose curve was not found at the middle.
+    Returns the curves, bounds of the largest distance of a chord from its curve, without regions of many impacts and
+    for these, and the number of chords whose curve was not found at the middle.
     """
     error = uncounted_error = 0.0
     unknown = 0

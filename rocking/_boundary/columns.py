@@ -9,51 +9,34 @@ from numpy.typing import NDArray
 
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, refine_lines, without_layers
 
-THINNEST = 1e-6
-"""Width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]."""
+THINNEST = 1e-6  # width in 1/a below which a region is not resolved: the regions on its two sides are taken to meet [-]
 
 Index = NDArray[np.intp]
 
 
 @dataclass(eq=False)
 class Column:
-    """Regions along one line omega = const between two values of 1/a, ascending, and the thresholds between them.
+    """Regions along one line omega = const between two values of 1/a, ascending, and the thresholds between them."""
 
-    Attributes
-    ----------
-    eta, log_omega : float
-        Restitution and log omega of the line [-].
-    below, above : float arrays (thresholds,)
-        1/a where the region below a threshold ends and where the one above it begins: `RESOLUTION` apart, or up to
-        `THINNEST` where thinner regions lie between them [-].
-    codes : list of int (thresholds + 1,)
-        Region codes, see `region_code`.
-    bottom, top : float
-        1/a at the two ends [-].
-    thinnest : float
-        As `THINNEST`, for overturning after many impacts and for the bands of surviving blocks within it [-].
-    middle : float array (thresholds,)
-        1/a of each threshold, halfway between its two regions [-].
-    regions : int array (thresholds + 1,)
-        The codes as an array.
-    trends : float array (2, thresholds, 4)
-        How the boundary curve goes that ends at each threshold, see `rocking._boundary.matching`: known from the left
-        (row 0) and from the right (row 1); nan where unknown.
-    whole, offset : Column, int
-        The column that this one is a part of, and the index of its first threshold there.
-    """
-
+    # eta, log_omega: restitution and log omega of the line [-]
     eta: float
     log_omega: float
+    # below, above: (thresholds,) 1/a where the region below a threshold ends and where the one above it begins:
+    # `RESOLUTION` apart, or up to `THINNEST` where thinner regions lie between them [-]
     below: Floats
     above: Floats
-    codes: list[int]
+    codes: list[int]  # (thresholds + 1,) region codes, see `region_code`
+    # bottom, top: 1/a at the two ends [-]
     bottom: float
     top: float
+    # as `THINNEST`, for overturning after many impacts and for the bands of surviving blocks within it [-]
     thinnest: float = THINNEST
-    middle: Floats = field(init=False)
-    regions: Codes = field(init=False)
+    middle: Floats = field(init=False)  # (thresholds,) 1/a of each threshold, halfway between its two regions [-]
+    regions: Codes = field(init=False)  # (thresholds + 1,) the codes as an array
+    # (2, thresholds, 4) how the boundary curve goes that ends at each threshold, see `rocking._boundary.matching`:
+    # known from the left (row 0) and from the right (row 1); nan where unknown
     trends: Floats = field(init=False)
+    # whole, offset: the column that this one is a part of, and the index of its first threshold there
     whole: Column = field(init=False)
     offset: int = field(init=False, default=0)
 
@@ -95,14 +78,9 @@ class Column:
 class Lines:
     """Classified nodes on many lines omega = const, every change of outcome between them refined.
 
-    Parameters
-    ----------
-    points : float array (lines, 3)
-        1/a (any), log omega and eta of each line.
-    classify : Classify
-        The solver, with layer codes or region codes.
-    thinnest : float array (lines,)
-        As `THINNEST`, for overturning after many impacts and for the bands of surviving blocks within it [-].
+    `points` (lines, 3): 1/a (any), log omega and eta of each line; `classify`: the solver, with layer codes or region
+    codes; `thinnest` (lines,): as `THINNEST`, for overturning after many impacts and for the bands of surviving blocks
+    within it [-].
     """
 
     def __init__(self, points: Floats, classify: Classify, thinnest: Floats) -> None:

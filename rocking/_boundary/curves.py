@@ -4,8 +4,6 @@ A file `results/overturning/PULSE/eta-0.85.nc` holds polylines one after the oth
 its angle in alpha(curve) [rad]; 0 stands for the slender limit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,32 +16,13 @@ ALPHA_TOLERANCE = 1e-12
 
 
 def join_curves(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """The curves of all parts, one part after the other.
-
-    Parameters
-    ----------
-    parts : sequence of xarray.Dataset
-        Contiguous ragged polylines with equal variables over `curve` or `point`, `row_size` points each.
-    """
+    """The curves of all parts in turn: ragged polylines with equal variables over `curve` or `point`."""
     curves, points = ([part.drop_dims(other) for part in parts] for other in ("point", "curve"))
     return xr.merge([xr.concat(curves, dim="curve"), xr.concat(points, dim="point")])
 
 
 def curves_at(curves: xr.Dataset, alpha: float) -> xr.Dataset:
-    """The curves of one slenderness angle, of size 0 if there are none.
-
-    Parameters
-    ----------
-    curves : xarray.Dataset
-        Contiguous ragged polylines with row_size(curve) and alpha(curve) [rad].
-    alpha : float
-        Slenderness angle [rad], [0, pi/2); 0 for the slender limit.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an angle out of range.
-    """
+    """The curves of one slenderness angle [rad], [0, pi/2), 0 for the slender limit; of size 0 if there are none."""
     wanted = np.abs(curves["alpha"].values - check_one_alpha(alpha)) <= ALPHA_TOLERANCE
     points = np.repeat(wanted, curves["row_size"].values)
     return curves.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points))

@@ -5,8 +5,6 @@ is inversely proportional to T_p and proportional to the square root of R (2.2).
 gives the critical periods of a block and the critical sizes of a shape.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,37 +12,27 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._boundary.search import Floats, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_ends, check_number
+from rocking._model.checks import check_ends
 from rocking._model.outcome_code import SURVIVES
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
 
-NODES_PER_DECADE = 1000
-"""Nodes on which outcomes are first computed, before their changes are refined [-]."""
+NODES_PER_DECADE = 1000  # nodes on which outcomes are first computed, before their changes are refined [-]
 
 Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
 class FrequencyThresholds(EqualByValue):
-    """Frequency ratios at which the outcome for a block changes, ascending; arrays (thresholds,).
+    """Frequency ratios at which the outcome for a block changes, ascending; arrays (thresholds,)."""
 
-    Attributes
-    ----------
-    frequency_ratio : float array [-]
-        omega = omega_g/p; the block overturns at it, and survives within a relative `RESOLUTION` of it.
-    overturns_above : bool array
-        True where the block overturns just above the threshold and survives just below it.
-    overturns_at_ends : (bool, bool)
-        Whether it overturns at the lower and at the upper end of the window.
-    """
-
+    # omega = omega_g/p; the block overturns at it, and survives within a relative `RESOLUTION` of it [-]
     frequency_ratio: Floats
-    overturns_above: Flags
-    overturns_at_ends: tuple[bool, bool]
+    overturns_above: Flags  # True where the block overturns just above the threshold and survives just below it
+    overturns_at_ends: tuple[bool, bool]  # whether it overturns at the lower and at the upper end of the window
 
 
 def critical_frequency_ratio(
@@ -56,29 +44,15 @@ def critical_frequency_ratio(
     alpha: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> FrequencyThresholds:
-    """Every frequency ratio of a window at which the outcome changes, the amplitude being fixed.
+    """Every frequency ratio at which the outcome changes, the amplitude being fixed; arguments and errors of
+    `peak_response`.
 
-    Parameters
-    ----------
-    pulse, slenderness, restitution, alpha
-        As for `peak_response`; scalars.
-    window : (float, float)
-        Smallest and largest omega = omega_g/p considered [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
+    `window`: smallest and largest omega considered [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
 
-    Returns
-    -------
-    FrequencyThresholds
-        Each good to a relative `RESOLUTION`, or to `ELASTIC_RESOLUTION` where an elastic block overturns after more
-        than `MOST_COUNTED` impacts. A region narrower than 1/1000 of a decade that lies between equal outcomes can be
-        missed; a surviving band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are
-        one, is not, unless it is narrower than `RESOLUTION`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range.
+    Each threshold is good to a relative `RESOLUTION`, or to `ELASTIC_RESOLUTION` where an elastic block overturns after
+    more than `MOST_COUNTED` impacts. A region narrower than 1/1000 of a decade that lies between equal outcomes can be
+    missed; a surviving band between two ways of overturning, of which all with more than `MOST_COUNTED` impacts are
+    one, is not, unless it is narrower than `RESOLUTION`.
     """
     made = as_pulse(pulse)
     low, high = check_ends(FREQUENCY_RATIO, window, "window")
@@ -86,7 +60,7 @@ def critical_frequency_ratio(
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    point = check_number(SLENDERNESS, slenderness), float(nodes[0]), check_number(RESTITUTION, restitution)
+    point = SLENDERNESS.number(slenderness), float(nodes[0]), RESTITUTION.number(restitution)
     grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, alpha, stop=stop), counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])

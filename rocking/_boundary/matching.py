@@ -5,8 +5,6 @@ ends there, the width of this chord in log omega, the second derivative of 1/a w
 two chords, and the width of both together. `SECANT` to `SPAN` number them. The loops over thresholds are compiled.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any
@@ -18,15 +16,13 @@ from rocking._boundary.columns import Column
 from rocking._boundary.search import UNCOUNTED
 from rocking._numba.compilation import FloatArray, array_entry, array_kernel
 
-SECANT, STEP, CURVATURE, SPAN = range(4)
-"""Indices of the numbers of a trend."""
+SECANT, STEP, CURVATURE, SPAN = range(4)  # indices of the numbers of a trend
 
 KNOWN, UNKNOWN, SINGLE = 0.02, 0.03, 0.5
 """Cost of a threshold without partner, per step in log omega, if the slope of its curve is known or not, and if both
 columns have one threshold of its kind only [-]."""
 
-NEAR = 0.3
-"""Share of the distance to the next threshold up to which two thresholds can belong to one curve only [-]."""
+NEAR = 0.3  # share of the distance to the next threshold up to which two thresholds can belong to one curve only [-]
 
 PAIR, LEFT_ALONE, RIGHT_ALONE = range(3)
 """What the next thresholds of two columns do: they belong to one curve, or one of them has no partner."""
@@ -37,8 +33,7 @@ STRAIGHT = 0.05
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-Pairs = NDArray[np.int64]
-"""Indices (pairs, 2) of thresholds in a left and in a right column."""
+Pairs = NDArray[np.int64]  # indices (pairs, 2) of thresholds in a left and in a right column
 
 Side = tuple[Column, int, int]
 """A column, a threshold of it, and the region beside that: 0 for the one below, 1 for the one above."""
@@ -137,18 +132,9 @@ def match_trends(
 ) -> IntArray:
     """Pairs of thresholds (pairs, 2) that belong to one curve, in order: the cheapest choice, see `match_thresholds`.
 
-    Parameters
-    ----------
-    x, y : float arrays (n,), (m,)
-        1/a of the thresholds of the left and of the right column, ascending [-].
-    codes, other_codes : int arrays (n + 1,), (m + 1,)
-        Region codes of both columns.
-    many : int
-        The region code of overturning after many impacts.
-    trends, other_trends : float arrays (n, 4), (m, 4)
-        Trends of the thresholds, those of the left column from the left and those of the right column from the right.
-    step : float
-        Distance of the columns in log omega [-].
+    `x` (n,), `y` (m,): 1/a of the thresholds of the left and the right column, ascending; `codes` (n + 1,),
+    `other_codes` (m + 1,): region codes, `many` that of many impacts; `trends` (n, 4), `other_trends` (m, 4): from the
+    left, and from the right; `step`: distance of the columns in log omega [-].
     """
     kinds, others = _kinds(codes), _kinds(other_codes)
     slopes, other_slopes = end_slopes(trends, 0), end_slopes(other_trends, 1)
@@ -202,18 +188,9 @@ def learn_trends(
 ) -> None:
     """Note at both ends of the chords between matched thresholds how the curves go there.
 
-    Parameters
-    ----------
-    pairs : int array (pairs, 2)
-        Matched thresholds of the left and of the right column.
-    x, y : float arrays (n,), (m,)
-        1/a of the thresholds of both columns [-].
-    before, left : float arrays (n, 4)
-        Trends of the left column, from the left, and, to be filled, from the right.
-    right, after : float arrays (m, 4)
-        Trends of the right column: to be filled, from the left, and from the right.
-    step : float
-        Distance of the columns in log omega [-].
+    `pairs` (pairs, 2), `x` (n,), `y` (m,) and `step` as for `match_trends`. `before` (n, 4) holds the trends of the
+    left column from the left, `after` (m, 4) those of the right column from the right; `left` and `right`, of the same
+    shapes, are filled with those from the other side.
     """
     for k in range(len(pairs)):
         m, n = pairs[k, 0], pairs[k, 1]
@@ -236,25 +213,10 @@ def follow_trends(
 ) -> FloatArray:
     """Where the regions above some thresholds lie one step further: see `courses_of`.
 
-    Parameters
-    ----------
-    below, above : float arrays (n,)
-        1/a where the region below a threshold ends and where the one above it begins [-].
-    inner : int array (regions,)
-        The thresholds.
-    trends : float array (n, 4)
-        Trends of the thresholds of the column, known from one side.
-    side : int
-        That side: 0 for the left one.
-    step : float
-        In log omega [-].
-    at, shift : float arrays (k,)
-        Ascending 1/a, and by how much curves there move: it counts where slopes are not known [-].
-
-    Returns
-    -------
-    float array (3, regions)
-        1/a halfway through each region, its least width, and how far from there it may lie [-].
+    `below`, `above` (n,), `trends` (n, 4): of the thresholds of the column, as in `Column`, from the side `side`;
+    `inner` (regions,): the thresholds; `step`: in log omega; `at`, `shift` (k,): ascending 1/a, and by how much curves
+    move there, which counts where slopes are not known [-]. Returns an array (3, regions): 1/a halfway through each
+    region, its least width, and how far from there it may lie [-].
     """
     slopes = end_slopes(trends, side)
     found = np.empty((3, inner.size))

@@ -16,17 +16,10 @@ from rocking._boundary.matching import Pairs, Side, follow_trends
 from rocking._boundary.search import UNCOUNTED, Codes, Floats
 from rocking._model.outcome_code import SURVIVES
 
-PROBES = 81
-"""Most points by which a region is looked for in one column [-]."""
-
-ACROSS = np.linspace(0.02, 0.98, 9)
-"""Nodes of a column within a panel, as shares of its height [-]."""
-
-PREDICTED = 5
-"""Columns that are placed near the predicted end of one region at most; after them all lie halfway [-]."""
-
-SHORT = 0.1
-"""Share of the distance to the predicted end of a region by which a column stays before it [-]."""
+PROBES = 81  # most points by which a region is looked for in one column [-]
+ACROSS = np.linspace(0.02, 0.98, 9)  # nodes of a column within a panel, as shares of its height [-]
+PREDICTED = 5  # columns that are placed near the predicted end of one region at most; after them all lie halfway [-]
+SHORT = 0.1  # share of the distance to the predicted end of a region by which a column stays before it [-]
 
 NEARBY = np.array([-0.3, 0.0, 0.3])
 """The first nodes by which a region is looked for in it, in widths from the middle of the region [-]."""
@@ -34,17 +27,10 @@ NEARBY = np.array([-0.3, 0.0, 0.3])
 
 @dataclass(frozen=True, eq=False)
 class Courses:
-    """Where regions of a column lie on another line: one of each array's entries for each region.
+    """Where regions of a column lie on another line: one of each array's entries for each region."""
 
-    Attributes
-    ----------
-    codes : int array
-        Region codes.
-    middle, narrow, reach : float arrays
-        1/a halfway through the region, its least width, and how far from there it may lie [-].
-    """
-
-    codes: Codes
+    codes: Codes  # region codes
+    # middle, narrow, reach: 1/a halfway through the region, its least width, and how far from there it may lie [-]
     middle: Floats
     narrow: Floats
     reach: Floats
@@ -72,19 +58,10 @@ class Courses:
 
 
 def courses_of(column: Column, inner: Index, side: int, step: float, at: Floats, shift: Floats) -> Courses:
-    """Where the regions above some thresholds lie one step further.
+    """Where the regions above some thresholds lie one step (log omega) further.
 
-    Parameters
-    ----------
-    column : Column
-    inner : int array
-        The thresholds.
-    side : int
-        Side from which the slopes are known: 0 for a step to the right.
-    step : float
-        In log omega [-].
-    at, shift : float arrays
-        Ascending 1/a, and by how much curves there move: it counts where slopes are not known [-].
+    `inner`: the thresholds; `side`: side from which the slopes are known, 0 for a step to the right; `at`, `shift`:
+    ascending 1/a, and by how much curves move there, which counts where slopes are not known [-].
     """
     found = follow_trends(column.below, column.above, inner, column.trends[side], side, step, at, shift)
     return Courses(column.regions[inner + 1], *found)
@@ -113,21 +90,12 @@ def probes_for_lost_regions(
 
 @dataclass(frozen=True)
 class Panel:
-    """Two columns, or parts of them.
+    """Two columns, or parts of them."""
 
-    Attributes
-    ----------
-    line : int
-        Index of the line of the grid on its left.
-    left, right : Column
-    predicted : int
-        How many of the columns that led to it were placed near a predicted end [-].
-    """
-
-    line: int
+    line: int  # index of the line of the grid on its left
     left: Column
     right: Column
-    predicted: int = 0
+    predicted: int = 0  # how many of the columns that led to it were placed near a predicted end [-]
 
     @property
     def step(self) -> float:
@@ -142,12 +110,8 @@ class Panel:
     def share(self, end: float) -> float:
         """Where the next column shall lie, as a share of the step: near the predicted end of a region, or halfway.
 
-        First it lies before the end, where the prediction becomes better, then just beyond it and just before it.
-
-        Parameters
-        ----------
-        end : float
-            Distance in log omega within which the end shall be known [-].
+        First it lies before the end, where the prediction becomes better, then just beyond it and just before it. `end`
+        is the distance in log omega within which the end shall be known [-].
         """
         side = int(self.right.below.size > self.left.below.size)
         column, other = (self.right, self.left) if side else (self.left, self.right)
@@ -238,18 +202,11 @@ class Panel:
 
 
 def _distance_to_end(column: Column, side: int) -> float:
-    """Distance in log omega from a column with one region between two others to the end of it; nan if unknown.
+    """Distance in log omega from a column with two thresholds to the end of the region between them; nan if unknown.
 
     A region that ends becomes narrower in proportion to the distance from its end, or to the square root of it. Of both
     the one is chosen that fits the widths on the last three columns; if two are known only, the square root where the
-    regions on both sides are equal.
-
-    Parameters
-    ----------
-    column : Column
-        With two thresholds.
-    side : int
-        Side from which the slopes are known: 0 if the end lies to the right.
+    regions on both sides are equal. `side` is 0 if the end lies to the right.
     """
     secant, step, curvature, span = column.trends[side].T.tolist()
     least = float(column.least_width(np.array([0]))[0])

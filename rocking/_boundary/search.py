@@ -12,19 +12,17 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.checks import check_one_alpha
 from rocking._model.energy import outcome_margin
 from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
-from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._numba.cancellation import StopFlag
-from rocking._numba.compilation import contiguous_array
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.state import FULL_PRECISION
 
-RESOLUTION = 1e-12
-"""Width of the final bracket, in 1/a and in log omega; the curves are good to it."""
+RESOLUTION = 1e-12  # width of the final bracket, in 1/a and in log omega; the curves are good to it
 
 ELASTIC_RESOLUTION = 1e-6
 """In place of `RESOLUTION` for elastic blocks, where one of the two regions has uncounted impacts [-].
@@ -32,14 +30,12 @@ ELASTIC_RESOLUTION = 1e-6
 Where a wavelet has just uplifted an elastic block, it strikes 200,000 times before the main part of the pulse.
 """
 
-ROUNDS = 32
-"""Times that brackets on a line are refined: each may uncover a further outcome between the two at its ends."""
+ROUNDS = 32  # times that brackets on a line are refined: each may uncover a further outcome between the two at its ends
 
 MANY_IMPACTS = 12
 """Overturning after more impacts than this, or after impacts that accumulate to rest, is one region [-]."""
 
-MOST_IMPACTS = 32
-"""Overturning after more impacts than this is not told apart even on one line [-]."""
+MOST_IMPACTS = 32  # overturning after more impacts than this is not told apart even on one line [-]
 
 MOST_COUNTED = 200
 """Overturning after more impacts than this is not told apart where the outcomes of one block are listed [-].
@@ -48,8 +44,7 @@ Of 495 lines of all pulses, 5 lose thresholds against an unlimited count, 22 wit
 restitutions of 0.99 and more take over 5 s, since each of thousands of counts is a region of its own.
 """
 
-UNCOUNTED = -1
-"""Region code of overturning whose impacts are not counted, and the `impacts` of its curves."""
+UNCOUNTED = -1  # region code of overturning whose impacts are not counted, and the `impacts` of its curves
 
 LARGE_MARGIN = 10.0
 """Margin beyond which its logarithm counts where points are interpolated [-].
@@ -113,18 +108,12 @@ def without_layers(codes: Codes) -> Codes:
 
 def counted_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = outcome_code(found)
+    codes = outcome_codes(found.outcome, found.impacts)
     return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
 class Work:
-    """Impacts that the solver has followed, and blocks: what the search for curves has cost.
-
-    Attributes
-    ----------
-    done : int
-        Their number so far.
-    """
+    """Impacts that the solver has followed, and blocks: what the search for curves has cost so far."""
 
     def __init__(self) -> None:
         self.done = 0
@@ -150,10 +139,7 @@ def block_solver(
 
     It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For an angle out of range.
+    Raises `InvalidArgumentError` for an angle out of range.
     """
     angle = check_one_alpha(alpha)
 
@@ -172,7 +158,7 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
         # rounding must not lead out of the range
         omega = np.clip(np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
         groups = np.broadcast_arrays(slenderness, omega, eta)
-        cells = [contiguous_array(group).ravel() for group in groups]
+        cells = [np.array(group).ravel() for group in groups]  # contiguous and writable
         records, margin = solve(*cells)
         if work is not None:
             work.add(records["impacts"])
@@ -184,24 +170,12 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Classified points on lines of the control space; arrays (nodes,).
+    """Classified points on lines of the control space; arrays (nodes,)."""
 
-    Attributes
-    ----------
-    line : int array
-        Index of the line.
-    x : float array
-        Coordinate on it.
-    codes : int array
-        Outcome there.
-    margin : float array
-        Its margin to another outcome.
-    """
-
-    line: Index
-    x: Floats
-    codes: Codes
-    margin: Floats
+    line: Index  # index of the line
+    x: Floats  # coordinate on it
+    codes: Codes  # outcome there
+    margin: Floats  # its margin to another outcome
 
     def take(self, index: Index | NDArray[np.bool_] | slice) -> Nodes:
         """The nodes of some indices."""
@@ -210,7 +184,7 @@ class Nodes:
     @classmethod
     def joined(cls, parts: Iterable[Nodes]) -> Nodes:
         """The nodes of one part after the other."""
-        columns = ((part.line, part.x, part.codes, part.margin) for part in parts)
+        columns = [(part.line, part.x, part.codes, part.margin) for part in parts]
         return cls(*map(np.concatenate, zip(*columns, strict=True)))
 
     @classmethod
@@ -225,19 +199,12 @@ class Nodes:
 
 @dataclass(frozen=True, eq=False)
 class Brackets:
-    """Brackets of changes of outcome: the outcome of each bracket holds at the first end only.
+    """Brackets of changes of outcome: the outcome of each bracket holds at the first end only."""
 
-    Attributes
-    ----------
-    ends, margins : float arrays (points, 2)
-        Coordinates of the two ends, and the margins there.
-    met : int array (points,)
-        Outcomes at the second end.
-    """
-
+    # ends, margins: (points, 2) coordinates of the two ends, and the margins there
     ends: Floats
     margins: Floats
-    met: Codes
+    met: Codes  # (points,) outcomes at the second end
 
 
 def refine_brackets(
@@ -250,32 +217,12 @@ def refine_brackets(
     classify: Classify,
     resolution: Floats | float = RESOLUTION,
 ) -> Brackets:
-    """Shrink brackets along one axis of the control space.
+    """Shrink brackets along one axis of the control space to a width of `resolution` [-] at most.
 
-    Parameters
-    ----------
-    axis : int
-        0 for brackets in 1/a, 1 for brackets in log omega.
-    points : float array (points, 3)
-        1/a, log omega and eta of each bracket; the coordinate along the axis does not count.
-    ends : float array (points, 2)
-        Coordinates of the two ends; the outcome `code` holds at the first one only.
-    margins : float array (points, 2)
-        Margins there.
-    code, met : int arrays (points,)
-        Outcomes there.
-    classify : Classify
-        The solver.
-    resolution : float or float array (points,)
-        Width of the final brackets [-].
+    `axis`: 0 for brackets in 1/a, 1 for log omega; `points` (points, 3): 1/a, log omega and eta, that along the axis
+    does not count; `ends`, `margins` (points, 2): coordinates and margins of both ends; `code`, `met` (points,):
+    outcomes there.
 
-    Returns
-    -------
-    Brackets
-        Their ends at most `resolution` apart.
-
-    Notes
-    -----
     Chandrupatla's method: the outcome alone decides on which side a point lies; the margin in energy, which is
     continuous through the change of outcome as a rule, makes it a third of the work of bisection. The first point lies
     halfway: there it shows regions between the two ends more often than near one of them.
@@ -303,7 +250,7 @@ def refine_brackets(
         a, fa = x, fx
         width = np.abs(b - a)
         left = width > least_width[active]
-        active, a, b, c, fa, fb, fc, width = (each[left] for each in (active, a, b, c, fa, fb, fc, width))
+        active, a, b, c, fa, fb, fc, width = [each[left] for each in (active, a, b, c, fa, fb, fc, width)]
         share = _next_share(a, b, c, fa, fb, fc)
         least = 0.5 * least_width[active] / width
         share = np.clip(share, least, 1.0 - least)
@@ -335,27 +282,10 @@ def refine_lines(
 ) -> Nodes:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
 
-    Where `layers` or `ELASTIC_RESOLUTION` hold, they may lie so far apart.
-
-    Parameters
-    ----------
-    axis : int
-        0 for lines along 1/a, 1 for lines along log omega.
-    points : float array (lines, 3)
-        1/a, log omega and eta of each line; the coordinate along the axis does not count.
-    nodes : Nodes
-        On these lines, in ascending order of line, then coordinate.
-    classify : Classify
-        The solver.
-    thinnest : float
-        Width below which a region between two others need not be found [-].
-    layers : float or float array (lines,)
-        Distance of the two nodes where two layers of one region meet, see `region_code` [-].
-
-    Returns
-    -------
-    Nodes
-        The nodes and both ends of every bracket in which the outcome changes.
+    Where `layers` or `ELASTIC_RESOLUTION` hold, they may lie so far apart. `axis` and `points` (lines, 3) as for
+    `refine_brackets`; `nodes`: on these lines, in ascending order of line, then coordinate; `thinnest`: width below
+    which a region between two others need not be found [-]; `layers` (lines,): distance of the two nodes where two
+    layers of one region meet, see `region_code` [-].
     """
     layers = np.broadcast_to(layers, len(points))
     uncounted = np.where(points[:, 2] == 1.0, ELASTIC_RESOLUTION, RESOLUTION)
@@ -412,23 +342,11 @@ def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tu
 def outcomes_along(
     axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
 ) -> tuple[Floats, Codes]:
-    """Outcomes along one line of the control space, and where they change, see `refine_lines`.
+    """Ascending nodes on one line of the control space, with both ends of every bracket in which the outcome changes,
+    and the outcomes.
 
-    Parameters
-    ----------
-    axis : int
-        0 for a line of 1/a, 1 for one of log omega.
-    point : (float, float, float)
-        Of the line; its coordinate along the axis does not count.
-    nodes : float array
-        Ascending; where outcomes are looked for first.
-    classify : Classify
-        The solver.
-
-    Returns
-    -------
-    grid, codes : arrays (points,)
-        The nodes and both ends of every bracket in which the outcome changes, ascending, with the outcome at each.
+    `axis`: 0 for a line of 1/a, 1 for one of log omega; `point`: 1/a, log omega and eta, that along the axis does not
+    count; `nodes`: where outcomes are looked for first, ascending. See `refine_lines`.
     """
     places = np.tile(point, (nodes.size, 1))
     places[:, axis] = nodes

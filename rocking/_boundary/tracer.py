@@ -7,8 +7,6 @@ halfway or near its predicted end, until that place is known to `END`. The ends 
 columns, joined, are the boundary curves.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable
@@ -21,17 +19,13 @@ from rocking._boundary.panels import Panel, probes_for_lost_regions
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
 from rocking._model.outcome_code import impacts_of_code
 
-BATCH_SIZE = 500_000
-"""Blocks that are solved in one call, about: a hundred megabytes [-]."""
-
-END = 1e-4
-"""Distance in log omega within which the end of a region is known [-]."""
+BATCH_SIZE = 500_000  # blocks that are solved in one call, about: a hundred megabytes [-]
+END = 1e-4  # distance in log omega within which the end of a region is known [-]
 
 CHORD = 1e-4
 """Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
 
-FINER = 8
-"""Parts into which the distance of two nodes is divided where blocks overturn after two impacts or more [-]."""
+FINER = 8  # parts into which the distance of two nodes is divided where blocks overturn after two impacts or more [-]
 
 NEARLY_ELASTIC = 0.9
 """Restitution above which regions of overturning after many impacts are resolved less finely than others [-].
@@ -55,36 +49,16 @@ EFFORT = 10_000_000
 It bounds the time for blocks that strike hundreds of times; `open_ends` counts what is left then.
 """
 
-SEARCHES = 4
-"""Times that a region which goes on beyond a column may start the search in the next ones anew [-]."""
+SEARCHES = 4  # times that a region which goes on beyond a column may start the search in the next ones anew [-]
 
 
 class Tracer:
-    """Columns, and the joins between the regions of neighbouring ones.
+    """Columns on the lines omega = const of a grid, and the joins between the regions of neighbouring ones.
 
-    Parameters
-    ----------
-    log_omega : float array (columns,)
-        Lines omega = const of the grid, ascending [-].
-    eta : float
-        Restitution [-].
-    classify, classify_regions : Classify
-        The solver with layer codes and with region codes.
-    work : Work
-        Where both note their work.
-
-    Attributes
-    ----------
-    columns : list of Column
-        Of the lines of the grid.
-    joins : dict of lists
-        By panel, the index of its left column: pairs of ends of regions that follow each other on a curve.
-    thinnest : float
-        Width in 1/a below which a region of many impacts is not resolved [-].
-    end : float
-        Distance in log omega within which the end of such a region is known [-].
-    chord : float
-        Largest distance of a chord from the curve of such a region [-].
+    `classify`, `classify_regions`: the solver with layer codes and with region codes, which note their work in `work`.
+    `joins`: by the index of the left column of a panel, pairs of ends of regions that follow each other on a curve.
+    `thinnest`: width in 1/a below which a region of many impacts is not resolved; `end`: distance in log omega within
+    which the end of such a region is known; `chord`: largest distance of a chord from the curve of such a region [-].
     """
 
     def __init__(

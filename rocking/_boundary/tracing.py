@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import integer
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._boundary.chains import Chains, chains_of
 from rocking._boundary.chords import refine_chords
@@ -20,10 +21,9 @@ from rocking._boundary.columns import THINNEST
 from rocking._boundary.search import Floats, Solve, Work, block_solver, classifier, layer_code, region_code
 from rocking._boundary.tracer import CHORD, END, Tracer
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_ends, check_number, check_one_alpha, known_restitution
+from rocking._model.checks import check_ends, check_one_alpha, known_restitution
 from rocking._model.labelled import variable
 from rocking._model.outcome_code import decode_outcomes
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -36,8 +36,7 @@ Of 112,000 points within 0.001 of curves of c2 and of the cosine at eta = 0.96, 
 the widest of 1.06 node distances.
 """
 
-UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)
-"""Blocks that the pulse can uplift."""
+UPLIFTING = SLENDERNESS.restricted(SLENDERNESS.lower, 1.0)  # blocks that the pulse can uplift
 
 
 def overturning_boundary(
@@ -100,7 +99,7 @@ def overturning_boundary(
     two impacts or more. From there it is followed in both directions. So a region can be missed only if it is narrower
     in 1/a than the distance of the nodes, `node_distance` at most, on all lines omega = const, or lies between two.
     """
-    eta = check_number(RESTITUTION, known_restitution(restitution, alpha))
+    eta = RESTITUTION.number(known_restitution(restitution, alpha))
     angle, made = check_one_alpha(alpha), as_pulse(motion)
     threads = None if threads is None else integer("threads", threads, 1, math.inf)
     curves = trace_curves(block_solver(made, angle, threads, stop), eta, frequency_ratio, slenderness, nodes)
@@ -108,11 +107,7 @@ def overturning_boundary(
 
 
 def trace_curves(
-    solve: Solve,
-    eta: float,
-    frequency_ratio: tuple[float, float],
-    slenderness: tuple[float, float],
-    nodes: int = 401,
+    solve: Solve, eta: float, frequency_ratio: tuple[float, float], slenderness: tuple[float, float], nodes: int = 401
 ) -> xr.Dataset:
     """`overturning_boundary` by any solver, whose slenderness is 1 at uplift."""
     nodes = integer("nodes", nodes, 16, 4001)

@@ -24,8 +24,7 @@ from rocking._datasets.cube import decode_dataset
 CLOCK_TICK = 20_000_000
 """Changes of a file within this time may have the same time stamp [ns]: file system clocks advance by 1 to 10 ms."""
 
-MAX_READS = 5
-"""Attempts to read a file that changes while it is read [-]."""
+MAX_READS = 5  # attempts to read a file that changes while it is read [-]
 
 _PART = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")  # one part of a name: neither ".." nor a hidden file
 
@@ -80,22 +79,8 @@ class DatasetFile:
 class DataFile:
     """An open data set file. All reads are of one version, even if the file is replaced in the meantime.
 
-    Parameters
-    ----------
-    name : str
-        Name of the data set.
-    path : path
-        Path of its file.
-
-    Attributes
-    ----------
-    version : FileVersion
-        Version of the file when it was opened or last read.
-
-    Raises
-    ------
-    OSError
-        If it cannot be opened or is not a regular file.
+    `version` is that of the file when it was opened or last read. Raises `OSError` if it cannot be opened or is not a
+    regular file.
     """
 
     def __init__(self, name: str, path: Path) -> None:
@@ -113,13 +98,7 @@ class DataFile:
         return self._file.fileno()
 
     def content(self) -> bytes:
-        """All bytes of the file, of one version.
-
-        Raises
-        ------
-        DatasetError
-            If the file cannot be read or changes during every attempt.
-        """
+        """All bytes of the file, of one version; `DatasetError` if it cannot be read or changes all the time."""
         try:
             for _ in range(MAX_READS):
                 self.version = self._settled()
@@ -209,13 +188,7 @@ class VersionCache(Generic[K, V]):
 
 
 class Catalogue:
-    """The data sets below a results folder.
-
-    Parameters
-    ----------
-    results : path
-        Folder that the workflow fills; it need not exist yet.
-    """
+    """The data sets below a results folder, which the workflow fills; it need not exist yet."""
 
     def __init__(self, results: Path | str) -> None:
         self.results = Path(results)
@@ -235,15 +208,7 @@ class Catalogue:
         return sorted(names), unreadable
 
     def open(self, name: str) -> DataFile:
-        """Open the file of a data set; the caller closes it.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is no data set of that name.
-        DatasetError
-            If its file cannot be read.
-        """
+        """Open the file of a data set; the caller closes it. Raises `UnknownDatasetError` or `DatasetError`."""
         parts = name.split("/")
         if len(parts) < 2 or not all(_PART.fullmatch(part) for part in parts):
             raise UnknownDatasetError(name)
@@ -260,24 +225,12 @@ class Catalogue:
             raise _unreadable(name, error) from error
 
     def product(self, name: str) -> DatasetFile:
-        """Size and sha256 of a data set.
-
-        Raises
-        ------
-        UnknownDatasetError, DatasetError
-            As `open`.
-        """
+        """Size and sha256 of a data set; raises as `open`."""
         with self.open(name) as file:
             return self.product_of(file)
 
     def product_of(self, file: DataFile) -> DatasetFile:
-        """Size and sha256 of an open data set, computed once per version of the file.
-
-        Raises
-        ------
-        DatasetError
-            As `DataFile.content`.
-        """
+        """Size and sha256 of an open data set, computed once per version of the file."""
         with self.lock:
             return self._products.value(file.name, file, self._dataset_file)
 
@@ -286,15 +239,7 @@ class Catalogue:
         return DatasetFile(file.name, len(content), sha256_of(content))
 
     def dataset(self, name: str) -> tuple[DatasetFile, xr.Dataset]:
-        """A data set, read into memory and checked, and its version.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is no data set of that name.
-        DatasetError
-            If it is damaged or cannot be read.
-        """
+        """A data set, read into memory and checked, and its version; raises as `open`, also if it is damaged."""
         with self.open(name) as file, self.lock:
             content = file.content()
             return self.product_of(file), decode_dataset(content, name)

@@ -3,8 +3,6 @@
 netCDF readers ignore bytes beyond the end of file that the format itself states, so they do not see the digest.
 """
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 
@@ -20,8 +18,7 @@ def sha256_of_file(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-PARTIAL = ".partial"
-"""Suffix of a file that is being written; a killed process leaves it behind."""
+PARTIAL = ".partial"  # suffix of a file that is being written; a killed process leaves it behind
 
 _MARK = b"\nsha256 "
 _LENGTH = len(_MARK) + 64 + 1

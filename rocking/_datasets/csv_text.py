@@ -1,31 +1,21 @@
 """Columns as CSV text (RFC 4180), for the command line, the service and the workflow."""
 
-from __future__ import annotations
-
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from types import SimpleNamespace
 from typing import Any
 
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")
-"""Text that begins so is a formula for a spreadsheet."""
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # text that begins so is a formula for a spreadsheet
+_NEGATIVE = re.compile("-[0-9]+(?:[.,][0-9]+)?")
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
     """A header line with the names of the columns, and the rows.
 
-    Parameters
-    ----------
-    columns : mapping of str to sequence
-        Plain Python values, equally many in each column.
-
-    Returns
-    -------
-    str
-        Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
-        comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading
-        apostrophe.
+    Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
+    comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading apostrophe.
     """
     return csv_header(columns) + csv_rows(columns)
 
@@ -52,4 +42,5 @@ def _cell(value: Any) -> Any:
         return value if isfinite(value) else None
     if isinstance(value, bool):
         return "true" if value else "false"
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA_STARTS) else value
+    is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _NEGATIVE.fullmatch(value)
+    return f"'{value}" if is_formula else value

@@ -20,13 +20,12 @@ samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and A
 creation, so equal content gives equal bytes, and a digest of their values.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -34,17 +33,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from rocking._base.errors import DatasetError
+from rocking._base.errors import DatasetError, RockingError
+from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
 from rocking._datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking._datasets.netcdf import open_netcdf, write_netcdf
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking._model.fields import CUBE_FIELDS, DERIVED_FIELDS
-from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 
-DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")
-"""Dimensions of a spectrum cube, in order."""
+DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")  # dimensions of a spectrum cube, in order
 
 AXES: dict[str, dict[str, Any]] = {
     "alpha": {
@@ -130,18 +128,10 @@ _GLOBAL = {
 def build_spectrum_dataset(
     variables: Mapping[str, ArrayLike], *, pulse: str | SampledPulse, restitution: float, axes: Mapping[str, ArrayLike]
 ) -> xr.Dataset:
-    """Assemble a spectrum cube.
+    """Assemble a spectrum cube of one pulse and restitution.
 
-    Parameters
-    ----------
-    variables : mapping
-        The arrays named in `VARIABLES` and any of `OPTIONAL_VARIABLES`, of shape (alpha, slenderness, frequency_ratio).
-    pulse : str or SampledPulse
-        Name of the pulse, or a pulse given by samples.
-    restitution : float
-        eta [-], [0, 1].
-    axes : mapping
-        alpha [rad], slenderness [-] and frequency_ratio [-], ascending.
+    `variables`: the arrays named in `VARIABLES` and any of `OPTIONAL_VARIABLES`, of shape (alpha, slenderness,
+    frequency_ratio); `axes`: these [rad], [-], [-], ascending.
     """
     name = as_pulse(pulse).name
     cube = xr.Dataset(
@@ -195,13 +185,7 @@ def scalar_coordinates(pulse: str | SampledPulse, restitution: float) -> dict[st
 
 
 def stored_pulse(dataset: xr.Dataset) -> str | SampledPulse:
-    """The pulse of a data set: its name, or the pulse made again from the stored samples.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the samples are none of a pulse.
-    """
+    """The pulse of a data set: its name, or the pulse made again from the stored samples."""
     name = str(dataset["pulse"].attrs["pulse_name"])
     if not dataset.variables.keys() >= SAMPLES.keys():
         return name
@@ -220,15 +204,9 @@ def describe(dataset: xr.Dataset, **attributes: Any) -> xr.Dataset:
 def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str, int] | None = None) -> None:
     """Write a netCDF-4 file atomically; equal content gives equal bytes.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Written with a digest of its values (`content_sha256`); the file has another digest at its end
-        (`append_checksum`). `read_dataset` detects damage by them.
-    path : path
-        Parent folders are created; an existing file is replaced.
-    chunks : mapping, optional
-        Size of the chunks of the file along dimensions; by default a variable is one chunk.
+    The data set is written with a digest of its values (`content_sha256`); the file has another digest at its end
+    (`append_checksum`). `read_dataset` detects damage by them. Parent folders are created; an existing file is
+    replaced. `chunks`: sizes along dimensions; by default a variable is one chunk.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -250,33 +228,18 @@ def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str,
 def read_dataset(path: Path | str) -> xr.Dataset:
     """Read a file written by `write_dataset` into memory and check its digests.
 
-    Raises
-    ------
-    DatasetError
-        If the file is missing, cannot be read, was not written by this package, or is damaged.
+    Raises `DatasetError` if it is missing, cannot be read, was not written by this package, or is damaged.
     """
     return decode_dataset(read_content(path), path)
 
 
 def check_file(path: Path | str) -> None:
-    """Check the digest at the end of a file written by `write_dataset`.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing, cannot be read, was not written by this package, or is damaged.
-    """
+    """Check the digest at the end of a file written by `write_dataset`; raises as `read_dataset`."""
     _raise_if_damaged(read_content(path), path)
 
 
 def read_content(path: Path | str) -> bytes:
-    """The bytes of a data set file.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing or cannot be read.
-    """
+    """The bytes of a data set file; raises `DatasetError`."""
     path = Path(path)
     try:
         if path.is_file():
@@ -287,26 +250,29 @@ def read_content(path: Path | str) -> bytes:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of a file; messages name `path`.
+    """`read_dataset` from the bytes of a file; messages name `path`."""
+    with open_checked(content, path) as opened:
+        dataset = opened.load()
+        if dataset.attrs["content_sha256"] != _content_digest(dataset):
+            raise DatasetError(
+                f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again"
+            )
+    return dataset
 
-    Raises
-    ------
-    DatasetError
-        If the bytes were not written by this package or are damaged.
-    """
+
+@contextmanager
+def open_checked(content: bytes, path: Path | str) -> Iterator[xr.Dataset]:
+    """The data set of the bytes of a file whose digest at its end is right, open inside of the `with` block."""
     _raise_if_damaged(content, path)
     try:
         with open_netcdf(content) as opened:
-            dataset = opened.load()
-        written = dataset.attrs.get("content_sha256")
-        found = _content_digest(dataset)
+            if "content_sha256" not in opened.attrs:
+                raise DatasetError(f"{path}: not written by this package (no content_sha256)")
+            yield opened
+    except RockingError:
+        raise
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise DatasetError(f"{path}: damaged, {error}; `make reproduce` builds it again") from error
-    if written is None:
-        raise DatasetError(f"{path}: not written by this package (no content_sha256)")
-    if written != found:
-        raise DatasetError(f"{path}: damaged, its values do not match its own digest; `make reproduce` builds it again")
-    return dataset
 
 
 def _raise_if_damaged(content: bytes, path: Path | str) -> None:
@@ -318,23 +284,20 @@ def _raise_if_damaged(content: bytes, path: Path | str) -> None:
 def read_spectrum(path: Path | str) -> xr.Dataset:
     """Read a spectrum cube and check it against the schema.
 
-    Raises
-    ------
-    DatasetError
-        As `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
+    Raises as `read_dataset`; also if a variable is missing or of another type or shape, or an axis does not ascend.
     """
     return decode_spectrum(read_content(path), path)
 
 
 def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of a file; messages name `path`.
-
-    Raises
-    ------
-    DatasetError
-        As `read_spectrum`.
-    """
+    """`read_spectrum` from the bytes of a file; messages name `path`."""
     cube = decode_dataset(content, path)
+    check_spectrum(cube, path)
+    return cube
+
+
+def check_spectrum(cube: xr.Dataset, path: Path | str) -> None:
+    """Refuse a data set, which may be open, that has not the schema of spectrum cubes."""
     present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
     for name, (dtype, _) in (VARIABLES | present).items():
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):
@@ -344,7 +307,6 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
             raise DatasetError(f"{path}: axis `{name}` is missing or does not ascend; build it again")
     if "pulse" not in cube.coords or "restitution" not in cube.coords:
         raise DatasetError(f"{path}: no scalar coordinates `pulse` and `restitution`; build it again")
-    return cube
 
 
 def _encoding(dataset: xr.Dataset, chunks: Mapping[str, int]) -> dict[str, dict[str, Any]]:

@@ -5,8 +5,6 @@ threads that read files at the same time can end the process. The locks of xarra
 in memory. This package therefore opens netCDF-4 files with the functions of this module only.
 """
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -24,17 +22,8 @@ _LOCK = threading.RLock()
 def open_netcdf(source: Path | str | bytes, *, cache: bool = True) -> Iterator[xr.Dataset]:
     """A data set, open inside of the `with` block; other threads that call this function wait until it is closed.
 
-    Parameters
-    ----------
-    source : path or bytes
-        A file, or its content.
-    cache : bool, optional
-        Whether xarray keeps the values of variables that are read.
-
-    Raises
-    ------
-    OSError, RuntimeError, ValueError, KeyError
-        Whatever the libraries raise for a damaged file.
+    `source` is a path or the content of a file. `cache`: whether xarray keeps the values that are read. Raises whatever
+    the libraries raise for a damaged file.
     """
     with _LOCK:
         opened: Any = (  # closed here and not by the garbage collector, which runs in any thread

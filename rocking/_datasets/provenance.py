@@ -4,8 +4,6 @@ A result depends on the modules that its script imports, directly or indirectly,
 a change of a module affects only results that depend on it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Mapping

@@ -12,26 +12,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
+from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
-from rocking._dimensional.curves import (
-    block_boundary,
-    block_history,
-    block_spectrum,
-    body_boundary,
-    body_history,
-    over_axis,
-)
+from rocking._dimensional.curves import boundary, history, over_axis, spectrum
 from rocking._dimensional.fields import FIELDS
-from rocking._dimensional.problem import HIGHEST_SCALE, STRENGTHS, Motion, Problem, are_numbers, checked_restitution
+from rocking._dimensional.problem import (
+    STRENGTHS,
+    Motion,
+    Problem,
+    are_numbers,
+    checked_restitution,
+    spread_restitution,
+)
 from rocking._dimensional.response import BodyResponse, respond
 from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, thresholds_of
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._model.body import AbstractBody, Edge
-from rocking._model.checks import check, check_number
 from rocking._model.labelled import in_unit, is_labelled, labelled_response
-from rocking._model.parameters import RESTITUTION
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -94,7 +93,7 @@ class RespondingBody(AbstractBody):
             T_p = 2 pi/omega_g [s], > 0; of a pulse.
         scale : array_like
             Factor of a record, of both its components [-], (0, 1e6]; 1 by default.
-        restitution : array_like or "momentum"
+        restitution : array_like, "momentum" or "kalliontzis(k=...)"
             eta [-], [0, 1], of every impact; or from conservation of angular momentum, (2.4) for a block, 0 where that
             is negative.
         thresholds : bool
@@ -134,7 +133,7 @@ class RespondingBody(AbstractBody):
         if not is_labelled(eta):
             eta = checked_restitution(eta)
         strengths = {
-            name: in_unit(name, one, STRENGTHS[name].unit) if is_labelled(one) else check(STRENGTHS[name], one)
+            name: in_unit(name, one, STRENGTHS[name].unit) if is_labelled(one) else STRENGTHS[name].convert(one)
             for name, one in given.items()
             if one is not None
         }
@@ -238,7 +237,7 @@ class RespondingBody(AbstractBody):
             times = positive("period", period, "s")
         if size is None and self.is_block:
             one = Problem.of(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
-            return block_spectrum(one, along, stop)
+            return spectrum(one, along, stop)
         found = respond(Problem.of(body, motion, peak_acceleration, times, restitution, scale=scale), stop=stop)
         return over_axis(found, axis, along)
 
@@ -256,7 +255,7 @@ class RespondingBody(AbstractBody):
         ----------
         motion : str or AbstractPulse
             The pulse; of a record there is one strength for each body, see `thresholds`.
-        restitution : float or "momentum"
+        restitution : float, "momentum" or "kalliontzis(k=...)"
             As for `response`.
         period : (float, float), optional
             Window of T_p [s], 0 < low < high; by default the frequency ratios to the right edge from 0.2 to 15.
@@ -280,7 +279,7 @@ class RespondingBody(AbstractBody):
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
         problem = Problem.of(self, motion, 1.0, unit, restitution)
-        return (block_boundary if problem.is_block else body_boundary)(problem, period, stop)
+        return boundary(problem, period, stop)
 
     def history(
         self,
@@ -330,8 +329,7 @@ class RespondingBody(AbstractBody):
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
         problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
-        draw = block_history if problem.is_block else body_history
-        return draw(problem, duration=length, samples=samples, contact=contact, stop=stop)
+        return history(problem, duration=length, samples=samples, contact=contact, stop=stop)
 
     def scaled(self, size: Values) -> RespondingBody:
         """The body with all lengths times a factor.
@@ -352,27 +350,20 @@ class RespondingBody(AbstractBody):
         """Refuse an array of bodies, and arrays as arguments that are one number."""
         if self.shape:
             raise InvalidArgumentError(name, f"bodies of shape {self.shape}", "one body")
-        if checked_restitution(restitution) is not None:
-            check_number(RESTITUTION, restitution)
+        eta = spread_restitution(self, restitution)
+        if checked_restitution(eta) is not None:
+            RESTITUTION.number(eta)
         for key, value in numbers.items():
             if value is not None:
-                check_number(STRENGTHS[key], value)
+                STRENGTHS[key].number(value)
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledBody(RespondingBody):
-    """A body with all lengths times a factor: p falls with the root of it.
+    """A body with all lengths times a factor: p falls with the root of it."""
 
-    Attributes
-    ----------
-    body : RespondingBody
-        The body of factor 1.
-    size : float array
-        The factor [-], > 0.
-    """
-
-    body: RespondingBody
-    size: Array
+    body: RespondingBody  # the body of factor 1
+    size: Array  # the factor [-], > 0
 
     @property
     def right(self) -> Edge:

@@ -16,13 +16,12 @@ from typing import Self, final
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, number, positive
+from rocking._base.quantities import FREQUENCY_PARAMETER, RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.body import RespondingBody
 from rocking._model.block import AbstractBlock, RectangularBlock
-from rocking._model.checks import check_number
 from rocking._model.linkage import LinearEquation
 from rocking._model.masonry_arch import MasonryArch
-from rocking._model.parameters import FREQUENCY_PARAMETER, RESTITUTION
 
 
 @final
@@ -74,9 +73,9 @@ class EquivalentBlock(AbstractBlock, RespondingBody):
         top_height: Scalar | None = None,
     ) -> None:
         angle = number("alpha", alpha, 0.0, math.pi / 2, closed="neither", unit="rad")
-        p = check_number(FREQUENCY_PARAMETER, frequency_parameter)
+        p = FREQUENCY_PARAMETER.number(frequency_parameter)
         g = positive("gravity", gravity, "m/s2")
-        eta = check_number(RESTITUTION, restitution)
+        eta = RESTITUTION.number(restitution)
         size = 0.75 * g / p**2  # p = sqrt(3 g/(4 R)), below (2.2)
         super().__init__(2.0 * size * math.sin(angle), 2.0 * size * math.cos(angle), g)
         own = {

@@ -19,8 +19,18 @@ from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
-from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, number, reject_given
-from rocking._base.parameter import Parameter
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, reject_given
+from rocking._base.quantities import (
+    ALPHA,
+    FREQUENCY_RATIO,
+    HIGHEST_SCALE,
+    PEAK_ACCELERATION,
+    PERIOD,
+    RESTITUTION,
+    SCALE,
+    SLENDERNESS,
+    SMALLEST_ALPHA,
+)
 from rocking._base.units import Scalar, Values
 from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse, as_pulse
@@ -36,10 +46,9 @@ from rocking._history.motion import (
 )
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody
-from rocking._model.checks import check, check_number
+from rocking._model.checks import impact_share, spread_impact
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import Index, index_of
-from rocking._model.parameters import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record as KernelRecord
@@ -53,51 +62,25 @@ Array = NDArray[np.float64]
 
 Motion = str | AbstractPulse | Record
 
-HIGHEST_SCALE = 1e6
-"""Largest factor of a record [-]."""
-
-STRENGTHS = {
-    "peak_acceleration": Parameter("peak_acceleration", "a_g", "m/s2", 0.0, math.inf, "neither", "peak acceleration"),
-    "period": Parameter("period", "T_p", "s", 0.0, math.inf, "neither", "period of the pulse"),
-    "scale": Parameter("scale", "", "-", 0.0, HIGHEST_SCALE, "right", "factor of a record"),
-}
+STRENGTHS = {one.name: one for one in (PEAK_ACCELERATION, PERIOD, SCALE)}
 """Arguments that say how strong and how long a motion is."""
 
 
 @dataclass(frozen=True, eq=False)
 class Problem(EqualByValue):
-    """Bodies under a ground motion; floats for one block under one motion, otherwise arrays that broadcast.
+    """Bodies under a ground motion; floats for one block under one motion, otherwise arrays that broadcast."""
 
-    Attributes
-    ----------
-    body : AbstractBody
-        One body or an array of them.
-    motion : AbstractPulse or Record
-        The ground motion, a record without its factor.
-    peak_acceleration : float or float array [m/s2]
-        Largest horizontal acceleration, > 0; of a record times its factor.
-    period : float or float array [s]
-        T_p = 2 pi/omega_g of a pulse, > 0; 1 for a record. `duration` is how long the motion lasts.
-    restitution : float or float array, or None
-        eta of every impact [-], [0, 1]; None: by angular momentum, 0 where that is negative.
-    scale : float or float array
-        Factor of a record, of both its components [-]; 1 for a pulse.
-    arguments : mapping of str to array
-        The arguments that were given, before broadcasting, for the coordinates of exports; nothing for one block.
-    index : (name, labels) or None
-        Index of the last axis if an argument was a series (pandas).
-    unit_is_stated : bool
-        Whether the peak acceleration was no plain number.
-    """
-
-    body: AbstractBody
-    motion: AbstractPulse | Record
-    peak_acceleration: Any
-    period: Any
-    restitution: Any
-    scale: Any = 1.0
+    body: AbstractBody  # one body or an array of them
+    motion: AbstractPulse | Record  # the ground motion, a record without its factor
+    peak_acceleration: Any  # largest horizontal acceleration, > 0; of a record times its factor [m/s2]
+    period: Any  # T_p = 2 pi/omega_g of a pulse, > 0; 1 for a record. `duration` is how long the motion lasts [s]
+    restitution: Any  # eta of every impact [-], [0, 1]; None: by angular momentum, 0 where that is negative
+    scale: Any = 1.0  # factor of a record, of both its components [-]; 1 for a pulse
+    # the arguments that were given, before broadcasting, for the coordinates of exports; nothing for one block
     arguments: Mapping[str, Array] = field(default_factory=dict, compare=False, repr=False)
+    # index of the last axis if an argument was a series (pandas)
     index: Index | None = field(default=None, compare=False, repr=False)
+    # whether the peak acceleration was no plain number
     unit_is_stated: bool = field(default=True, compare=False, repr=False)
 
     @classmethod
@@ -115,38 +98,33 @@ class Problem(EqualByValue):
         """The checked problem; arguments as of `rocking.Block.response`.
 
         `flies`: the strength is not read, its vertical acceleration may reach -g.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast;
-            for one block, if the vertical acceleration times the factor reaches -g.
         """
+        if isinstance(restitution, str) and restitution != "momentum":
+            restitution = spread_restitution(body, restitution)
         given: dict[str, Any]
         if isinstance(motion, Record):
             reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
             given = {"scale": 1.0 if scale is None else scale}
         else:
             motion = as_pulse(motion)
-            reject_given("a pulse: state `peak_acceleration`", scale=scale)
+            if scale is not None:
+                reject_given("a pulse: state `peak_acceleration`", scale=scale)
             given = {"peak_acceleration": peak_acceleration, "period": period}
-            for name, value in given.items():
-                needed("a pulse", **{name: value})
+            for name in given:
+                if given[name] is None:
+                    needed("a pulse", **{name: None})
         one = body.is_block and are_numbers(*given.values(), restitution)
         eta = None
         if not (isinstance(restitution, str) and restitution == "momentum"):
-            eta = checked_restitution(restitution, check_number if one else check)
+            eta = checked_restitution(restitution, RESTITUTION.number if one else RESTITUTION.convert)
         stated = not isinstance(peak_acceleration, Real)
         if one:
-            values: dict[str, Any] = {}
-            for name, value in given.items():
-                about = STRENGTHS[name]
-                values[name] = number(name, value, about.lower, about.upper, closed=about.closed, unit=about.unit)
+            values: dict[str, Any] = {name: STRENGTHS[name].number(value) for name, value in given.items()}
             made = cls(body, motion, *_strength(motion, values), eta, values.get("scale", 1.0), unit_is_stated=stated)
             if not flies:
                 made.reject_flight()
             return made
-        values = {name: check(STRENGTHS[name], value) for name, value in given.items()}
+        values = {name: STRENGTHS[name].convert(value) for name, value in given.items()}
         peak, times = _strength(motion, values)
         if eta is not None:
             given["restitution"], values["restitution"] = restitution, eta
@@ -168,7 +146,7 @@ class Problem(EqualByValue):
         eta = np.shape(self.restitution)
         return np.broadcast_shapes(self.body.shape, np.shape(self.peak_acceleration), np.shape(self.period), eta)
 
-    @property
+    @cached_property
     def kinds(self) -> frozenset[str]:
         """The kinds of responses, as of `rocking._model.fields.KINDS`."""
         motion = "record" if isinstance(self.motion, Record) else "pulse"
@@ -209,13 +187,7 @@ class Problem(EqualByValue):
 
     @cached_property
     def groups(self) -> dict[str, Any]:
-        """Of one block: groups, restitution and alpha of the equation of motion, keyword arguments of `peak_response`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a group is out of range.
-        """
+        """Of one block: groups, restitution and alpha of the equation, keyword arguments of `peak_response`."""
         block = self.block
         eta = block.inelastic_restitution if self.restitution is None else self.restitution
         if isinstance(self.motion, Record):
@@ -229,13 +201,7 @@ class Problem(EqualByValue):
 
     @cached_property
     def cells(self) -> NDArray[np.void]:
-        """The cells `BODY_CELL` of the solver (size,), not to be changed.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If an edge or a ratio of frequencies is out of range, or the equation of motion is linear.
-        """
+        """The cells `BODY_CELL` of the solver (size,), not to be changed."""
         body, right, left = self.body, self.body.right, self.body.left
         if body.is_linear:
             allowed = "solved with numbers, not arrays: its equation of motion is linear"
@@ -247,7 +213,7 @@ class Problem(EqualByValue):
         if isinstance(self.motion, Record):
             in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
         else:
-            check(FREQUENCY_RATIO, 2.0 * math.pi / (self.period * p))
+            FREQUENCY_RATIO.convert(2.0 * math.pi / (self.period * p))
         etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
         unit = self.motion.time_step * p if isinstance(self.motion, Record) else 2.0 * math.pi / (self.period * p)
         columns = {
@@ -261,7 +227,7 @@ class Problem(EqualByValue):
         for name, value in columns.items():
             cells[name] = value
         for side, edge in enumerate((right, left)):
-            cells["slenderness"][..., side] = body.gravity * np.tan(edge.alpha) / self.peak_acceleration  # (5.3)
+            cells["slenderness"][..., side] = body.gravity * edge.resistance / self.peak_acceleration  # (5.3)
             cells["eta"][..., side] = np.maximum(etas[side], 0.0)  # departs from (2.4) where that is negative
         return cells.ravel()
 
@@ -296,8 +262,8 @@ class Problem(EqualByValue):
         s, w, alpha = groups["slenderness"], groups["frequency_ratio"], groups["alpha"]
         low, high = SLENDERNESS.lower, FREQUENCY_RATIO.upper
         if not (low < s < math.inf and FREQUENCY_RATIO.lower < w < high and not 0.0 < alpha < SMALLEST_ALPHA):
-            check(SLENDERNESS, s)
-            check(FREQUENCY_RATIO, w)
+            SLENDERNESS.convert(s)
+            FREQUENCY_RATIO.convert(w)
             in_range("alpha", alpha or ALPHA.upper, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
         return solve_checked(self.pulse, s, w, groups["restitution"], alpha, self.body, threads, stop)
 
@@ -382,25 +348,32 @@ def are_numbers(*arguments: Any) -> bool:
     return True
 
 
-def checked_restitution(restitution: Values, checked: Callable[..., Any] = check) -> Any:
-    """The coefficient of restitution: None for "momentum", else an array; or one number by `check_number`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For any other text, several numbers where one is checked, and numbers outside [0, 1].
-    """
+def checked_restitution(restitution: Values, checked: Callable[..., Any] = RESTITUTION.convert) -> Any:
+    """The coefficient of restitution: None for "momentum", else an array; or one number by `RESTITUTION.number`."""
     if isinstance(restitution, str) and restitution == "momentum":
         return None
     try:
-        return checked(RESTITUTION, restitution)
+        return checked(restitution)
     except InvalidArgumentError as error:
         raise InvalidArgumentError("restitution", error.value, f"momentum, or {error.allowed}") from None
 
 
+def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
+    """The restitution as it is; of "kalliontzis(k=...)" the numbers of a body with two equal edges."""
+    share = impact_share(restitution) if isinstance(restitution, str) and restitution != "momentum" else None
+    if share is None:
+        return restitution
+    right, left = body.right, body.left
+    if right.blocked or left.blocked or not np.all(right.restitution == left.restitution):
+        raise InvalidArgumentError(
+            "restitution", restitution, "momentum or a number for a body with two different edges"
+        )
+    return spread_impact(right.restitution, share)
+
+
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
     """The coefficient of restitution [-]: the number, or that of the geometry for "momentum"; `checked_restitution`."""
-    eta = checked_restitution(restitution, check_number)
+    eta = checked_restitution(spread_restitution(block, restitution), RESTITUTION.number)
     return float(block.inelastic_restitution if eta is None else eta)
 
 
@@ -441,13 +414,9 @@ def uplift_scale(record: Record, block: AbstractBlock) -> float:
 
 
 def search_range(record: Record, block: AbstractBlock, highest: float | None) -> tuple[float, float, bool]:
-    """Factors of a record among which its outcomes are searched.
+    """Factors of a record among which its outcomes are searched: uplift, the highest (ten times that without one).
 
-    Returns
-    -------
-    (float, float, bool)
-        That of uplift; the highest, by default ten times that of uplift; and whether the latter is that at which the
-        vertical acceleration reaches -g.
+    And whether the latter is that at which the vertical acceleration reaches -g.
     """
     lowest = uplift_scale(record, block)
     top = min(10.0 * lowest, HIGHEST_SCALE) if highest is None else highest

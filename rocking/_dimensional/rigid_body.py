@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self, final
@@ -14,17 +14,30 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number, positive
+from rocking._base.quantities import (
+    GRAVITY,
+    GYRATION,
+    HEIGHT,
+    INCLINATION,
+    LEFT,
+    MASS_HEIGHT,
+    OFFSET,
+    REBOUND,
+    RIGHT,
+    TOP_HEIGHT,
+    WIDTH,
+)
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
-from rocking._model.body import Edge, polygon_properties, rigid_edge
-from rocking._model.checks import check_lengths
-from rocking._model.labelled import broadcast_by_name, in_unit, index_of, is_labelled
+from rocking._model.body import Edge, polygon_properties, rebound_of, rigid_edge
+from rocking._model.checks import check_quantities
+from rocking._model.labelled import in_unit, index_of, is_labelled
 
 Array = NDArray[np.float64]
 
-RANGES = {"gravity": (0.0, math.inf, "m/s2"), "inclination": (-math.pi / 2, math.pi / 2, "rad")}
-"""Open ranges and units of the arguments that are no lengths."""
+_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
+SIDES = "both", "left", "right"  # edges about which a body rocks
 
 
 @final
@@ -51,11 +64,19 @@ class RigidBody(RespondingBody):
         g [m/s2], > 0.
     top_height : float, optional
         Height above the base of the point whose displacement is given [m], > 0; by default twice `height`.
+    sides : {"both", "left", "right"}
+        The edges about which it rocks. One: a wall at its other side stops it, such as a facade between transverse
+        walls; at theta = 0 it rebounds.
+    rebound : float, optional
+        Velocity after that over the one before, without its sign [-], [0, 1], of a one-sided body; by default
+        -(1 - 3/2 sin^2 alpha)^2 (1 - 3/2 cos^2 alpha), 0 where that is negative (after Sorrentino et al. 2008, from a
+        secondary source). A stated `restitution` of a response takes its place.
 
     Raises
     ------
     InvalidArgumentError
-        If a length or gravity is not finite and positive, or the body does not stand at its inclination.
+        If a length or gravity is not finite and positive, the body does not stand at its inclination, or `rebound` is
+        given for a body that rocks about both edges.
 
     Examples
     --------
@@ -65,6 +86,8 @@ class RigidBody(RespondingBody):
     """
 
     _given: dict[str, Array]
+    sides: str
+    """The edges about which it rocks."""
 
     def __init__(
         self,
@@ -76,18 +99,26 @@ class RigidBody(RespondingBody):
         inclination: Values = 0.0,
         gravity: Values = STANDARD_GRAVITY,
         top_height: Values | None = None,
+        sides: str = "both",
+        rebound: Values | None = None,
     ) -> None:
-        arguments: dict[str, Any] = {
-            "left": left,
-            "right": right,
-            "height": height,
-            "gyration": gyration,
-            "top_height": top_height,
-            "gravity": gravity,
-            "inclination": inclination,
-        }
-        checked, labels, index = check_lengths(arguments, RANGES)
-        vars(self).update(_given=checked, labels=labels, index=index)  # it is frozen
+        if sides not in SIDES:
+            raise InvalidArgumentError("sides", sides, f"one of {', '.join(SIDES)}")
+        if rebound is not None and sides == "both":
+            raise InvalidArgumentError("rebound", rebound, 'nothing beside sides="both": impacts have a restitution')
+        checked, labels, index = check_quantities(
+            {
+                LEFT: left,
+                RIGHT: right,
+                HEIGHT: height,
+                GYRATION: gyration,
+                TOP_HEIGHT: top_height,
+                GRAVITY: gravity,
+                INCLINATION: inclination,
+                REBOUND: rebound,
+            }
+        )
+        vars(self).update(_given=checked, labels=labels, index=index, sides=sides)  # it is frozen
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
             if not np.all(edge.alpha > 0.0):
                 limit = math.degrees(float(np.min(edge.alpha + sign * self.tilt)))
@@ -99,12 +130,14 @@ class RigidBody(RespondingBody):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RigidBody):
             return NotImplemented
-        return self._given.keys() == other._given.keys() and all(
+        return (self.sides, self._given.keys()) == (other.sides, other._given.keys()) and all(
             np.array_equal(value, other._given[name]) for name, value in self._given.items()
         )
 
     def __hash__(self) -> int:
-        return hash(tuple((name, value.tobytes(), value.shape) for name, value in self._given.items()))
+        return hash(self.sides) ^ hash(
+            tuple((name, value.tobytes(), value.shape) for name, value in self._given.items())
+        )
 
     def __repr__(self) -> str:
         """The body in words."""
@@ -145,12 +178,17 @@ class RigidBody(RespondingBody):
     @cached_property
     def right(self) -> Edge:
         """The right edge, about which theta is positive."""
-        return self._edge("right", "left", self.tilt)
+        return self._edge("right", "left", 1.0)
 
     @cached_property
     def left(self) -> Edge:
         """The left edge."""
-        return self._edge("left", "right", -self.tilt)
+        return self._edge("left", "right", -1.0)
+
+    @property
+    def contact_is_known(self) -> bool:
+        """Whether the contact forces follow from the motion: not those of a body that a wall touches."""
+        return self.sides == "both"
 
     @property
     def parameters(self) -> dict[str, Array]:
@@ -163,11 +201,21 @@ class RigidBody(RespondingBody):
             return f"{' x '.join(map(str, self.shape))} bodies"
         left, right, height = (float(self._given[name]) for name in ("left", "right", "height"))
         leaning = f", inclined by {math.degrees(float(self.tilt)):.4g} deg" if self.tilt else ""
-        return f"body on edges {left:.4g} m left and {right:.4g} m right of its mass at {height:.4g} m{leaning}"
+        wall = "" if self.sides == "both" else f", which rocks about its {self.sides} edge only"
+        return f"body on edges {left:.4g} m left and {right:.4g} m right of its mass at {height:.4g} m{leaning}{wall}"
 
-    def _edge(self, name: str, other: str, tilt: Array) -> Edge:
-        given = self._given
-        return rigid_edge(given[name], given[other], self.height, self.gyration, self.gravity, tilt)
+    def _edge(self, name: str, other: str, direction: float) -> Edge:
+        given, blocked = self._given, self.sides == other
+        if blocked:  # its values are not used but for the scale of rotations
+            name, other, direction = other, name, -direction
+        edge = rigid_edge(given[name], given[other], self.height, self.gyration, self.gravity, direction * self.tilt)
+        if self.sides == "both":
+            return edge
+        return replace(edge, restitution=given.get("rebound", rebound_of(edge.alpha)), blocked=blocked)
+
+    def changed(self, **arguments: Any) -> RigidBody:
+        """The body with these `parameters`, and the same wall."""
+        return RigidBody(**arguments, sides=self.sides)
 
     def tilted(self, angle: Values) -> RigidBody:
         """The body on a base that is inclined further towards the right.
@@ -188,13 +236,37 @@ class RigidBody(RespondingBody):
         added = in_unit("angle", angle, "rad")
         checked = in_range("angle", added, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
         given = self._given | self.labels
-        return RigidBody(**given | {"inclination": given["inclination"] + (added if is_labelled(added) else checked)})
+        leaning = given["inclination"] + (added if is_labelled(added) else checked)
+        return self.changed(**given | {"inclination": leaning})
+
+    def one_sided(self, side: str, rebound: Values | None = None) -> RigidBody:
+        """The body against a wall, which lets it rock about one edge only.
+
+        Parameters
+        ----------
+        side : {"left", "right"}
+            The edge about which it rocks.
+        rebound : float, optional
+            As of `RigidBody`.
+
+        Raises
+        ------
+        InvalidArgumentError
+            As of `RigidBody`.
+
+        Examples
+        --------
+        >>> facade = RigidBody.from_size("60 cm", "9 m").one_sided("right", rebound=0.4)
+        >>> bool(facade.response("sine", peak_acceleration="0.3 g", period="1 s").overturned)
+        False
+        """
+        return RigidBody(**self._given | self.labels | {"rebound": rebound}, sides=side)
 
     def scaled(self, size: Values) -> RigidBody:
         factor = in_unit("size", size, "-")
         checked = in_range("size", factor, 0.0, math.inf, closed="neither")
         given, factor = self._given | self.labels, factor if is_labelled(factor) else checked
-        return RigidBody(**{name: value if name in RANGES else value * factor for name, value in given.items()})
+        return self.changed(**{name: value if name in _NO_LENGTHS else value * factor for name, value in given.items()})
 
     @classmethod
     def from_size(
@@ -234,13 +306,9 @@ class RigidBody(RespondingBody):
         >>> RigidBody.from_size("40 cm", "160 cm", offset="5 cm")
         <rocking.RigidBody: body on edges 0.25 m left and 0.15 m right of its mass at 0.8 m>
         """
-        lengths: dict[str, Any] = {"width": width, "height": height, "offset": offset, "mass_height": mass_height}
-        given = {name: in_unit(name, value, "m") for name, value in lengths.items() if value is not None}
-        broadcast_by_name({name: value for name, value in given.items() if is_labelled(value)})  # equal indexes
-        for name, value in given.items():
-            low = -math.inf if name == "offset" else 0.0
-            checked = in_range(name, value, low, math.inf, closed="neither", unit="m")
-            given[name] = value if is_labelled(value) else checked
+        lengths = {WIDTH: width, HEIGHT: height, OFFSET: offset, MASS_HEIGHT: mass_height}
+        checked, labels, _ = check_quantities(lengths)
+        given: dict[str, Any] = checked | labels
         w, h, e = given["width"], given["height"], given["offset"]
         half = 0.5 * w
         if not np.all(np.abs(e) < half):
@@ -336,14 +404,16 @@ def body_of_size(
     offset: Scalar = 0.0,
     mass_height: Scalar | None = None,
     gravity: Scalar = STANDARD_GRAVITY,
+    gyration: Scalar | None = None,
 ) -> Block | RigidBody:
-    """The block of this size, or the body if its centre of mass is elsewhere, at most at its height.
+    """The block of this size, or the body if its centre of mass or gyration differs; that is at most at its height.
 
     Arguments and errors are those of `RigidBody.from_size`.
     """
     if mass_height is not None:
-        highest = number("height", height, 0.0, math.inf, closed="neither", unit="m")
-        mass_height = number("mass_height", mass_height, 0.0, highest, closed="right", unit="m")
-    elif not number("offset", offset, -math.inf, math.inf, unit="m"):
+        mass_height = number("mass_height", mass_height, 0.0, HEIGHT.number(height), closed="right", unit="m")
+    elif gyration is None and not OFFSET.number(offset):
         return Block(width, height, gravity)
-    return RigidBody.from_size(width, height, offset=offset, mass_height=mass_height, gravity=gravity)
+    return RigidBody.from_size(
+        width, height, offset=offset, mass_height=mass_height, gyration=gyration, gravity=gravity
+    )

@@ -9,27 +9,23 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
-from rocking._base.column import (
-    Column,
+from rocking._base.cells import (
     name_and_unit,
     named,
     plain_name,
+    rank,
     read_header,
     stated_unit,
 )
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
 
 Item = TypeVar("Item")
 
-HEADER_ROWS = 12
-"""The header is searched in this many rows at the top."""
-
-MAX_COLUMNS = 1000
-"""Most columns of a table."""
-
-MAX_NAME = 200
-"""Longest name of a column with its unit [characters]."""
+HEADER_ROWS = 12  # the header is searched in this many rows at the top
+MAX_COLUMNS = 1000  # most columns of a table
+MAX_NAME = 200  # longest name of a column with its unit [characters]
 
 EMPTY = {
     *("", "-", "--", "\u2013", "\u2014", "?", "n/a", "na", "n.a.", "#n/a", "none", "null", "nan", "nil"),
@@ -72,152 +68,58 @@ AMOUNT = re.compile(r"\W*(?:c|ca|circa|approx\w*|about|um|env\w*|max|min)?[\s.:]
 
 _UNUSED = ("unused", "not used")
 
-NAME = Column(
-    "name",
-    "",
-    "name of the object",
-    (
-        *("object", "object name", "title", "item", "bezeichnung", "objekt", "titel", "nome", "oggetto", "titolo"),
-        *("nom", "objet", "designation", "titre", "nombre", "objeto", "titulo", "onoma", "antikeimeno"),
-        *("\u03bf\u03bd\u03bf\u03bc\u03b1", "\u03b1\u03bd\u03c4\u03b9\u03ba\u03b5\u03b9\u03bc\u03b5\u03bd\u03bf"),
-    ),
-)
-
-NUMBER = Column(
-    "number",
-    "",
-    "inventory number, the name of an object without another one",
-    (
-        *("inventory number", "inventory no", "inv number", "inv no", "inv nr", "inventarnummer", "inventario"),
-        *("object number", "object id", "accession number", "accession no", "catalogue number", "catalog number"),
-        *("numero di inventario", "numero d inventaire", "numero de inventario", "id", "no", "nr", "#"),
-    ),
-    stands_for=("name",),
-)
-"""Read where a table has no names."""
-
-WIDTH = Column(
-    "width",
-    "m",
-    "width of the base",
-    (
-        *("w", "b", "breadth", "base width", "width of base", "width of the base", "breite", "larghezza", "largeur"),
-        *("ancho", "anchura", "largura", "breedte", "platos", "\u03c0\u03bb\u03b1\u03c4\u03bf\u03c2"),
-    ),
-    absent_beside=("diameter",),
-)
-
-HEIGHT = Column(
-    "height",
-    "m",
-    "height of the object",
-    (
-        *("h", "overall height", "total height", "hohe", "hoehe", "gesamthohe", "altezza", "hauteur", "alto", "altura"),
-        *("hoogte", "ypsos", "\u03c5\u03c8\u03bf\u03c2"),
-    ),
-)
-
-RESTITUTION = Column(
-    "restitution",
-    "-",
-    "coefficient of restitution; by default from the angular momentum",
-    ("coefficient of restitution", "restitution coefficient", "eta", "stosszahl", "restituzione", "restitucion"),
-    words=("momentum",),
-)
-
 
 @dataclass(frozen=True)
 class Schema(Generic[Item]):
-    """What a table holds.
+    """What a table holds."""
 
-    Attributes
-    ----------
-    argument : str
-        What errors call the table.
-    columns : tuple of Column
-        The columns that are read; others are passed through.
-    required : tuple of tuple of str
-        Columns that the header has; one of each group.
-    make : callable
-        The item of a row, from its number, the values of the cells that are not empty: texts as they stand, numbers in
-        SI units; and the cells of all other columns, texts that are read included, by their headers. It raises
-        `InvalidArgumentError`, with the name of a column.
-    every_length : bool
-        Whether a length in a column that is not read refuses its row.
-    renamed : mapping of str to str
-        Names of columns that replace those of the header, whose units remain.
-    """
-
-    argument: str
-    columns: tuple[Column, ...]
-    required: tuple[tuple[str, ...], ...]
+    argument: str  # what errors call the table
+    columns: tuple[Quantity, ...]  # the columns that are read; others are passed through
+    required: tuple[tuple[str, ...], ...]  # quantitys that the header has; one of each group
+    # the item of a row, from its number, the values of the cells that are not empty: texts as they stand,
+    # numbers in SI units; and the cells of all other columns, texts that are read included, by their headers.
+    # It raises `InvalidArgumentError`, with the name of a column
     make: Callable[[int, dict[str, Any], dict[str, str]], Item]
-    every_length: bool = False
+    every_length: bool = False  # whether a length in a column that is not read refuses its row
+    # names of columns that replace those of the header, whose units remain
     renamed: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class HeaderLine:
-    """A line that may be the header.
+    """A line that may be the header."""
 
-    Attributes
-    ----------
-    number : int
-        From 0.
-    cells, labels, texts : list of str
-        Its cells; completed by the line above, with their number where one is empty or not the first; completed, under
-        the names that were given to them.
-    columns : dict of int to (Column, str)
-        Quantities that are read, with their units.
-    grouped : set of int
-        Columns in a group of lengths that are not read.
-    complete : bool
-        Whether it has all columns that a header needs.
-    error : InvalidArgumentError or None
-        Its first unit that is not understood.
-    """
-
-    number: int
+    number: int  # from 0
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
     cells: list[str]
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
     labels: list[str]
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
     texts: list[str]
-    columns: dict[int, tuple[Column, str]]
-    grouped: set[int]
-    complete: bool
-    error: InvalidArgumentError | None
+    columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units
+    grouped: set[int]  # quantitys in a group of lengths that are not read
+    complete: bool  # whether it has all columns that a header needs
+    error: InvalidArgumentError | None  # its first unit that is not understood
 
 
 @dataclass(frozen=True)
 class Header:
-    """What the header says.
+    """What the header says."""
 
-    Attributes
-    ----------
-    last : int
-        Its last line.
-    labels : list of str
-        Its cells as they stand, with their number where one is empty or not the first.
-    texts : list of str
-        Its cells, under the names that were given to them.
-    columns : dict of int to (Column, str)
-        Quantities that are read, with their units, "" in the cells.
-    units : dict of int to int
-        Column with the units of a column, by the place of that.
-    lengths : dict of int to bool
-        Columns that are not read and may hold a length; whether it says so by its unit.
-    """
-
-    last: int
-    labels: list[str]
-    texts: list[str]
-    columns: dict[int, tuple[Column, str]]
-    units: dict[int, int]
-    lengths: dict[int, bool]
+    last: int  # its last line
+    labels: list[str]  # its cells as they stand, with their number where one is empty or not the first
+    texts: list[str]  # its cells, under the names that were given to them
+    columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units, "" in the cells
+    units: dict[int, int]  # quantity with the units of a column, by the place of that
+    lengths: dict[int, bool]  # quantitys that are not read and may hold a length; whether it says so by its unit
 
 
 def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[HeaderLine]:
     """The lines that may be the header, the first ones; where it has two, the lower one is completed by the upper."""
-    known = {plain_name(name): one for one in schema.columns for name in (one.name, *one.aliases)}
+    known = {plain_name(name): one for one in schema.columns for name in one.names}
     for number, row in enumerate(rows[:HEADER_ROWS]):
         if len(row) > MAX_COLUMNS:
             continue
@@ -227,7 +129,7 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
         above = zip(_merged(own), own, row, strict=True)
         pairs = [_joined(*one, known) if max(map(len, one)) <= MAX_NAME else ("", False) for one in above]
         texts = [_renamed(text, schema.renamed) for text, _ in pairs]
-        found: dict[int, tuple[Column, str]] = {}
+        found: dict[int, tuple[Quantity, str]] = {}
         error = None
         for place, text in enumerate(texts):
             try:
@@ -247,11 +149,10 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
 
 def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
     """The header among the first rows."""
-    line = next((line for line in header_lines(rows, schema) if line.complete), None)
+    lines = list(header_lines(rows, schema))
+    line = next((line for line in lines if line.complete), None)
     if line is None:
-        shown = "; ".join(rows[0])[:MAX_NAME] if rows else "nothing"
-        needed = ", ".join(" or ".join(group) for group in schema.required)
-        raise InvalidArgumentError(f"{schema.argument}, header", shown, f"columns {needed}, of at most {MAX_COLUMNS}")
+        raise _without_header(lines, schema)
     if line.error is not None:
         raise line.error
     for name in schema.renamed.keys() - set(map(str.strip, line.labels)):
@@ -265,6 +166,20 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
     units = _unit_columns(line.texts, columns)
     lengths = dict.fromkeys(sorted(_beside(line, columns, units)), False) | lengths
     return Header(after, line.labels, line.texts, columns, units, lengths)
+
+
+def _without_header(lines: Sequence[HeaderLine], schema: Schema[Any]) -> InvalidArgumentError:
+    """What the line that is nearest to a header lacks, and the column of it that may be that."""
+    best = max(lines, key=lambda line: len(line.columns), default=None)
+    texts, columns = (best.texts, best.columns) if best else ([], {})
+    names = {one.name for one, _ in columns.values()}
+    needed = {" or ".join(group): names.isdisjoint(group) for group in schema.required}
+    missing = ", ".join(group for group, lacks in needed.items() if lacks)
+    rest = (text for place, text in enumerate(texts) if place not in columns and is_used(text))
+    near = [text for text in rest if stated_unit(text, "m") or LENGTH_WORD.search(plain_name(text))]
+    allowed = f"columns {', '.join(needed)}, of at most {MAX_COLUMNS}; missing: {missing}"
+    allowed += f"; if that is {near[0][:MAX_NAME]!r}, name the column so" if near and columns else ""
+    return InvalidArgumentError(f"{schema.argument}, header", "; ".join(texts)[:MAX_NAME] or "nothing", allowed)
 
 
 def is_used(text: str) -> bool:
@@ -282,14 +197,14 @@ def _renamed(text: str, renamed: Mapping[str, str]) -> str:
 
 
 def _assigned(
-    found: dict[int, tuple[Column, str]], texts: Sequence[str], schema: Schema[Any]
-) -> dict[int, tuple[Column, str]]:
+    found: dict[int, tuple[Quantity, str]], texts: Sequence[str], schema: Schema[Any]
+) -> dict[int, tuple[Quantity, str]]:
     """The columns as what they are read: those that stand for others, and of several with names the best one."""
     known = {one.name: one for one in schema.columns}
     for column in schema.columns:
         places = [place for place, (one, _) in found.items() if one is column]
         if not column.unit and not column.joined and places:
-            best = min(places, key=lambda place: column.rank(texts[place]))
+            best = min(places, key=lambda place: rank(column, texts[place]))
             found = {place: pair for place, pair in found.items() if place == best or place not in places}
             places = [best]
         if not column.stands_for:
@@ -303,15 +218,10 @@ def _assigned(
     return found
 
 
-def _joined(upper: str, own: str, lower: str, known: Mapping[str, Column]) -> tuple[str, bool]:
+def _joined(upper: str, own: str, lower: str, known: Mapping[str, Quantity]) -> tuple[str, bool]:
     """The name of a column from two lines, and whether it is in a group of lengths.
 
-    Parameters
-    ----------
-    upper, own, lower : str
-        Cell of the upper line, or the one of the group to its left; that cell itself; cell of the lower line.
-    known : mapping
-        Columns by their names.
+    `upper` is the cell of the upper line or of the group to its left, `own` that cell itself.
     """
     if not lower.strip():
         return own, False
@@ -328,7 +238,7 @@ def _joined(upper: str, own: str, lower: str, known: Mapping[str, Column]) -> tu
     return lower, False
 
 
-def _group_unit(text: str, known: Mapping[str, Column]) -> str:
+def _group_unit(text: str, known: Mapping[str, Quantity]) -> str:
     """The unit that an upper line states for the columns below: "Dimensions (cm)", "[cm]"; "" for a title."""
     if is_unit(text):
         return text.strip("[]() ")
@@ -353,7 +263,7 @@ def _merged(row: Sequence[str]) -> list[str]:
 
 def _with_units(
     line: HeaderLine, rows: Sequence[Sequence[str]], schema: Schema[Any]
-) -> tuple[dict[int, tuple[Column, str]], dict[int, bool], int]:
+) -> tuple[dict[int, tuple[Quantity, str]], dict[int, bool], int]:
     """The columns with the units of a line of its own below the header, if there is one; lengths that are not read."""
     columns, last = dict(line.columns), line.number
     others = [place for place, text in enumerate(line.texts) if place not in columns and is_used(text)]
@@ -387,8 +297,8 @@ def _with_units(
     return columns, dict.fromkeys(sorted(weak), False) | lengths, last
 
 
-def _beside(line: HeaderLine, columns: Mapping[int, tuple[Column, str]], units: Mapping[int, int]) -> set[int]:
-    """Columns that are not read and may be a length without a unit: between those of lengths, anywhere beside headers
+def _beside(line: HeaderLine, columns: Mapping[int, tuple[Quantity, str]], units: Mapping[int, int]) -> set[int]:
+    """Quantitys that are not read and may be a length without a unit: between those of lengths, anywhere beside headers
     without units.
     """
     measured = [place for place, (one, _) in columns.items() if one.unit == "m"]
@@ -408,7 +318,7 @@ def _beside(line: HeaderLine, columns: Mapping[int, tuple[Column, str]], units: 
     return found
 
 
-def _unit_columns(texts: Sequence[str], columns: Mapping[int, tuple[Column, str]]) -> dict[int, int]:
+def _unit_columns(texts: Sequence[str], columns: Mapping[int, tuple[Quantity, str]]) -> dict[int, int]:
     """The place of the column that has the units of each column of numbers, where there is one."""
     found: dict[int, int] = {}
     plain = {place: plain_name(text) for place, text in enumerate(texts) if place not in columns}

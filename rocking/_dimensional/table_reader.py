@@ -19,14 +19,15 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking._base.column import (
-    Column,
+from rocking._base.cells import (
     decimal_sign,
     name_and_unit,
     plain_name,
+    read_cell,
     split_number,
 )
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
 from rocking._dimensional.table_header import (
     AMOUNT,
@@ -49,11 +50,8 @@ Item = TypeVar("Item")
 
 DELIMITERS = ",;\t|"
 
-SHEETS = (".xlsx", ".ods")
-"""Endings of files that are not text."""
-
-MAX_CHARACTERS = 20_000_000
-"""Longest table that is read."""
+SHEETS = (".xlsx", ".ods")  # endings of files that are not text
+MAX_CHARACTERS = 20_000_000  # longest table that is read
 
 EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 """Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
@@ -65,8 +63,9 @@ _TOTAL = re.compile(
 )
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
 
-MARK = "\ufeff"
-"""What some programs put before a text of UTF-8."""
+_PLAIN = re.compile(r"-?(?:0|[1-9][0-9]{0,14})(?:[.,][0-9]{1,15})?")
+
+MARK = "\ufeff"  # what some programs put before a text of UTF-8
 
 
 class TooManyRowsError(InvalidArgumentError):
@@ -75,21 +74,12 @@ class TooManyRowsError(InvalidArgumentError):
 
 @dataclass(frozen=True)
 class BadRow:
-    """A row that was not read.
+    """A row that was not read."""
 
-    Attributes
-    ----------
-    row : int
-        Its number in the table, from 1.
-    column : str
-        Name of the column, "" for the whole row.
-    reason : str
-        What was found and what is allowed.
-    """
-
-    row: int
-    column: str
-    reason: str
+    row: int  # its number in the table, from 1
+    column: str  # name of the column, "" for the whole row
+    reason: str  # what was found and what is allowed
+    cells: dict[str, str] = field(default_factory=dict)  # the row as it stands, by the headers of the table
 
     def __str__(self) -> str:
         return f"row {self.row}{f', {self.column}' if self.column else ''}: {self.reason}"
@@ -97,46 +87,36 @@ class BadRow:
 
 @dataclass(frozen=True)
 class Table(Generic[Item]):
-    """The rows of a table.
+    """The rows of a table."""
 
-    Attributes
-    ----------
-    items : list
-        One for each row that was read.
-    cells : dict of str to list of str
-        Every column of the table as it stands, by the text of its header, with its number where that is empty or not
-        the first; for the rows that were read.
-    columns : dict of str to str
-        The name of the quantity in each of these columns that is read.
-    units : dict of str to str
-        The unit of each quantity that is read: of the header, or of the first cell with one, otherwise "".
-    errors : list of (int, InvalidArgumentError)
-        Number of each row that was not read, and why; the parameter is the column, "row" the whole row.
-    """
-
-    items: list[Item]
+    items: list[Item]  # one for each row that was read
+    # every column of the table as it stands, by the text of its header, with its number where that is empty or
+    # not the first; for the rows that were read
     cells: dict[str, list[str]] = field(default_factory=dict)
+    # the name of the quantity in each of these columns that is read
     columns: dict[str, str] = field(default_factory=dict)
+    # the unit of each quantity that is read: of the header, or of the first cell with one, otherwise ""
     units: dict[str, str] = field(default_factory=dict)
+    # number of each row that was not read, and why; the parameter is the column, "row" the whole row
     errors: list[tuple[int, InvalidArgumentError]] = field(default_factory=list)
+    # the cells of each of these rows
+    unread: list[dict[str, str]] = field(default_factory=list)
 
     @property
     def bad_rows(self) -> list[BadRow]:
         """The rows that were not read, in words."""
         return [
-            BadRow(row, *("", f"{one.value}; {one.allowed}") if one.parameter == "row" else (one.parameter, str(one)))
-            for row, one in self.errors
+            BadRow(
+                row,
+                *("", f"{one.value}; {one.allowed}") if one.parameter == "row" else (one.parameter, str(one)),
+                cells,
+            )
+            for (row, one), cells in zip(self.errors, self.unread, strict=True)
         ]
 
 
 def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
-    """The content of a file; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it cannot be read.
-    """
+    """The content of a file; `-` is standard input."""
     try:
         return sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
     except OSError as error:
@@ -144,15 +124,7 @@ def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
 
 
 def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
-    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, its header lacks a column, or the decimal sign of a number is not certain.
-    ImportError
-        If the package for sheets is not installed, the extra `sheets`.
-    """
+    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input."""
     raw = read_bytes(source, schema.argument)
     if Path(source).suffix.lower() in SHEETS:
         return read_rows(rows_of_sheet(raw, schema.argument), schema)
@@ -263,7 +235,7 @@ def csv_of_sheet(raw: bytes, schema: Schema[Any]) -> str:
     with suppress(InvalidArgumentError):
         header = find_header(rows[: HEADER_ROWS + 1], schema)
         numeric, last = [place for place, (one, _) in header.columns.items() if one.unit], header.last
-    decimal = _decimal_sign((row[place] for row in rows[last + 1 :] for place in numeric), "")
+    decimal = _decimal_sign((row[place] for row in rows[last + 1 :] if _is_item(row) for place in numeric), "")
 
     def certain(cell: str) -> str:
         digits, _ = split_number(cell) or ("", "")
@@ -290,12 +262,26 @@ class _Exact(str):
     __slots__ = ()
 
 
+def numbers_of(cells: Sequence[str]) -> Sequence[str | float | None]:
+    """A column of a table with its numbers as numbers, where all of its cells are plain ones or all are of a sheet.
+
+    Digits that begin with 0, such as 0012, and numbers whose decimal sign is in doubt remain texts.
+    """
+    texts = [cell for cell in cells if cell.strip()]
+    if not any(isinstance(cell, _Exact) for cell in texts):
+        signs = {decimal_sign(cell.strip().lstrip("-")) for cell in texts}
+        if len(signs - {""}) > 1 or not all(_PLAIN.fullmatch(cell.strip()) for cell in texts) or signs & {"?.", "?,"}:
+            return cells
+        return [float(cell.strip().replace(",", ".")) if cell.strip() else None for cell in cells]
+    return [float(cell) if isinstance(cell, _Exact) else cell for cell in cells]
+
+
 def _cell_text(value: object) -> str:
     """A cell of a sheet as text."""
     if value is None or value != value:
         return ""
     if not isinstance(value, float):
-        return str(value)
+        return str(value).removesuffix(" 00:00:00")  # a date
     return _Exact(int(value) if value.is_integer() and abs(value) < 1e15 else f"{value:.15g}")
 
 
@@ -327,6 +313,7 @@ def read_rows(
     items: list[Item] = []
     kept: list[Sequence[str]] = []
     errors: list[tuple[int, InvalidArgumentError]] = []
+    unread: list[dict[str, str]] = []
     for number, row in body:
         try:
             values = _values(row, header, decimal, schema)
@@ -339,6 +326,7 @@ def read_rows(
             kept.append(row)
         except InvalidArgumentError as error:
             errors.append((number, _of_cell(error, row, header)))
+            unread.append(dict(zip(labels, row, strict=False)))
     size = len(header.texts)
     padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
     columns = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
@@ -349,7 +337,7 @@ def read_rows(
         one.name: unit or next((written for row in padded if (written := _written_unit(row[place], one))), "")
         for place, (one, unit) in header.columns.items()
     }
-    return Table(items, columns, read, units, errors)
+    return Table(items, columns, read, units, errors, unread)
 
 
 def _is_item(row: Sequence[str]) -> bool:
@@ -358,7 +346,7 @@ def _is_item(row: Sequence[str]) -> bool:
     return bool(first) and not _TOTAL.fullmatch(first[:MAX_NAME]) and any(map(str.isalnum, "".join(row)))
 
 
-def _written_unit(cell: str, one: Column) -> str:
+def _written_unit(cell: str, one: Quantity) -> str:
     """The unit in a cell, "" for none."""
     found = split_number(cell) if one.unit in UNITS else None
     return (unit_name(found[1], one.unit) or "") if found else ""
@@ -376,14 +364,15 @@ def _values(row: Sequence[str], header: Header, decimal: str, schema: Schema[Any
         if (cell.strip().lower() in EMPTY) if one.unit else not any(map(str.isalnum, cell)):
             continue
         stated = _row_unit(row, header, place) if one.unit in UNITS and not _written_unit(cell, one) else unit
-        value = one.value(cell, stated, "." if isinstance(cell, _Exact) else decimal)
+        value = read_cell(one, cell, stated, "." if isinstance(cell, _Exact) else decimal)
         values[one.name] = f"{values[one.name]}; {value}" if one.name in values else value
     for one, _ in header.columns.values():
         if values.get(one.name) == 0.0 and any(values.get(other) for other in one.absent_beside):
             del values[one.name]
     if schema.every_length and "name" not in values and not _has_text(row, header):
         raise InvalidArgumentError("row", "numbers only", "a name or another text, which totals lack")
-    if not any(one.unit not in ("", "-", "kg") and one.name in values for one, _ in header.columns.values()):
+    dimensions = (one for one, _ in header.columns.values() if one.unit not in ("", "-", "kg") or one.name == "body")
+    if not any(one.name in values for one in dimensions):
         raise InvalidArgumentError("row", "no dimension", "one or more in each row")
     return values
 
@@ -416,13 +405,7 @@ def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
 
 
 def _check_lengths(row: Sequence[str], header: Header) -> None:
-    """Refuse a row with a length in a column that is not read.
-
-    Raises
-    ------
-    InvalidArgumentError
-        Of that column.
-    """
+    """Refuse a row with a length in a column that is not read."""
     for place, text in enumerate(header.texts[: len(row)]):
         cell = row[place].strip()
         if place in header.columns or place in header.units.values() or cell.lower() in EMPTY:

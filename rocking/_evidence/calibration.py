@@ -1,7 +1,5 @@
 """Parameters of a planar block from outcomes of tests on a shaking table."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,11 +16,8 @@ from rocking._solver.records.record_response import record_response
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-SEED = 0
-"""Of the order in which tests are divided into folds, and of the resamples."""
-
-RESAMPLES = 400
-"""Resamples of the tests for the intervals [-]."""
+SEED = 0  # of the order in which tests are divided into folds, and of the resamples
+RESAMPLES = 400  # resamples of the tests for the intervals [-]
 
 
 def calibrate(

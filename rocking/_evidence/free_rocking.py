@@ -45,35 +45,25 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-MAX_ROTATION = 0.8
-"""Largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees."""
+MAX_ROTATION = 0.8  # largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees
 
 DURATION = 1e-3, 1e5
 """Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
 
-SHORTEST_STEP = 1e-7
-"""Shortest step between samples [s]."""
-
-MIN_IMPACTS = 3
-"""Fewest impacts from which eta, alpha and p are told apart [-]."""
-
-MAX_FLIGHTS = 200
-"""Most flights that are fitted [-]."""
+SHORTEST_STEP = 1e-7  # shortest step between samples [s]
+MIN_IMPACTS = 3  # fewest impacts from which eta, alpha and p are told apart [-]
+MAX_FLIGHTS = 200  # most flights that are fitted [-]
 
 LEVEL = 10.0
 """Peak of the smallest flight that is used, over the noise [-]; at 6, one trace in 100 had a flight too few."""
 
-MIN_SAMPLES = 5
-"""Fewest samples of a flight that is used [-]."""
+MIN_SAMPLES = 5  # fewest samples of a flight that is used [-]
 
 START_SHARES = 0.3, 0.5, 0.7, 0.85, 0.95
 """Shares of alpha that the first peak is tried at [-]: of 200 traces one start in alpha left three at wrong minima."""
 
-FIRST_EDGE = 4
-"""Unknowns before those of the edges [-]."""
-
-HIGHEST_SHARE = 0.9999
-"""Highest peak over alpha [-]: at alpha a flight has no end."""
+FIRST_EDGE = 4  # unknowns before those of the edges [-]
+HIGHEST_SHARE = 0.9999  # highest peak over alpha [-]: at alpha a flight has no end
 
 LARGEST_RESIDUAL = 0.1
 """Standard deviation of the residual over the first peak, above which the trace is no free rocking [-]."""
@@ -81,26 +71,14 @@ LARGEST_RESIDUAL = 0.1
 NEGLIGIBLE = 1e-3
 """Standard deviation of the residual over the first peak, below which a trace is not refused for its errors [-]."""
 
-LEAST_FREEDOM = 10.0
-"""Fewest independent samples less unknowns of a trace that is free rocking [-]."""
-
-MAX_LOG = 700.0
-"""Largest logarithm of the end of an interval [-]: e^710 is infinite."""
-
-SIGNIFICANT = 4.0
-"""Standard deviations beyond which a sum of correlations of the residual is no chance [-]."""
-
-HELD_SHARE = 0.95
-"""Share of the first peak below which the body is taken as released [-]: a hand holds it before."""
+LEAST_FREEDOM = 10.0  # fewest independent samples less unknowns of a trace that is free rocking [-]
+MAX_LOG = 700.0  # largest logarithm of the end of an interval [-]: e^710 is infinite
+SIGNIFICANT = 4.0  # standard deviations beyond which a sum of correlations of the residual is no chance [-]
+HELD_SHARE = 0.95  # share of the first peak below which the body is taken as released [-]: a hand holds it before
 
 
 def identify_free_rocking(
-    time: ArrayLike,
-    rotation: ArrayLike,
-    *,
-    edges: int = 1,
-    confidence: Scalar = 0.95,
-    stop: StopFlag | None = None,
+    time: ArrayLike, rotation: ArrayLike, *, edges: int = 1, confidence: Scalar = 0.95, stop: StopFlag | None = None
 ) -> xr.Dataset:
     """Restitution, slenderness angle and frequency parameter from the trace of a body that rocks freely.
 
@@ -420,10 +398,7 @@ def _described(
             "drift_lower": variable((), fit.x[1] - reach[1], "rad s-1", f"{about}, end of the interval"),
             "drift_upper": variable((), fit.x[1] + reach[1], "rad s-1", f"{about}, end of the interval"),
             "noise": variable(
-                (),
-                math.sqrt(2.0 * fit.cost / (model.size - fit.x.size)),
-                "rad",
-                "standard deviation of the residual",
+                (), math.sqrt(2.0 * fit.cost / (model.size - fit.x.size)), "rad", "standard deviation of the residual"
             ),
             "sample_noise": variable((), noise, "rad", "standard deviation of independent errors of the samples"),
         },

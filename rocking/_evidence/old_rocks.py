@@ -21,8 +21,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking.suites.hazard import Hazard, annual_rate
 from rocking.suites.hazard_files import hazard_arrays
 
-MAX_YEARS = 1e9
-"""Longest age of a rock [year]."""
+MAX_YEARS = 1e9  # longest age of a rock [year]
 
 
 def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str]], *, years: Scalar) -> xr.Dataset:

@@ -1,7 +1,5 @@
 """Integrals of a pulse shape: the ground velocity that it makes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -9,33 +7,18 @@ import numpy as np
 
 from rocking._excitation.shapes import AbstractPulse
 
-NODES = 40
-"""Gauss points on each monotone piece [-]: exact to rounding for the pulses by name."""
-
-HALVINGS = 60
-"""Halvings of the bracket of a zero of f [-]."""
-
-STILL = 1e-9
-"""Largest final velocity over the largest one of a pulse that leaves the ground at rest [-]."""
+NODES = 40  # Gauss points on each monotone piece [-]: exact to rounding for the pulses by name
+HALVINGS = 60  # halvings of the bracket of a zero of f [-]
+STILL = 1e-9  # largest final velocity over the largest one of a pulse that leaves the ground at rest [-]
 
 
 @dataclass(frozen=True)
 class Impulse:
-    """Integrals of f(phi); times a_g T_p/(2 pi) they are ground velocities.
+    """Integrals of f(phi); times a_g T_p/(2 pi) they are ground velocities."""
 
-    Attributes
-    ----------
-    largest : float
-        Largest absolute value of the integral of f from the start [-].
-    final : float
-        The integral over the whole window [-].
-    total : float
-        Integral of the absolute value [-].
-    """
-
-    largest: float
-    final: float
-    total: float
+    largest: float  # largest absolute value of the integral of f from the start [-]
+    final: float  # the integral over the whole window [-]
+    total: float  # integral of the absolute value [-]
 
     @property
     def ends_at_rest(self) -> bool:

@@ -18,14 +18,9 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._excitation.stationary import sign_changes
 
-DEGREE = 15
-"""Degree of the polynomials, below that of the Taylor steps, which therefore expand them exactly."""
-
-MAX_POLYNOMIALS = 128
-"""Most pieces: about 40 periods of a modulated sine."""
-
-SHORTEST = 1e-9
-"""Length of a piece over the window at which the function is not smooth."""
+DEGREE = 15  # degree of the polynomials, below that of the Taylor steps, which therefore expand them exactly
+MAX_POLYNOMIALS = 128  # most pieces: about 40 periods of a modulated sine
+SHORTEST = 1e-9  # length of a piece over the window at which the function is not smooth
 
 ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
 """Error allowed relative to max |f| + max |phi f'|, which is the rounding of the value and of the phase."""
@@ -34,8 +29,7 @@ WIGGLE = 64.0 * float(np.finfo(np.float64).eps)
 """Change of f over max |f| that is rounding: extremes that differ by less do not count."""
 
 _NODES = chebyshev.chebpts1(2 * (DEGREE + 1))
-_POINTS = np.concatenate([_NODES, chebyshev.chebpts2(2 * DEGREE + 5)])
-"""Points of the fit, then those that test it."""
+_POINTS = np.concatenate([_NODES, chebyshev.chebpts2(2 * DEGREE + 5)])  # points of the fit, then those that test it
 
 _SPECTRUM = chebyshev.chebvander(_NODES, _NODES.size - 1).T * (2.0 / _NODES.size)
 _SPECTRUM[0] *= 0.5  # from values at the nodes to coefficients of the Chebyshev series
@@ -46,18 +40,10 @@ Curve = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Polynomials:
-    """Polynomials in x on consecutive pieces, x from -1 to 1 on each.
+    """Polynomials in x on consecutive pieces, x from -1 to 1 on each."""
 
-    Attributes
-    ----------
-    ends : float array (pieces + 1,)
-        Phases at which the pieces start, and the end of the last [rad], ascending.
-    coefficients : float array (pieces, `DEGREE` + 1)
-        Of 1, x, x^2, ... [-].
-    """
-
-    ends: Array
-    coefficients: Array
+    ends: Array  # (pieces + 1,) phases at which the pieces start, and the end of the last [rad], ascending
+    coefficients: Array  # (pieces, `DEGREE` + 1) of 1, x, x^2, ... [-]
 
     @property
     def middles(self) -> Array:
@@ -134,17 +120,8 @@ def turning_points(values: Array, least: float) -> list[int]:
 def fit_polynomials(curve: Curve, start: float, end: float) -> Polynomials:
     """Polynomials that equal `curve` between two phases [rad] to rounding.
 
-    Parameters
-    ----------
-    curve : function
-        From phases (n,) to as many numbers.
-    start, end : float
-        Window [rad], start < end.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `curve` gives anything else, only zeros, or more than `MAX_POLYNOMIALS` pieces are needed.
+    `curve`: from phases (n,) to as many numbers; `start`, `end`: window [rad], start < end. Raises
+    `InvalidArgumentError` if `curve` gives anything else, only zeros, or more than `MAX_POLYNOMIALS` pieces are needed.
     """
     values = partial(_checked_values, curve)
     scale = float(np.abs(values(np.linspace(start, end, 1025))).max())

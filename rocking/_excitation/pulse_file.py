@@ -1,7 +1,5 @@
 """Files of sampled pulses: columns of numbers, or JSON. `rocking.SampledPulse.from_file` reads them."""
 
-from __future__ import annotations
-
 import codecs
 import json
 from dataclasses import dataclass
@@ -14,34 +12,18 @@ from rocking._base.errors import InvalidArgumentError, RecordFileError
 from rocking._excitation.records.readers.columns import read_samples
 from rocking._excitation.records.readers.lines import TextFile
 
-MAX_BYTES = 8_000_000
-"""Largest file of a pulse [bytes]: 100,000 times and accelerations of all digits."""
-
-KEYS = ("acceleration", "time", "period", "name")
-"""Keys of a JSON file, arguments of `rocking.SampledPulse`."""
-
-
-MAX_TEXT = 60
-"""Characters of a value that an error repeats."""
+MAX_BYTES = 8_000_000  # largest file of a pulse [bytes]: 100,000 times and accelerations of all digits
+KEYS = ("acceleration", "time", "period", "name")  # keys of a JSON file, arguments of `rocking.SampledPulse`
+MAX_TEXT = 60  # characters of a value that an error repeats
 
 
 @dataclass(frozen=True)
 class PulseFile:
-    """What a file of a pulse holds.
+    """What a file of a pulse holds."""
 
-    Attributes
-    ----------
-    arguments : dict
-        Arguments of `rocking.SampledPulse`.
-    text : TextFile
-        The file.
-    first : int or None
-        Index of the line of the first sample; None for JSON.
-    """
-
-    arguments: dict[str, Any]
-    text: TextFile
-    first: int | None
+    arguments: dict[str, Any]  # arguments of `rocking.SampledPulse`
+    text: TextFile  # the file
+    first: int | None  # index of the line of the first sample; None for JSON
 
     def error(self, error: InvalidArgumentError) -> InvalidArgumentError:
         """An error about an argument as one about the file: with its name and the line."""
@@ -57,11 +39,8 @@ class PulseFile:
 def read_pulse_file(path: str | PathLike[str], most: int) -> PulseFile:
     """The arguments of a pulse of at most `most` samples from a file.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, with the parameter `path`; with the parameter `pulse`, naming the file and the line,
-        if it does not hold a pulse.
+    Raises `InvalidArgumentError` if the file cannot be read, with the parameter `path`; with the parameter `pulse`,
+    naming the file and the line, if it does not hold a pulse.
     """
     file = Path(path)
     try:

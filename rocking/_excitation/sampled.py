@@ -16,11 +16,8 @@ from rocking._excitation.pulse_file import read_pulse_file
 from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import AbstractPulse
 
-MAX_SAMPLES = 100_000
-"""Most samples of a pulse; longer motions are records."""
-
-MAX_RATIO = 1e9
-"""Largest ratio of the duration to the period and to the shortest interval [-]."""
+MAX_SAMPLES = 100_000  # most samples of a pulse; longer motions are records
+MAX_RATIO = 1e9  # largest ratio of the duration to the period and to the shortest interval [-]
 
 
 @final
@@ -74,11 +71,7 @@ class SampledPulse(AbstractPulse):
     values: NDArray[np.float64]
 
     def __init__(
-        self,
-        acceleration: ArrayLike,
-        time: ArrayLike | None = None,
-        period: float | None = None,
-        name: str = "sampled",
+        self, acceleration: ArrayLike, time: ArrayLike | None = None, period: float | None = None, name: str = "sampled"
     ) -> None:
         samples = in_range(
             "acceleration", getattr(acceleration, "magnitude", acceleration), -np.inf, np.inf, closed="neither"
@@ -119,7 +112,7 @@ class SampledPulse(AbstractPulse):
         inner = sloped[1:][np.diff(rises[sloped]) != 0.0]
         fields = {"name": name, "start": 0.0, "end": float(phases[-1]), "stationary": tuple(phases[inner].tolist())}
         for key, value in (fields | {"phases": phases, "values": values}).items():
-            object.__setattr__(self, key, value)
+            vars(self)[key] = value
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], period: float | None = None) -> SampledPulse:

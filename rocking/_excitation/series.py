@@ -1,7 +1,5 @@
 """What the compiled solver needs to evaluate an excitation and to expand it in powers of time."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC
 from enum import IntEnum

@@ -17,14 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import InvalidArgumentError, float_array, in_range, number
 from rocking._excitation.series import ExcitationSeries
 
-MAX_PIECES = 84
-"""Most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles."""
+MAX_PIECES = 84  # most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles
 
 MAX_MAGNITUDE = 1e6
 """Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase has fewer than six digits."""
 
-PEAK_TOLERANCE = 1e-12
-"""Largest difference of max |f| from 1 [-]."""
+PEAK_TOLERANCE = 1e-12  # largest difference of max |f| from 1 [-]
 
 Array = NDArray[np.float64]
 
@@ -65,7 +63,7 @@ class AbstractPulse(ABC):
             )
         if len(found) >= MAX_PIECES:
             raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
-        object.__setattr__(self, "stationary", given or found)
+        vars(self)["stationary"] = given or found
         peak = peak_amplitude(self.shape, start, end, found)
         if not abs(peak - 1.0) <= PEAK_TOLERANCE:
             raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
@@ -75,7 +73,7 @@ class AbstractPulse(ABC):
         if not (self.name and isinstance(self.name, str)):
             raise InvalidArgumentError("name", self.name, "a string that is not empty")
         for name, value in zip(("start", "end"), checked_window(self.start, self.end), strict=True):
-            object.__setattr__(self, name, value)
+            vars(self)[name] = value
 
     @abstractmethod
     def shape(self, phi: ArrayLike) -> Array:

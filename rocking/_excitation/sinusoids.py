@@ -14,13 +14,11 @@ from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import MAX_MAGNITUDE, AbstractPulse, checked_window, mirrored_name, peak_amplitude
 from rocking._excitation.stationary import sign_changes
 
-MAX_SINUSOIDS = 8
-"""Most terms of a sum of sinusoids."""
+MAX_SINUSOIDS = 8  # most terms of a sum of sinusoids
 
 Array = NDArray[np.float64]
 
-Terms = tuple[tuple[float, float, float], ...]
-"""Sinusoids c cos(w phi + d): c [-], w [-], d [rad]."""
+Terms = tuple[tuple[float, float, float], ...]  # sinusoids c cos(w phi + d): c [-], w [-], d [rad]
 
 
 @final
@@ -60,7 +58,7 @@ class SinusoidalPulse(AbstractPulse):
         return cls(name, start, end, (), tuple((c / peak, w, d) for c, w, d in checked))
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "terms", _checked_terms(self.terms))
+        vars(self)["terms"] = _checked_terms(self.terms)
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:
@@ -88,7 +86,7 @@ def _checked_terms(terms: Terms) -> Terms:
 def sum_of_sinusoids(terms: Terms, phi: ArrayLike) -> Array:
     """The sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
     phi = float_array("phi", phi, unit="rad")
-    return np.asarray(sum(c * np.cos(w * phi + d) for c, w, d in terms))
+    return np.asarray(sum([c * np.cos(w * phi + d) for c, w, d in terms]))  # noqa: C419  (a generator is a call a term)
 
 
 def stationary_phases_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, ...]:

@@ -1,7 +1,5 @@
 """Stationary phases of a pulse: all phases at which f' changes sign, by interval exclusion and bisection."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -12,15 +10,11 @@ from rocking._base.errors import InvalidArgumentError
 HALVINGS = 26
 """Halvings of the window in the search. Two zeros in a remaining interval are at most 1.5e-8 of the window apart."""
 
-MAX_INTERVALS = 65536
-"""Largest number of intervals searched at once."""
-
-BISECTIONS = 80
-"""Halvings of a bracket around one zero, down to two adjacent doubles."""
+MAX_INTERVALS = 65536  # largest number of intervals searched at once
+BISECTIONS = 80  # halvings of a bracket around one zero, down to two adjacent doubles
 
 Array = NDArray[np.float64]
-Slope = Callable[[Array], tuple[Array, Array]]
-"""From phases (n,) the function and its derivative."""
+Slope = Callable[[Array], tuple[Array, Array]]  # from phases (n,) the function and its derivative
 
 
 def sign_changes(

@@ -15,11 +15,8 @@ from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import AbstractPulse, checked_number, checked_numbers, mirrored_name
 from rocking._excitation.stationary import sign_changes
 
-MAX_POLYNOMIAL = 4
-"""Most coefficients of a wavelet's polynomial."""
-
-MAX_DECAY = 1.25
-"""Largest sqrt(spread)/(2 omega) [-] at which the arcs under a wavelet are accurate to rounding."""
+MAX_POLYNOMIAL = 4  # most coefficients of a wavelet's polynomial
+MAX_DECAY = 1.25  # largest sqrt(spread)/(2 omega) [-] at which the arcs under a wavelet are accurate to rounding
 
 Array = NDArray[np.float64]
 
@@ -27,19 +24,11 @@ Array = NDArray[np.float64]
 @final
 @dataclass(frozen=True)
 class WaveletSeries(ExcitationSeries):
-    """f = (sum of c_k phi^k) exp(-phi^2/spread).
-
-    Attributes
-    ----------
-    polynomial : tuple of float
-        Coefficients c_k [-].
-    spread : float
-        Of the Gaussian [rad2].
-    """
+    """f = (sum of c_k phi^k) exp(-phi^2/spread)."""
 
     family: ClassVar[Family] = Family.WAVELET
-    polynomial: tuple[float, ...]
-    spread: float
+    polynomial: tuple[float, ...]  # coefficients c_k [-]
+    spread: float  # of the Gaussian [rad2]
 
     @property
     def least_arc_frequency(self) -> float:
@@ -87,8 +76,8 @@ class WaveletPulse(AbstractPulse):
         if not 1 <= len(polynomial) <= MAX_POLYNOMIAL:
             raise InvalidArgumentError("polynomial", polynomial, f"1 to {MAX_POLYNOMIAL} coefficients")
         spread = checked_number("spread", self.spread, low=1e-6, unit="rad2")
-        object.__setattr__(self, "polynomial", polynomial)
-        object.__setattr__(self, "spread", spread)
+        vars(self)["polynomial"] = polynomial
+        vars(self)["spread"] = spread
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:

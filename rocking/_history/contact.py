@@ -29,13 +29,12 @@ MAX_STEP = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
 
 MAX_STEPS = 250_000
-"""Number of steps during the ground motion, and after it, from which on they are longer than `MAX_STEP` [-]."""
+"""Most steps during the ground motion, and after it [-]: longer motions have longer steps than `MAX_STEP`."""
 
 LAST_FLIGHT = 100.0
 """Longest flight of free rocking [tau]: within a rounding of the unstable equilibrium it lasts 2 ln(2/1e-16) = 75."""
 
-EVENT_OFFSET = 1e-12
-"""Relative distance in time of the samples on either side of an event."""
+EVENT_OFFSET = 1e-12  # relative distance in time of the samples on either side of an event
 
 PRACTICAL_FRICTION = 0.7
 """Coefficient of friction that a dry contact reliably provides [-]: rough concrete on concrete, EN 1992-1-1, 6.2.5."""
@@ -52,22 +51,12 @@ COLUMNS = {
 """Variables that `add_contact` adds to a time history, with their meanings."""
 
 ATTRIBUTES = (
-    "largest_friction_demand",
-    "largest_friction_demand_over_slope",
-    "smallest_normal_reaction",
-    "impulse_ratio",
+    *("largest_friction_demand", "largest_friction_demand_over_slope"),
+    *("smallest_normal_reaction", "impulse_ratio"),
 )
 """Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
-
-FORCES = (
-    "largest_friction_demand",
-    "largest_friction_demand_over_slope",
-    "friction_time",
-    "smallest_normal_reaction",
-    "normal_time",
-    "impulse_ratio",
-)
+FORCES = (*ATTRIBUTES, "friction_time", "normal_time")
 """Fields of `ContactExtremes` that depend on the contact forces."""
 
 
@@ -75,36 +64,17 @@ FORCES = (
 class ContactExtremes:
     """Extremes during a motion, impacts excluded; of a block that overturns, until it exceeds alpha permanently.
 
-    Attributes
-    ----------
-    largest_friction_demand : float [-]
-        Largest |H|/N; infinite if the block lifts off, 0 in the slender limit.
-    largest_friction_demand_over_slope : float [-]
-        The same over tan(alpha), at least 1 for every block that rocks.
-    friction_time : float [-]
-        tau at which it occurs.
-    smallest_normal_reaction : float [-]
-        Smallest N/(m g).
-    normal_time : float [-]
-        tau at which it occurs.
-    impulse_ratio : float [-]
-        Horizontal over vertical impulse at the impacts; 0 if there are none.
-    chatters : bool
-        Whether impacts accumulate to rest while the pulse acts.
-    outcome : Outcome
-        Final outcome of the motion.
-
     The forces are nan where they are not known; sliding and lifting off are then not assessed.
     """
 
-    largest_friction_demand: float
-    largest_friction_demand_over_slope: float
-    friction_time: float
-    smallest_normal_reaction: float
-    normal_time: float
-    impulse_ratio: float
-    chatters: bool
-    outcome: Outcome
+    largest_friction_demand: float  # largest |H|/N; infinite if the block lifts off, 0 in the slender limit [-]
+    largest_friction_demand_over_slope: float  # the same over tan(alpha), at least 1 for every block that rocks [-]
+    friction_time: float  # tau at which it occurs [-]
+    smallest_normal_reaction: float  # smallest N/(m g) [-]
+    normal_time: float  # tau at which it occurs [-]
+    impulse_ratio: float  # horizontal over vertical impulse at the impacts; 0 if there are none [-]
+    chatters: bool  # whether impacts accumulate to rest while the pulse acts
+    outcome: Outcome  # final outcome of the motion
 
     def without_forces(self) -> ContactExtremes:
         """The same without the forces, for structures of which only the motion is known."""
@@ -180,14 +150,10 @@ class ContactExtremes:
 def add_contact(history: xr.Dataset, motion: BodyMotion, impact_times: Floats) -> xr.Dataset:
     """Add the contact forces to a time history of this motion.
 
-    Returns
-    -------
-    xarray.Dataset
-        With horizontal_reaction(tau): H/(m g), positive as the ground acceleration; normal_reaction(tau): N/(m g);
-        friction_demand(tau): |H|/N, infinite where N <= 0; friction_demand_over_slope(tau): |H|/(N tan(alpha)), finite
-        in the slender limit, where the first and the third are 0; all [-], at an impact after it. Attributes:
-        largest_friction_demand, largest_friction_demand_over_slope, smallest_normal_reaction, lifts_off,
-        impulse_ratio, warnings, of `ContactExtremes`: over the whole motion, also between its samples.
+    Variables over tau, all [-], at an impact after it: horizontal_reaction, H/(m g), positive as the ground
+    acceleration; normal_reaction, N/(m g); friction_demand, |H|/N, infinite where N <= 0; friction_demand_over_slope,
+    |H|/(N tan(alpha)), finite in the slender limit, where the first and the third are 0. Attributes: those of
+    `ContactExtremes` over the whole motion, also between its samples.
     """
     tau, rotation, velocity = (history[name].values for name in ("tau", "rotation", "angular_velocity"))
     found = reactions_of(motion, impact_times, tau, rotation, velocity)
@@ -211,13 +177,8 @@ def reactions_of(
 ) -> Reactions:
     """The reactions at samples of the motion, all arrays (samples,); at an impact those after it.
 
-    Parameters
-    ----------
-    motion : BodyMotion
-    impact_times : float array (impacts,)
-        Times of the impacts [tau], ascending.
-    tau, rotation, velocity
-        Ascending times and `BodyMotion.sample` there.
+    `impact_times` (impacts,): times of the impacts [tau], ascending; `tau`, `rotation`, `velocity`: ascending times and
+    `BodyMotion.sample` there.
     """
     ground, vertical = motion.ground_acceleration(tau), 1.0 + motion.vertical_acceleration(tau)
     geometry = motion.contact_geometry

@@ -1,7 +1,5 @@
 """The motion of one body as a function of time, sampled at given times by the flights of the solver."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -11,29 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import number, positive
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
 from rocking._excitation.records.vertical import check_one_vertical_scale
 from rocking._excitation.shapes import MAX_PIECES
-from rocking._history.sampling import (
-    ROTATION,
-    TAU,
-    VELOCITY,
-    sample_flights,
-    sample_free_rocking,
-    sample_record,
-)
-from rocking._model.checks import check_number, check_one_alpha
+from rocking._history.sampling import ROTATION, TAU, VELOCITY, sample_flights, sample_free_rocking, sample_record
+from rocking._model.checks import check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES, peak_response
+from rocking._solver.peak_response import NO_EDGES, peak_response
 from rocking._solver.records import state as samples_state
 from rocking._solver.records.record_response import frequency_parameter_range, pulse_rows
 from rocking._solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
@@ -50,11 +41,8 @@ from rocking._solver.state import (
 
 Floats = NDArray[np.float64]
 
-FREE_DURATION = 8.0
-"""Default duration of free rocking after the pulse [tau]."""
-
-MAX_FREE_IMPACTS = 10_000
-"""Largest number of impacts of free rocking."""
+FREE_DURATION = 8.0  # default duration of free rocking after the pulse [tau]
+MAX_FREE_IMPACTS = 10_000  # largest number of impacts of free rocking
 
 MAX_FLIGHTS = IMPACT_LIMIT + 12 * (MAX_PIECES + 1)
 """Most flights under a pulse: three more impacts and one uplift in each of the three intervals of a piece."""
@@ -67,18 +55,10 @@ MAX_ROTATION = 4.0
 class BodyMotion(ABC):
     """The motion of one body as a function of tau, from the start of the ground motion to a horizon.
 
-    Parameters
-    ----------
-    cell : record `BODY_CELL`
-        The body, and the rate of the ground motion.
-    horizon : float
-        tau at which to stop [-].
-    stop : StopFlag, optional
-        Cancels the work: the methods raise `StoppedError` soon after another thread sets the flag.
-    inertia_ratio : (float, float)
-        R p^2/g of the right and the left edge [-], for the contact forces; 3/4 for a rectangle.
-    tilt : float
-        Angle by which the base is inclined towards the right [rad].
+    `cell`: the body, and the rate of the ground motion. `horizon`: tau at which to stop [-]. `stop`: cancels the work:
+    the methods raise `StoppedError` soon after another thread sets the flag. `inertia_ratio`: R p^2/g of the right and
+    the left edge [-], for the contact forces; 3/4 for a rectangle. `tilt`: angle by which the base is inclined towards
+    the right [rad].
     """
 
     cell: Record
@@ -122,6 +102,12 @@ class BodyMotion(ABC):
     def restitution(self) -> float:
         """Of impacts that leave the right edge [-]."""
         return float(self.cell["eta"][0])
+
+    @property
+    def slenderness(self) -> float:
+        """g tan(alpha) over the largest ground acceleration [-]; of the left edge if nothing lifts the right one."""
+        right, left = self.cell["slenderness"].tolist()
+        return float(right if right < math.inf else left)
 
     @cached_property
     def alpha(self) -> float:
@@ -200,7 +186,8 @@ class BodyMotion(ABC):
             impact_times,
             self._flag,
         )
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return int(written)
 
     @cached_property
@@ -212,10 +199,6 @@ class BodyMotion(ABC):
     def _flag(self) -> NDArray[np.uint8]:
         return flag_array(self.stop)
 
-    def _check_stop(self) -> None:
-        if self._flag[0]:
-            check_stop(self.stop)
-
 
 def overturned(record: Record) -> bool:
     """Whether the body of this record overturns in the end."""
@@ -224,12 +207,7 @@ def overturned(record: Record) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class PulseMotion(BodyMotion):
-    """A `BodyMotion` under a pulse.
-
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    """
+    """A `BodyMotion` under a pulse."""
 
     pulse: AbstractPulse
 
@@ -259,7 +237,7 @@ class PulseMotion(BodyMotion):
 
     def ground_acceleration(self, tau: Floats) -> Floats:
         f = self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau)
-        return np.asarray(f / self.cell["slenderness"][0])
+        return np.asarray(f / self.slenderness)
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
         followed, solved = self._flights
@@ -272,7 +250,8 @@ class PulseMotion(BodyMotion):
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return record, written
 
     @cached_property
@@ -284,14 +263,13 @@ class PulseMotion(BodyMotion):
     def _flights(self) -> tuple[NDArray[np.void], Record]:
         """The flights under the pulse by Taylor steps, and the state of the solver after them."""
         cell, state = self.cell, np.repeat(pulse_state(self.pulse), LANES)
-        followed, edges = np.empty(MAX_FLIGHTS, FOLLOWED_FLIGHT), np.empty((1, EDGE_COLUMNS))
-        values = cell["slenderness"][0], cell["rate"], cell["eta"][0], cell["alpha"]
-        groups = [np.array([value]) for value in values]
+        followed, response = np.empty(MAX_FLIGHTS, FOLLOWED_FLIGHT), np.empty(1, RESPONSE_RECORD)
         equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
-        bodies = NO_BODIES if equal else np.array([cell])
-        response = np.empty(1, RESPONSE_RECORD)
-        count = solve_batch(*groups, bodies, state, step_state(state[0]), self._flag, response, edges, followed)
-        self._check_stop()
+        equal = equal and cell["slenderness"][0] == cell["slenderness"][1]
+        edges = NO_EDGES if equal else np.empty((1, EDGE_COLUMNS))
+        count = solve_batch(np.array([cell]), state, step_state(state[0]), self._flag, response, edges, followed)
+        if self._flag[0]:
+            check_stop(self.stop)
         return followed[:count].copy(), state[0]
 
     def _set_response(self, record: Record) -> None:
@@ -312,10 +290,7 @@ class PulseMotion(BodyMotion):
 class SamplesMotion(BodyMotion):
     """A `BodyMotion` under samples of a ground motion.
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `rocking._solver.records.samples.sample_rows`.
+    `samples` (7, samples): of `rocking._solver.records.samples.sample_rows`.
     """
 
     samples: Floats
@@ -345,7 +320,7 @@ class SamplesMotion(BodyMotion):
         return self.times
 
     def ground_acceleration(self, tau: Floats) -> Floats:
-        u = self.samples[SHAPE] / self.cell["slenderness"][0]
+        u = self.samples[SHAPE] / self.slenderness
         return np.asarray(np.interp(tau, self.times, u, right=0.0))
 
     def vertical_acceleration(self, tau: Floats) -> Floats:
@@ -357,7 +332,8 @@ class SamplesMotion(BodyMotion):
         steps = samples_state.step_state(self.samples, self.cell)
         rest = self.max_rotation, history, impact_times, self._flag
         written = sample_record(self.samples, self.cell, state, start, steps, *rest)
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return state, int(written)
 
 
@@ -373,8 +349,8 @@ def build_motion(
 ) -> BodyMotion:
     """The motion for given groups; arguments and errors as for `rocking.time_history`."""
     made = as_pulse(pulse)
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
-    omega, angle = check_number(FREQUENCY_RATIO, frequency_ratio), check_one_alpha(alpha)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
+    omega, angle = FREQUENCY_RATIO.number(frequency_ratio), check_one_alpha(alpha)
     if duration is None:
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
@@ -398,7 +374,7 @@ def build_record_motion(
 ) -> SamplesMotion:
     """The motion for given parameters; arguments and errors as for `rocking.time_history`."""
     p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
-    s, eta = check_number(SLENDERNESS, slenderness), check_number(RESTITUTION, restitution)
+    s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
     angle = check_one_alpha(alpha)
     vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")

@@ -12,8 +12,6 @@ of times that are passed. `impact_times` is filled with the times of the impacts
 (1,), to 1, a function returns within a flight; samples are missing.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._base.errors import SearchError
@@ -33,33 +31,20 @@ from rocking._solver.taylor.events import evaluate_series
 from rocking._solver.taylor.flight import MAX_STEPS, impact_in_step
 from rocking._solver.taylor.step import set_edge_lane, take_step
 
-TAU, ROTATION, VELOCITY = range(3)
-"""Rows of a history."""
-
-REST_VELOCITY = 1e-7
-"""Velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha."""
+TAU, ROTATION, VELOCITY = range(3)  # rows of a history
+REST_VELOCITY = 1e-7  # velocity after an impact [-] below which free rocking is set to rest: a rotation of 5e-15 alpha
 
 
 @light_entry
 def sample_flights(
-    followed: Record,
-    flight: Record,
-    steps: Record,
-    max_rotation: float,
-    history: FloatArray,
-    stop: FloatArray,
+    followed: Record, flight: Record, steps: Record, max_rotation: float, history: FloatArray, stop: FloatArray
 ) -> None:
     """Repeat the flights of a body under a pulse by the Taylor steps of `rocking._solver.kernels.batch.solve_batch`.
 
     A body that overturns is followed to the end of the pulse.
 
-    Parameters
-    ----------
-    followed : array of `rocking._solver.state.FOLLOWED_FLIGHT`
-        The flights, in their order.
-    flight, steps
-        Solver state, records of `pulse_state` as it was after them, and of `step_state`; `flight` holds z and w at the
-        end of the pulse on return.
+    `followed`: the flights, in their order. `flight`, `steps`: solver state, records of `pulse_state` as it was after
+    them, and of `step_state`; `flight` holds z and w at the end of the pulse on return.
     """
     first, omega = flight.end_phase[0], flight.omega
     pulse_end = (flight.end_phase[flight.pieces] - first) / omega
@@ -95,15 +80,9 @@ def sample_record(
 ) -> int:
     """One body under samples from rest to its final outcome, sampled during the motion; returns the impacts written.
 
-    Parameters
-    ----------
-    samples
-        As for `rocking._solver.records.batch.solve_by_steps`.
-    cell
-        A record `BODY_CELL`.
-    block, start, steps
-        Solver state: two records `BLOCK_STATE`, and `step_state`; `block` holds the response on return, with z, w and
-        sgn(theta) at the last sample of the motion, 0 at rest.
+    `samples`: as for `rocking._solver.records.batch.solve_by_steps`. `cell`: a record `BODY_CELL`. `block`, `start`,
+    `steps`: solver state: two records `BLOCK_STATE`, and `step_state`; `block` holds the response on return, with z, w
+    and sgn(theta) at the last sample of the motion, 0 at rest.
     """
     init_body_state(block, cell, False)
     by_pieces = cell.alpha == 0.0 and cell.vertical == 0.0
@@ -155,13 +134,7 @@ def sample_step(steps: Record, sign: float, start: float, end: float, history: F
 
 @kernel
 def sample_steps(
-    flight: Record,
-    steps: Record,
-    start: float,
-    end: float,
-    max_rotation: float,
-    history: FloatArray,
-    filled: int,
+    flight: Record, steps: Record, start: float, end: float, max_rotation: float, history: FloatArray, filled: int
 ) -> tuple[int, float, float]:
     """Repeat a flight, at most to z = `max_rotation`; returns the times passed, last z, w."""
     set_edge_lane(steps, 0, flight, flight.side)
@@ -195,12 +168,7 @@ def flight_by_taylor_steps(block: Record, samples: FloatArray, steps: Record) ->
 
 @kernel
 def sample_pieces(
-    start: Record,
-    samples: FloatArray,
-    end: float,
-    max_rotation: float,
-    history: FloatArray,
-    filled: int,
+    start: Record, samples: FloatArray, end: float, max_rotation: float, history: FloatArray, filled: int
 ) -> tuple[int, float, float]:
     """Repeat a flight of the slender block, piece by piece, from the state at its start.
 
@@ -228,13 +196,7 @@ def sample_pieces(
 
 @kernel
 def sample_piece_steps(
-    start: Record,
-    samples: FloatArray,
-    steps: Record,
-    end: float,
-    max_rotation: float,
-    history: FloatArray,
-    filled: int,
+    start: Record, samples: FloatArray, steps: Record, end: float, max_rotation: float, history: FloatArray, filled: int
 ) -> tuple[int, float, float]:
     """`sample_pieces` for any body by Taylor steps; `start` is changed."""
     pieces.start_steps(start, samples, steps, 0)
@@ -286,16 +248,9 @@ def sample_free_rocking(
     Without ground motion z has one maximum in a flight, after which it falls to the next impact: each Taylor step holds
     at most one impact, which `impact_in_step` finds. The restitution ends the motion at `REST_VELOCITY`.
 
-    Parameters
-    ----------
-    z, w, sign : float
-        |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and `end_sign`.
-    body
-        Record `BLOCK_STATE` with the fields `BODY_FIELDS`.
-    steps
-        Solver state of `step_state`.
-    start, horizon : float
-        Times from the start of the ground motion at which free rocking begins and at which to stop [-].
+    `z`, `w`, `sign`: |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and
+    `end_sign`; `body`: record `BLOCK_STATE` with the fields `BODY_FIELDS`; `steps`: solver state of `step_state`;
+    `start`, `horizon`: times from the start of the ground motion at which free rocking begins and at which to stop [-].
     """
     set_sign(body, sign)
     set_edge_lane(steps, 0, body, body.side)
@@ -321,7 +276,7 @@ def sample_free_rocking(
             written += 1
         steps.z0[0] = 0.0
         steps.w0[0] = -body.eta[body.side] * evaluate_series(steps.rate, 0, steps.order - 1, h)  # (2.3)
-        sign = -sign
+        sign *= body.turn
         set_sign(body, sign)
         set_edge_lane(steps, 0, body, body.side)
         if steps.w0[0] <= REST_VELOCITY or written == len(impact_times):

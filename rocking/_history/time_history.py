@@ -7,21 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking._base.errors import integer, needed, number, reject_given
+from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import add_contact
-from rocking._history.motion import (
-    BodyMotion,
-    Floats,
-    SamplesMotion,
-    build_motion,
-    build_record_motion,
-    overturned,
-)
-from rocking._model.checks import check_number, known_restitution
+from rocking._history.motion import BodyMotion, Floats, SamplesMotion, build_motion, build_record_motion, overturned
+from rocking._model.checks import known_restitution
 from rocking._model.labelled import variable
-from rocking._model.parameters import FREQUENCY_RATIO
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import frequency_parameter_range
@@ -29,11 +22,8 @@ from rocking._solver.records.record_response import frequency_parameter_range
 if TYPE_CHECKING:
     import xarray as xr
 
-MAX_SAMPLES = 1_000_000
-"""Largest number of uniform samples of a history."""
-
-DEFAULT_SAMPLES = 400
-"""Uniform samples of a history under a pulse."""
+MAX_SAMPLES = 1_000_000  # largest number of uniform samples of a history
+DEFAULT_SAMPLES = 400  # uniform samples of a history under a pulse
 
 MIN_CONTINUED = 10_000
 """Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""
@@ -106,7 +96,7 @@ def time_history(
         return _under_record(motion, groups, duration, samples, contact, stop)
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
-    omega = check_number(FREQUENCY_RATIO, needed("a pulse", frequency_ratio=frequency_ratio))
+    omega = FREQUENCY_RATIO.number(needed("a pulse", frequency_ratio=frequency_ratio))
     of_pulse = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": restitution, "alpha": alpha}
     moving = build_motion(made, **of_pulse, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
@@ -175,7 +165,7 @@ def _sampled(
         ),
     }  # fmt: skip
     attributes: dict[str, Any] = {
-        "slenderness": float(motion.cell["slenderness"][0]),
+        "slenderness": motion.slenderness,
         "restitution": motion.restitution,
         "alpha": motion.alpha,
         "outcome": Outcome(int(record["outcome"])).name,

@@ -26,8 +26,7 @@ from rocking._interpolation.stencils import (
 from rocking._model.outcome import Outcome
 from rocking._numba.compilation import FloatArray, entry, kernel
 
-UNKNOWN_IMPACTS = -1
-"""Value of `impacts` where the nodes do not determine the number."""
+UNKNOWN_IMPACTS = -1  # value of `impacts` where the nodes do not determine the number
 
 _RECOVERS = int(Outcome.RECOVERS)
 
@@ -47,21 +46,15 @@ NODE = np.dtype(
 """The variables of a cube from which points are interpolated, at one node; `counted`: whether its number of impacts is
 certain in the cell above it (`rocking._lookup.cube_slice.counted_cells`)."""
 
-Nodes = NDArray[np.void]
-"""The nodes (angles, n, m) of a cube, of type `NODE`."""
+Nodes = NDArray[np.void]  # the nodes (angles, n, m) of a cube, of type `NODE`
 
 FourSlices = tuple[Nodes, Nodes, Nodes, Nodes]
 
 
 class Found(NamedTuple):
-    """Responses to be filled, arrays (points,); fields as in `rocking._solver.bounded_response`.
+    """Responses to be filled, arrays (points,); fields as in `rocking._solver.bounded_response`."""
 
-    Attributes
-    ----------
-    known : bool array
-        Whether the response is determined within the tolerance, or 1/a >= 1; the other fields are 0 elsewhere.
-    """
-
+    # whether the response is determined within the tolerance, or 1/a >= 1; the other fields are 0 elsewhere
     known: NDArray[np.bool_]
     from_cube: NDArray[np.bool_]
     peak_rotation: NDArray[np.float64]
@@ -73,8 +66,9 @@ class Found(NamedTuple):
     @classmethod
     def zeros(cls, size: int) -> Found:
         """Responses of some points before they are filled: without uplift, as the codes are 0."""
-        kinds = np.bool_, np.bool_, np.float64, np.int8, np.int32, np.bool_, np.float64
-        return cls(*(np.zeros(size, kind) for kind in kinds))  # type: ignore[arg-type]  # in order
+        known, from_cube, exceeded = np.zeros((3, size), np.bool_)
+        peak, bound = np.zeros((2, size))
+        return cls(known, from_cube, peak, np.zeros(size, np.int8), np.zeros(size, np.int32), exceeded, bound)
 
 
 @entry
@@ -88,18 +82,10 @@ def prepare(
 ) -> int:
     """Find the points without uplift, and the slices from which points are interpolated; the number of the former.
 
-    Parameters
-    ----------
-    slenderness, restitution : float arrays (points,)
-        Of the points [-].
-    levels : float array (n,)
-        The restitutions of the slices [-], ascending.
-    groups : int64 array (points,), filled
-        2 k for points on slice k, 2 k + 1 for those between it and the next one, -1 outside of the slices.
-    present : bool array (2 n + 1,)
-        Set to True for the groups of the points; the last element if some are outside of the slices.
-    found : Found
-        Responses of the points, all 0.
+    `slenderness`, `restitution` (points,): of the points [-]. `levels` (n,): the restitutions of the slices [-],
+    ascending. `groups` (points,): 2 k for points on slice k, 2 k + 1 for those between it and the next one, -1 outside
+    of the slices. `present` (2 n + 1,): set to True for the groups of the points; the last element if some are outside
+    of the slices. `found`: responses of the points, all 0.
     """
     known = 0
     for k in range(len(restitution)):

@@ -3,15 +3,12 @@
 Nothing is compiled here: the workflow plans its jobs with it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-STENCIL_SIZE = 4
-"""Nodes of a stencil in one direction, and slices of a window: the interpolant is exact for cubics."""
+STENCIL_SIZE = 4  # nodes of a stencil in one direction, and slices of a window: the interpolant is exact for cubics
 
 
 def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
@@ -25,33 +22,19 @@ def slice_index(slices: Array, value: ArrayLike) -> tuple[NDArray[np.intp], NDAr
 
 
 def slice_window(count: int, lower: int) -> tuple[int, int]:
-    """The slices from which the interval above slice `lower` is interpolated.
+    """First and number of the slices from which the interval above slice `lower`, 0 to `count` - 2, is interpolated.
 
-    Parameters
-    ----------
-    count : int
-        Number of slices, at least 2.
-    lower : int
-        Slice below the interval, from 0 to `count` - 2.
-
-    Returns
-    -------
-    first, size : int
-        The two slices below and the two above the interval; at the ends the four outermost; all if there are fewer.
+    The two slices below and the two above the interval; at the ends the four outermost; all if there are fewer.
     """
     size = min(count, STENCIL_SIZE)
     return min(max(lower - 1, 0), count - size), size
 
 
 def windows_of(count: int, first: int, last: int) -> tuple[int, int]:
-    """First slice, and the one after the last, of those from which the intervals above some slices are interpolated.
+    """First slice, and the one after the last, of those from which the intervals above the slices `first` to `last` - 1
+    are interpolated.
 
-    Parameters
-    ----------
-    count : int
-        Number of slices.
-    first, last : int
-        First of these slices, and the one after the last of them; the last slice of all has no interval above it.
+    The last slice of all has no interval above it.
     """
     windows = [slice_window(count, k) for k in range(first, min(last, count - 1))]
     return min([first, *(start for start, _ in windows)]), max([last, *(start + size for start, size in windows)])

@@ -26,29 +26,16 @@ Weights = tuple[float, float, float, float]
 
 
 class Mesh(NamedTuple):
-    """The nodes over which a cube is interpolated, ascending.
+    """The nodes over which a cube is interpolated, ascending."""
 
-    Attributes
-    ----------
-    rows, columns : float arrays (n,), (m,)
-        slenderness and frequency_ratio [-].
-    logs : float array (m,)
-        The logarithms of the columns, the variable of interpolation [-].
-    """
-
+    # rows, columns: (n,), (m,) slenderness and frequency_ratio [-]
     rows: Array
     columns: Array
-    logs: Array
+    logs: Array  # (m,) the logarithms of the columns, the variable of interpolation [-]
 
     @classmethod
     def of(cls, slenderness: Array, frequency_ratio: Array) -> Mesh:
-        """The mesh of the axes of a cube.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If an axis has fewer than four nodes.
-        """
+        """The mesh of the axes of a cube, of at least four nodes each."""
         shape = slenderness.size, frequency_ratio.size
         if min(shape) < STENCIL_SIZE:
             raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL_SIZE} nodes")
@@ -62,19 +49,14 @@ class Mesh(NamedTuple):
 
 
 class AngleAxis(NamedTuple):
-    """The slenderness angles of a cube.
+    """The slenderness angles of a cube."""
 
-    Attributes
-    ----------
-    angles, squares : float arrays (angles,)
-        Ascending [rad], and their squares [rad2], the variable of interpolation: the equation of motion depends on the
-        square of the angle only.
-    windows : int64 array (2 angles - 1, 2)
-        First angle and number of angles of points on angle k in row 2 k, of those between it and the next one below.
-    """
-
+    # angles, squares: (angles,) ascending [rad], and their squares [rad2], the variable of interpolation: the equation
+    # of motion depends on the square of the angle only
     angles: Array
     squares: Array
+    # (2 angles - 1, 2) first angle and number of angles of points on angle k in row 2 k, of those between it and the
+    # next one below
     windows: NDArray[np.int64]
 
     @classmethod
@@ -83,6 +65,17 @@ class AngleAxis(NamedTuple):
         size = angles.size
         windows = [slice_window(size, k // 2) if k % 2 else (k // 2, 1) for k in range(2 * size - 1)]
         return cls(contiguous_array(angles), angles**2, np.array(windows, dtype=np.int64))
+
+    def needed(self, alpha: Array) -> set[int]:
+        """Indices of the angles from which points at some angles [rad] are interpolated."""
+        low, high = alpha.min(), alpha.max()
+        found: set[int] = set()
+        for angle in (low,) if low == high else np.unique(alpha):
+            if self.angles[0] <= angle <= self.angles[-1]:
+                k = int(self.angles.searchsorted(angle, "right")) - 1
+                first, count = self.windows[2 * k + bool(self.angles[k] != angle)].tolist()
+                found.update(range(first, first + count))
+        return found
 
 
 @kernel
@@ -157,12 +150,6 @@ def interpolate_cells(
 
 
 def interpolated_cells(valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Cells (n - 1, m - 1) whose 4 x 4 nodes are all valid.
-
-    Parameters
-    ----------
-    valid : bool array, shape (n, m), n and m >= 4
-        Nodes that may be used.
-    """
+    """Cells (n - 1, m - 1) whose 4 x 4 nodes are all valid; `valid` (n, m), n and m >= 4."""
     rows = valid[:, :-3] & valid[:, 1:-2] & valid[:, 2:-1] & valid[:, 3:]
     return np.pad(rows[:-3] & rows[1:-2] & rows[2:-1] & rows[3:], 1)

@@ -4,19 +4,17 @@ A missing, damaged or unreadable cube never gives a wrong result: the solver com
 `CubeCollection.problems` reports the file. Files that change are read again.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking._base.errors import DatasetError
+from rocking._base.errors import DatasetError, number, one_of
 from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
 from rocking._datasets.cube import decode_dataset
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._lookup.cube import Cube
+from rocking._lookup.cube import METHODS, Cube, Points, UnreadError
 from rocking._lookup.cube_slice import CubeSlice, check_slice, decode_slice
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
@@ -30,18 +28,7 @@ NO_CUBES = "no spectrum cubes; `make reproduce` builds them"
 
 
 class CubeCollection:
-    """The spectrum cubes below a results folder.
-
-    Parameters
-    ----------
-    results : path
-        Folder that the workflow fills; it need not exist yet.
-
-    Attributes
-    ----------
-    catalogue : Catalogue
-        All files of the folder.
-    """
+    """The spectrum cubes below a results folder, which the workflow fills; `catalogue` has all its files."""
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
@@ -64,19 +51,17 @@ class CubeCollection:
             self._restitutions.store(key, folder, version, found)
         return found
 
-    def slice_at(self, pulse: str, restitution: float) -> CubeSlice | None:
-        """The cube of a pulse and a restitution, None if there is none.
+    def slice_at(self, pulse: str, restitution: float, may_read: bool = True) -> CubeSlice | None:
+        """The cube of a pulse and a restitution, None if there is none; without `may_read` it is not read.
 
-        A mirrored pulse has the same peaks and outcomes, hence the same cube.
-
-        Raises
-        ------
-        DatasetError
-            If the file is damaged, cannot be read, or does not contain the cube that its name states.
+        A mirrored pulse has the same peaks and outcomes, hence the same cube. Raises `DatasetError` if the file is
+        damaged, cannot be read, or does not contain the cube that its name states; `UnreadError` if it has to be read.
         """
         key = pulse.removeprefix("-"), restitution
         known = self._slices.current(key)
         if known is None:
+            if not may_read:
+                raise UnreadError
             try:
                 # under the lock: another thread may read the same file, which is then read once
                 with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
@@ -88,32 +73,26 @@ class CubeCollection:
             raise known
         return known
 
-    def cube(self, pulse: str, method: str = "auto") -> Cube:
+    def cube(self, pulse: str | AbstractPulse, method: str = "auto", may_read: bool = True) -> Cube:
         """The cubes of a pulse; each is read when first needed.
 
         A damaged cube then raises `DatasetError` with `method="cube"`; otherwise it is treated as missing and reported
-        by `problems`.
+        by `problems`. Without `may_read` a response raises `UnreadError` where a file would have to be read.
         """
+        if not isinstance(pulse, str):
+            return Cube(pulse, np.empty(0), lambda _: None)
         restitutions = np.array(self.restitutions(pulse))
 
         @cache  # one response uses one version of each file
         def slice_at(k: int) -> CubeSlice | None:
             try:
-                return self.slice_at(pulse, float(restitutions[k]))
+                return self.slice_at(pulse, float(restitutions[k]), may_read)
             except DatasetError:
                 if method == "cube":
                     raise
                 return None
 
-        return Cube(pulse, restitutions, slice_at)
-
-    def is_open(self, pulse: str, restitution: float) -> bool:
-        """True if no file has to be read for a response with this restitution."""
-        restitutions = self.restitutions(pulse)
-        if not restitutions or not restitutions[0] <= restitution <= restitutions[-1]:
-            return True
-        used = Cube(pulse, np.array(restitutions), lambda _: None).used(np.array([restitution]))
-        return all(self._slices.current((pulse.removeprefix("-"), restitutions[k])) for k in used)
+        return Cube(pulse, restitutions, slice_at, may_read)
 
     def problems(self) -> dict[str, str]:
         """Read and check every data set once per version of its file; descriptions of the problems by name.
@@ -162,20 +141,14 @@ class CubeCollection:
             With `method="cube"`, for a damaged cube.
         """
         as_pulse(pulse)
-        cube = self.cube(pulse, method) if isinstance(pulse, str) else Cube(pulse, np.empty(0), lambda _: None)
-        result, used = cube.evaluate(
-            slenderness, frequency_ratio, restitution, alpha, absolute_tolerance, method, threads, stop
-        )
-        return result, tuple(one.sha256 for one in used)
+        one_of("method", method, METHODS)
+        limit = number("absolute_tolerance", absolute_tolerance, 0.0, np.inf, closed="left")
+        points, shape = Points.of(slenderness, frequency_ratio, restitution, alpha)
+        result, used = self.cube(pulse, method).evaluate(points, limit, method, threads, stop)
+        return result.reshape(shape), tuple(one.sha256 for one in used)
 
     def problem(self, name: str) -> str | None:
-        """Description of the problem of a data set; None if it is intact.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is no data set of that name.
-        """
+        """Description of the problem of a data set; None if it is intact."""
         try:
             with self.catalogue.open(name) as file:
                 return self.problem_of(file)
@@ -189,7 +162,7 @@ class CubeCollection:
 
     def _limit_memory(self, newest: tuple[str, float]) -> None:
         """Forget the cubes that were not used for longest."""
-        sizes = {key: 0 if isinstance(one, DatasetError) else one.nodes.nbytes for key, one in self._slices.items()}
+        sizes = {key: 0 if isinstance(one, DatasetError) else one.layers.nbytes for key, one in self._slices.items()}
         excess = sum(sizes.values()) - MAX_BYTES
         for key, size in sizes.items():
             if excess > 0 and size and key != newest:
@@ -198,7 +171,7 @@ class CubeCollection:
 
     def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
         try:
-            cube = decode_slice(file.content(), file.name)
+            cube = decode_slice(file.content(), file.name, file.path, file.version)
             sampled = None if isinstance(cube.pulse, str) else cube.pulse
             found = str(cube.pulse) if sampled is None else sampled.name
             _check_content(file.name, (found, cube.restitution), (pulse, restitution))

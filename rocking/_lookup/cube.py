@@ -51,19 +51,19 @@ class Points:
 
     @classmethod
     def of(cls, *groups: ArrayLike | None) -> tuple[Points, tuple[int, ...]]:
-        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is out of range, or the shapes do not broadcast.
-        """
+        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape."""
         given = dict(zip(cls.__dataclass_fields__, groups, strict=True))
         s, w, eta, alpha = check_groups(**given).values()
         if not (s.ndim or w.ndim or eta.ndim or alpha.ndim):  # one block, in a fraction of the time
             return cls(s.reshape(1), w.reshape(1), eta.reshape(1), alpha.reshape(1)), ()
         full = broadcast(given, [s, w, eta, alpha])
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
+
+    @classmethod
+    def of_one(cls, *groups: float) -> Points:
+        """The arguments of one block, checked numbers in the order of the fields."""
+        table = np.array(groups).reshape(4, 1)
+        return cls(table[0], table[1], table[2], table[3])
 
     def __getitem__(self, index: Any) -> Points:
         return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
@@ -72,36 +72,33 @@ class Points:
 Method = Literal["auto", "cube", "solver"]
 METHODS: tuple[str, ...] = get_args(Method)
 
-SAFETY = 6.0
-"""Ratio of the error bound to the measured errors [-], which are known at a few points of each cell only."""
-
-MIN_CHUNK, MAX_CHUNK = 32_768, 262_144
-"""Fewest and most points that a thread interpolates at a time."""
+SAFETY = 6.0  # ratio of the error bound to the measured errors [-], which are known at a few points of each cell only
+MIN_CHUNK, MAX_CHUNK = 32_768, 262_144  # fewest and most points that a thread interpolates at a time
 
 Flags = NDArray[np.bool_]
 
 
+class UnreadError(RuntimeError):
+    """A file has to be read first, and the caller does not wait for files."""
+
+
 class Window(NamedTuple):
-    """The slices from which points are interpolated.
+    """The slices from which points are interpolated."""
 
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        The one at or below the points first, then the others.
-    arguments : tuple
-        What the kernel needs of them.
-    """
+    slices: list[CubeSlice]  # ascending
+    lower: int  # the one at or below the points
+    levels: Array  # their restitutions [-]
 
-    slices: list[CubeSlice]
-    arguments: tuple[Any, ...]
-
-    @classmethod
-    def of(cls, slices: list[CubeSlice], lower: int) -> Window:
-        """The window of ascending slices, of which the one with the index `lower` is at or below the points."""
-        own, nodes = slices[lower], [one.nodes for one in slices]
-        padded = *nodes, *[own.nodes] * (STENCIL_SIZE - len(nodes))
-        levels = np.array([one.restitution for one in slices])
-        return cls([own, *slices], (own.mesh, own.angles, padded, levels, lower))
+    def arguments(self, alpha: Array, may_read: bool) -> tuple[Any, ...]:
+        """What the kernel needs for points at some angles [rad], which are read if they are not."""
+        own, nodes = self.slices[self.lower], []
+        angles = () if all(one.layers.complete for one in self.slices) else own.angles.needed(alpha)
+        for one in self.slices:
+            if not may_read and one.layers.lacks(angles):
+                raise UnreadError
+            nodes.append(one.layers.at(angles))
+        padded = *nodes, *[nodes[0]] * (STENCIL_SIZE - len(nodes))
+        return own.mesh, own.angles, padded, self.levels, self.lower
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,11 +113,14 @@ class Cube:
         Restitutions of the cubes, ascending [-].
     slice_at : callable
         Returns the cube of a restitution by its index, read when first needed; None if it cannot be used.
+    may_read : bool
+        False: `UnreadError` where an angle of a cube is not read.
     """
 
     pulse: str | AbstractPulse
     restitutions: Array
     slice_at: Callable[[int], CubeSlice | None]
+    may_read: bool = True
     _windows: dict[int, Window | None] = field(default_factory=dict, init=False, repr=False)
 
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -178,22 +178,6 @@ class Cube:
         OutsideCubeError
             With `method="cube"`: outside the axes, where kinds of response meet, or if the bound exceeds the tolerance.
         """
-        return self.evaluate(
-            slenderness, frequency_ratio, restitution, alpha, absolute_tolerance, method, threads, stop
-        )[0]
-
-    def evaluate(
-        self,
-        slenderness: ArrayLike,
-        frequency_ratio: ArrayLike,
-        restitution: ArrayLike | None,
-        alpha: ArrayLike | None,
-        absolute_tolerance: float,
-        method: str,
-        threads: int | None,
-        stop: StopFlag | None,
-    ) -> tuple[BoundedResponse, list[CubeSlice]]:
-        """`response`, and the cubes from which points were interpolated, in the order of `used`."""
         one_of("method", method, METHODS)
         limit = number("absolute_tolerance", absolute_tolerance, 0.0, np.inf, closed="left")
         if threads is not None:
@@ -203,17 +187,27 @@ class Cube:
                 raise InvalidArgumentError("restitution", None, "a number: there are several cubes")
             restitution = self.restitutions[0]
         points, shape = Points.of(slenderness, frequency_ratio, restitution, alpha)
-        source = self if method != "solver" else Cube(self.pulse, np.empty(0), self.slice_at)
-        found, used, unknown = source._interpolated(points, limit, threads, stop)
-        result = _response(found, shape)
+        return self.evaluate(points, limit, method, threads, stop)[0].reshape(shape)
+
+    def evaluate(
+        self, points: Points, limit: float, method: str, threads: int | None = None, stop: StopFlag | None = None
+    ) -> tuple[BoundedResponse, list[CubeSlice]]:
+        """`response` of checked points (points,), and the cubes from which some were interpolated."""
+        if method == "solver":
+            groups = points.slenderness, points.frequency_ratio, points.restitution, points.alpha
+            return solve_checked(as_pulse(self.pulse), *groups, None, threads, stop), []
+        found, used, unknown = self._interpolated(points, limit, threads, stop)
+        result = _response(found)
         if unknown:
             left = np.flatnonzero(~found.known)
             if method == "cube":
                 self._refuse(points[left[:1]], limit)
-            one = points[left]
+            one = points if unknown == 1 == left.size == found.known.size else points[left]
             groups = one.slenderness, one.frequency_ratio, one.restitution, one.alpha
             solved = solve_checked(as_pulse(self.pulse), *groups, None, threads, stop)
-            result.reshape((-1,)).put(left, solved)  # a view
+            if one is points:
+                return solved, used
+            result.put(left, solved)
         if method == "cube":
             result.from_cube[...] = True
         return result, used
@@ -234,7 +228,7 @@ class Cube:
         Responses elsewhere are undefined. `threads` as in `response`.
         """
         found = self._interpolated(points, limit, threads, None)[0]
-        return found.from_cube, _response(found, found.known.shape)
+        return found.from_cube, _response(found)
 
     def _interpolated(
         self, points: Points, limit: float, threads: int | None, stop: StopFlag | None
@@ -245,25 +239,37 @@ class Cube:
         arrays = points.slenderness, points.frequency_ratio, points.restitution, points.alpha, groups
         found = Found.zeros(size)
         no_uplift = prepare(points.slenderness, points.restitution, self.restitutions, groups, present, found)
-        windows = [(group, self._window(group)) for group in np.flatnonzero(present[:-1]).tolist()]
+        windows: list[tuple[int, Window, tuple[Any, ...]]] = [
+            (group, window, window.arguments(points.alpha, self.may_read))
+            for group in np.flatnonzero(present[:-1]).tolist()
+            if (window := self._window(group)) is not None
+        ]
         given: list[tuple[int, int]] = []
 
-        def fill(part: slice, _: NDArray[np.uint8]) -> None:
+        def fill(part: slice, _: NDArray[np.uint8] | None = None) -> None:
             here: list[Any] = list(arrays)
             into: list[Any] = list(found)
             if size > MIN_CHUNK:
                 here, into = [one[part] for one in arrays], [field[part] for field in found]
-            for group, window in windows:
-                if window is not None:
-                    count = interpolate_many(*here, group, *window.arguments, limit, SAFETY, SOLVER_ERROR, Found(*into))
-                    given.append((group, count))
+            for group, _window, arguments in windows:
+                count = interpolate_many(*here, group, *arguments, limit, SAFETY, SOLVER_ERROR, Found(*into))
+                given.append((group, count))
 
-        fill_chunks(fill, size, min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
-        met = {group for group, count in given if count}
-        used = [window.slices for group, window in windows if window is not None and group in met]
-        # the slices are compared by identity
-        slices = dict.fromkeys([one for one, *_ in used] + [one for window in used for one in window])
-        return found, [*slices], size - no_uplift - sum(count for _, count in given)
+        if size > MIN_CHUNK:
+            fill_chunks(fill, size, min(max(math.ceil(size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
+        else:
+            fill(slice(size))
+        met, counted = set(), 0
+        for group, count in given:
+            counted += count
+            if count:
+                met.add(group)
+        used = [window for group, window, _ in windows if group in met]
+        # the slices at or below points first; they are compared by identity
+        slices = dict.fromkeys(
+            [one.slices[one.lower] for one in used] + [one for window in used for one in window.slices]
+        )
+        return found, [*slices], size - no_uplift - counted
 
     def _window(self, group: int) -> Window | None:
         """The window of a group of points (`rocking._interpolation.kernel.prepare`), kept for the next ones."""
@@ -278,7 +284,7 @@ class Cube:
         """
         own = self.slice_at(k)
         if own is None or not between:
-            return None if own is None else Window.of([own], 0)
+            return None if own is None else Window([own], 0, self.restitutions[k : k + 1])
         etas = own.restitutions.tolist()
         if own.restitution not in etas[:-1]:
             return None
@@ -291,7 +297,7 @@ class Cube:
             if one is None or not one.fits(own):
                 return None
             slices.append(one)
-        return Window.of(slices, lower - first)
+        return Window(slices, lower - first, np.array([one.restitution for one in slices]))
 
     def _refuse(self, point: Points, limit: float) -> None:
         """Raise `OutsideCubeError` with the reason why the cubes do not give the response at a point."""
@@ -320,18 +326,11 @@ class Cube:
         raise OutsideCubeError("method", "cube", f"auto or solver {where}, {why}")
 
 
-def _response(found: Found, shape: tuple[int, ...]) -> BoundedResponse:
-    """The responses in the shape of the arguments, over the same memory."""
-    from_cube = found.from_cube.reshape(shape)
-    return BoundedResponse(
-        peak_rotation=found.peak_rotation.reshape(shape),
-        outcome=found.outcome.reshape(shape),
-        impacts=found.impacts.reshape(shape),
-        exceeded_alpha=found.exceeded_alpha.reshape(shape),
-        error_bound=found.error_bound.reshape(shape),
-        from_cube=from_cube,
-        derived={field.name: np.where(from_cube, np.nan, field.at_rest) for field in DERIVED_FIELDS},
-    )
+def _response(found: Found) -> BoundedResponse:
+    """The responses, over the same memory."""
+    derived = {field.name: np.where(found.from_cube, np.nan, field.at_rest) for field in DERIVED_FIELDS}
+    kept = found.peak_rotation, found.outcome, found.impacts, found.exceeded_alpha, found.error_bound, found.from_cube
+    return BoundedResponse(*kept, derived)
 
 
 def open_cube(source: Path | str) -> Cube:

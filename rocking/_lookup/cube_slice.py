@@ -1,58 +1,100 @@
-"""One spectrum cube in memory, for interpolation; read from a file or an address."""
+"""One spectrum cube for interpolation, from a file or an address."""
 
 from __future__ import annotations
 
 import tempfile
 import urllib.request
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError, InvalidArgumentError
+from rocking._datasets.catalogue import FileVersion, version_of
 from rocking._datasets.checksum import sha256_of
-from rocking._datasets.cube import AXES, IMPACTS_BEFORE_REST, decode_spectrum, read_content, stored_pulse
+from rocking._datasets.cube import (
+    AXES,
+    IMPACTS_BEFORE_REST,
+    check_spectrum,
+    decode_spectrum,
+    open_checked,
+    read_content,
+    stored_pulse,
+)
+from rocking._datasets.netcdf import open_netcdf
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.kernel import NODE, Nodes
 from rocking._interpolation.stencils import AngleAxis, Mesh
 
 Array = NDArray[np.float64]
 
+MAX_LAYER_BYTES = 57_500_000
+"""Memory of the nodes of a cube that are kept at a time [bytes]: four angles of the atlas, as one response needs."""
+
+
+class Layers:
+    """The nodes of a cube, read angle by angle when they are first needed.
+
+    Of the ten angles of an atlas, 12 MB each, a response needs one or up to four: memory of the others is not touched.
+    `read` gives the nodes (n, m) of an angle by its index, from the version of the file that was checked.
+    """
+
+    def __init__(self, shape: tuple[int, ...], read: Callable[[int], Nodes]) -> None:
+        self._kept = np.empty(shape, NODE), set(range(shape[0]))  # the nodes, and the angles that are not read
+        self._read = read
+        self._lock = Lock()
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of all nodes that may be kept [bytes]."""
+        return min(self._kept[0].nbytes, MAX_LAYER_BYTES)
+
+    @property
+    def complete(self) -> bool:
+        """Whether all angles are read."""
+        return not self._kept[1]
+
+    def lacks(self, angles: Collection[int]) -> bool:
+        """Whether some angles are not read."""
+        return not self._kept[1].isdisjoint(angles)
+
+    def at(self, angles: Collection[int]) -> Nodes:
+        """The nodes (angles, n, m), of which those of some angles are read; the others are undefined.
+
+        Raises `DatasetError` if the file was replaced or removed.
+        """
+        nodes, missing = self._kept
+        if missing.isdisjoint(angles):
+            return nodes
+        with self._lock:
+            nodes, missing = self._kept
+            many = len(nodes) - len(missing.difference(angles))
+            if many * nodes[0].nbytes > MAX_LAYER_BYTES and many > len(angles):  # others keep the former array
+                nodes, missing = self._kept = np.empty(nodes.shape, NODE), set(range(len(nodes)))
+            for angle in missing.intersection(angles):
+                nodes[angle] = self._read(angle)
+            missing.difference_update(angles)
+            return nodes
+
 
 @dataclass(frozen=True, eq=False)
 class CubeSlice:
-    """The cube of one restitution.
+    """The cube of one restitution."""
 
-    Attributes
-    ----------
-    pulse : str or SampledPulse
-        Name of the pulse, or the pulse made again from the samples in the file.
-    restitution : float
-        eta of this cube [-].
-    restitutions : float array
-        eta of the cubes from which the interval above this one is interpolated [-], ascending.
-    axes : mapping of str to float array
-        alpha [rad], slenderness [-] and frequency_ratio [-].
-    mesh, angles : Mesh, AngleAxis
-        The same for the kernel.
-    nodes : array (angles, n, m) of `NODE`
-        The variables.
-    sha256 : str
-        Digest of the file, the version of the data.
-    """
-
-    pulse: str | SampledPulse
-    restitution: float
-    restitutions: Array
-    axes: Mapping[str, Array]
+    pulse: str | SampledPulse  # name of the pulse, or the pulse made again from the samples in the file
+    restitution: float  # eta of this cube [-]
+    restitutions: Array  # eta of the cubes from which the interval above this one is interpolated [-], ascending
+    axes: Mapping[str, Array]  # alpha [rad], slenderness [-] and frequency_ratio [-]
+    # mesh, angles: the same for the kernel
     mesh: Mesh
     angles: AngleAxis
-    nodes: Nodes
-    sha256: str
+    layers: Layers  # the variables
+    sha256: str  # digest of the file, the version of the data
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
@@ -65,39 +107,41 @@ class CubeSlice:
 
 
 def open_slice(path: Path | str) -> CubeSlice:
-    """Read a spectrum cube into memory.
+    """A spectrum cube of a file, which is checked; its variables are read when they are first needed.
 
-    Raises
-    ------
-    DatasetError
-        If the file is missing, damaged, or not a spectrum cube.
+    Raises `DatasetError` if the file is missing, damaged, or not a spectrum cube.
     """
-    return decode_slice(read_content(path), path)
+    version = version_of(Path(path))
+    return decode_slice(read_content(path), path, Path(path), version)
 
 
-def decode_slice(content: bytes, path: Path | str) -> CubeSlice:
-    """The same from the bytes of a file; messages name `path`.
+def decode_slice(content: bytes, name: Path | str, path: Path, version: FileVersion | None) -> CubeSlice:
+    """`open_slice` from the bytes of a version of a file; messages have its `name`.
 
-    Raises
-    ------
-    DatasetError
-        If the bytes are damaged or not those of a spectrum cube.
+    The digest at the end of the file covers all bytes: that of the values is not compared as well.
     """
-    cube = decode_spectrum(content, path)
+    with open_checked(content, name) as cube:
+        check_spectrum(cube, name)
+        try:
+            return slice_of(cube, sha256_of(content), lambda angle: _layer_of_file(path, version, angle))
+        except InvalidArgumentError as error:
+            raise DatasetError(f"{name}: {error}; build it again") from error
+
+
+def _layer_of_file(path: Path, version: FileVersion | None, angle: int) -> Nodes:
+    """The nodes (n, m) of an angle, from a version of a file."""
     try:
-        return slice_of(cube, sha256_of(content))
-    except InvalidArgumentError as error:
-        raise DatasetError(f"{path}: {error}; build it again") from error
+        with open_netcdf(path) as cube:
+            found = _layer(cube.isel(alpha=[angle]))
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise DatasetError(f"{path}: cannot be read: {error}") from error
+    if version is None or version_of(path) != version:
+        raise DatasetError(f"{path}: was replaced after it was opened; open it again")
+    return found
 
 
 def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
-    """Pulse and restitution of the bytes of a file from which `decode_slice` makes a cube.
-
-    Raises
-    ------
-    DatasetError
-        As `decode_slice`.
-    """
+    """Pulse and restitution of the bytes of a file from which `decode_slice` makes a cube; raises as it."""
     cube = decode_spectrum(content, path)
     try:
         Mesh.of(cube["slenderness"].values, cube["frequency_ratio"].values)
@@ -107,20 +151,13 @@ def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
     return str(cube["pulse"].attrs["pulse_name"]), restitution_of(cube)
 
 
-def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
-    """A spectrum cube in memory; `sha256` is the digest of its file, if it has one.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an axis has fewer than four nodes, or the samples of the pulse are none.
-    """
+def slice_of(cube: xr.Dataset, sha256: str = "", read: Callable[[int], Nodes] | None = None) -> CubeSlice:
+    """A spectrum cube of at least four nodes along each axis; of a file its `sha256`, and `read` as of `Layers`."""
     restitution = restitution_of(cube)
     axes = {name: cube[name].values for name in AXES}
-    nodes = np.empty(cube["peak_rotation"].shape, NODE)
-    for name in [name for name in NODE.names or () if name in cube]:
-        nodes[name] = cube[name].values
-    nodes["counted"] = counted_cells(cube)
+    layers = Layers(cube["peak_rotation"].shape, read or (lambda angle: _layer(cube.isel(alpha=[angle]))))
+    if read is None:
+        layers.at(range(cube.sizes["alpha"]))
     return CubeSlice(
         pulse=stored_pulse(cube),
         restitution=restitution,
@@ -128,9 +165,19 @@ def slice_of(cube: xr.Dataset, sha256: str = "") -> CubeSlice:
         axes=axes,
         mesh=Mesh.of(axes["slenderness"], axes["frequency_ratio"]),
         angles=AngleAxis.of(axes["alpha"]),
-        nodes=nodes,
+        layers=layers,
         sha256=sha256,
     )
+
+
+def _layer(cube: xr.Dataset) -> Nodes:
+    """The nodes (n, m) of a cube of one angle."""
+    nodes = np.empty(cube["peak_rotation"].shape, NODE)
+    for name in [name for name in NODE.names or () if name in cube]:
+        nodes[name] = cube[name].values
+    nodes["counted"] = counted_cells(cube)
+    found: Nodes = nodes[0]
+    return found
 
 
 def counted_cells(cube: xr.Dataset) -> NDArray[np.bool_]:
@@ -163,17 +210,13 @@ def restitution_of(cube: xr.Dataset) -> float:
 
 
 def fetch_slice(address: str) -> CubeSlice:
-    """The same from an http or https address.
-
-    Raises
-    ------
-    DatasetError
-        As `open_slice`; also if the address cannot be fetched.
-    """
+    """`open_slice` from an http or https address."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.nc"
         try:
             urllib.request.urlretrieve(address, path)
         except OSError as error:
             raise DatasetError(f"{address}: cannot be fetched, {error}") from error
-        return open_slice(path)
+        found = open_slice(path)
+        found.layers.at(range(found.angles.angles.size))
+        return found

@@ -1,7 +1,5 @@
 """The rigid rectangular block: a body with equal edges, and its equation of motion (section 2 of the paper)."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from dataclasses import dataclass, fields
@@ -13,34 +11,21 @@ import numpy as np
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
 from rocking._base.errors import number, positive
+from rocking._base.quantities import GRAVITY, HEIGHT, WIDTH
 from rocking._base.units import Scalar, Values
 from rocking._model.body import AbstractBody, Array, Edge
-from rocking._model.checks import check_lengths
+from rocking._model.checks import check_quantities
 from rocking._model.reactions import INERTIA_RATIO
 
-Number = Any
-"""A float; of an array of blocks an array of them."""
+Number = Any  # a float; of an array of blocks an array of them
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class AbstractBlock(AbstractBody):
     """What rocks like a rectangular block; its properties are those of the rectangle unless a subclass has others.
 
-    All arguments may be arrays, which broadcast: an array of blocks, of which the properties are arrays.
-
-    Parameters
-    ----------
-    width : float
-        2b of the rectangular block of this alpha and p [m], > 0.
-    height : float
-        2h of the same [m], > 0.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a length or gravity is not finite and positive.
+    `width`, `height`: 2b and 2h of the rectangular block of this alpha and p [m]. All arguments may be arrays, which
+    broadcast: an array of blocks, of which the properties are arrays.
     """
 
     width: Number
@@ -48,8 +33,7 @@ class AbstractBlock(AbstractBody):
     gravity: Number = STANDARD_GRAVITY
 
     def __init__(self, width: Values, height: Values, gravity: Values = STANDARD_GRAVITY) -> None:
-        arguments = {"width": width, "height": height, "gravity": gravity}
-        values, labels, index = check_lengths(arguments, {"gravity": (0.0, math.inf, "m/s2")})
+        values, labels, index = check_quantities({WIDTH: width, HEIGHT: height, GRAVITY: gravity})
         one = not any(value.ndim for value in values.values())
         vars(self).update({name: float(value) if one else value for name, value in values.items()})  # it is frozen
         if labels or index:
@@ -148,8 +132,10 @@ class AbstractBlock(AbstractBody):
     def right(self) -> Edge:
         """The right edge; the left one is alike."""
         inertia_ratio = INERTIA_RATIO if self.contact_is_known else math.nan
-        values = self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio
-        return Edge(*map(np.asarray, values))
+        alpha, p, eta, ratio = map(
+            np.asarray, (self.alpha, self.frequency_parameter, self.momentum_restitution, inertia_ratio)
+        )
+        return Edge(alpha, p, eta, ratio)
 
     @property
     def left(self) -> Edge:

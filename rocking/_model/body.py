@@ -6,9 +6,9 @@ About the edge s (right: theta > 0) a rigid body on a ground that accelerates by
 
 (2.2) for equal edges and w = 0, with R_s^2 = h^2 + b_s^2, tan(alpha_s) = b_s/h and p_s^2 = g R_s/(r^2 + R_s^2), where
 b_s is the distance of the centre of mass from the edge, h its height and r the radius of gyration about it.
-"""
 
-from __future__ import annotations
+A body against a wall (one-sided) rotates about one edge only and rebounds at theta = 0 with -e times its velocity.
+"""
 
 import math
 from abc import ABC, abstractmethod
@@ -26,39 +26,28 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Edge:
-    """One edge of a body and the rotation about it; float64 arrays that broadcast.
+    """One edge of a body and the rotation about it; float64 arrays that broadcast."""
 
-    Attributes
-    ----------
-    alpha : float array [rad]
-        Rotation at which the body is balanced on the edge, (0, 1.57].
-    frequency_parameter : float array [rad/s]
-        p of small rotations about the equilibrium on the edge, > 0.
-    restitution : float array [-]
-        Velocity ratio of an impact that leaves the edge, at most 1. Negative: the body does not rock on but stops.
-    inertia_ratio : float array [-]
-        R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion.
-    """
-
-    alpha: Array
-    frequency_parameter: Array
+    alpha: Array  # rotation at which the body is balanced on the edge, (0, 1.57] [rad]
+    frequency_parameter: Array  # p of small rotations about the equilibrium on the edge, > 0 [rad/s]
+    # velocity ratio of an impact that leaves the edge, at most 1. Negative: the body does not rock on but stops [-]
     restitution: Array
+    # R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion [-]
     inertia_ratio: Array
+    blocked: bool = False  # by a wall; its other values are then those of the other edge
+
+    @property
+    def resistance(self) -> Array:
+        """Horizontal acceleration over g at which the body starts to rotate about the edge: tan(alpha_s), or inf."""
+        return np.full(np.shape(self.alpha), np.inf) if self.blocked else np.tan(self.alpha)
 
 
 def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gravity: Array, tilt: Array) -> Edge:
     """An edge of a rigid body.
 
-    Parameters
-    ----------
-    distance, other : float arrays
-        Distances b_s, b_-s of the centre of mass from this edge and from the other, along the base [m], > 0.
-    height, gyration : float arrays
-        Height h of the centre of mass above the base, and radius of gyration r about it [m], > 0.
-    gravity : float array
-        g [m/s2], > 0.
-    tilt : float array
-        Angle by which the base is inclined towards this edge [rad].
+    `distance`, `other`: distances b_s, b_-s of the centre of mass from this edge and from the other, along the base
+    [m]; `height`, `gyration`: height h of the centre of mass above the base, and radius of gyration r about it [m];
+    `tilt`: angle by which the base is inclined towards this edge [rad].
     """
     b, c, h, r = distance, other, height, gyration
     square = r * r + h * h
@@ -71,6 +60,16 @@ def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gr
         restitution=(square - b * c) / (square + c * c),
         inertia_ratio=radius * radius / about_edge,
     )
+
+
+def rebound_of(alpha: Array) -> Array:
+    """Velocity ratio e of a wall that falls back against transverse walls, from momentum at its base and back [-].
+
+    e = -(1 - 3/2 sin^2 alpha)^2 (1 - 3/2 cos^2 alpha), 1/2 for a slender wall, 0 where that is negative; after
+    Sorrentino et al. (2008), from a secondary source. Measured values differ: state them.
+    """
+    square = np.sin(alpha) ** 2
+    return np.maximum((1.0 - 1.5 * square) ** 2 * (0.5 - 1.5 * square), 0.0)
 
 
 class AbstractBody(ABC):
@@ -139,7 +138,7 @@ class AbstractBody(ABC):
     @property
     def uplift_acceleration(self) -> Array:
         """Smallest horizontal ground acceleration that starts rocking, g tan(alpha) of the weaker edge [m/s2]."""
-        return np.asarray(self.gravity * np.tan(np.minimum(self.right.alpha, self.left.alpha)))
+        return np.asarray(self.gravity * np.minimum(self.right.resistance, self.left.resistance))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -150,41 +149,24 @@ class AbstractBody(ABC):
 
 @dataclass(frozen=True)
 class PolygonProperties:
-    """Of a polygon of uniform density that stands on its lowest edge.
+    """Of a polygon of uniform density that stands on its lowest edge."""
 
-    Attributes
-    ----------
-    left, right : float
-        Distances of the centre of mass from the ends of its base [m].
-    height : float
-        Height of the centre of mass above the base [m].
-    gyration : float
-        Radius of gyration about the centre of mass [m].
-    top : float
-        Height of the highest vertex above the base [m].
-    """
-
+    # left, right: distances of the centre of mass from the ends of its base [m]
     left: float
     right: float
-    height: float
-    gyration: float
-    top: float
+    height: float  # height of the centre of mass above the base [m]
+    gyration: float  # radius of gyration about the centre of mass [m]
+    top: float  # height of the highest vertex above the base [m]
 
 
 def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
-    """Mass properties of an outline, by Green's theorem.
+    """Mass properties of an outline, by Green's theorem; `vertices` (vertices, 2) are corners x, y [m] in order, y
+    upwards.
 
-    Parameters
-    ----------
-    vertices : array_like (vertices, 2)
-        Corners x, y [m] in order, either way round, at least three; the outline is closed by the first one and does
-        not cross itself. y is upwards.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the vertices are not so, enclose no area, or do not stand: the base is the part of the outline between the
-        outermost vertices of the lowest height, which needs a length, and the centre of mass must lie above it.
+    At least three, either way round; the outline is closed by the first one and does not cross itself. Raises
+    `InvalidArgumentError` if the vertices are not so, enclose no area, or do not stand: the base is the part of the
+    outline between the outermost vertices of the lowest height, which needs a length, and the centre of mass must lie
+    above it.
     """
     points = checked_vertices(vertices)
     size = float(np.ptp(points, axis=0).max())
@@ -214,13 +196,7 @@ def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
 
 
 def checked_vertices(vertices: ArrayLike) -> Array:
-    """Vertices of an outline as an array (vertices, 2) [m].
-
-    Raises
-    ------
-    InvalidArgumentError
-        If they are not at least three pairs of numbers.
-    """
+    """Vertices of an outline as an array (vertices, 2) [m], at least three."""
     points = in_range("vertices", vertices, -1e6, 1e6, unit="m")
     if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3:
         raise InvalidArgumentError("vertices", f"shape {points.shape}", "at least three pairs x, y")

@@ -1,7 +1,5 @@
 """Energy of a block at the end of the pulse, and its margin over that with which the block overturns."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,17 +14,13 @@ def residual_energy(
 ) -> Array:
     """Kinetic and potential energy at the end of the pulse over the potential energy at alpha, both from rest [-].
 
-    Free rocking conserves w^2 - X^2 between impacts, with z = |theta|/alpha, w = dz/dtau and
-    X(z) = (2/alpha) sin(alpha (1 - z)/2), so that the ratio is (w^2 + X(0)^2 - X(z)^2)/X(0)^2, (3.11). From |theta|
-    below alpha the block can overturn only if it is at least 1; each impact multiplies it by eta^2, (3.16).
+    Free rocking conserves w^2 - X^2 between impacts, with z = |theta|/alpha, w = dz/dtau and X(z) = (2/alpha) sin(alpha
+    (1 - z)/2), so that the ratio is (w^2 + X(0)^2 - X(z)^2)/X(0)^2, (3.11). From |theta| below alpha the block can
+    overturn only if it is at least 1; each impact multiplies it by eta^2, (3.16).
 
-    Parameters
-    ----------
-    fields : mapping
-        `end_rotation` and `end_velocity`, z and w [-].
-    groups : mapping
-        `alpha`, the angle of a block with equal edges [rad], 0: slender. The fields do not tell about which edge a body
-        rotates: where the edges differ there is no `alpha`, and the result is nan.
+    From the fields `end_rotation` and `end_velocity`, z and w, and the group `alpha` of a block with equal edges [rad],
+    0: slender. The fields do not tell about which edge a body rotates: where the edges differ there is no `alpha`, and
+    the result is nan.
     """
     z, w = fields["end_rotation"], fields["end_velocity"]
     if "alpha" not in groups:
@@ -43,21 +37,10 @@ def residual_energy(
 def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     """Excess of the energy at the end of the pulse, or after the next impact, over that of the barrier [-].
 
-    Parameters
-    ----------
-    z, w : float arrays
-        |theta|/alpha and its rate with respect to tau at the end of the pulse [-].
-    eta : float array
-        Restitution [-], [0, 1].
-    alpha : float array
-        Slenderness angle [rad], 0: slender.
-
-    Returns
-    -------
-    float array
-        Positive where the block overturns: the larger of (w - X)/X(0), see `rocking._solver.free_rocking`, and
-        of the energy after the next impact, relative to that of the barrier, minus 1, (3.16). It is continuous and
-        zero at the transition.
+    `z`, `w`: |theta|/alpha and its rate with respect to tau at the end of the pulse [-]; `alpha`: slenderness angle
+    [rad], 0: slender. Positive where the block overturns: the larger of (w - X)/X(0), see
+    `rocking._solver.free_rocking`, and of the energy after the next impact, relative to that of the barrier, minus 1,
+    (3.16). It is continuous and zero at the transition.
     """
     half = np.where(alpha > 0.0, 0.5 * alpha, 1.0)
     barrier = np.where(alpha > 0.0, np.sin(half) / half, 1.0)

@@ -5,11 +5,10 @@ and netCDF responses and the table in docs/notation.md derive from these declara
 classes with them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from inspect import cleandoc
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
@@ -27,50 +26,27 @@ edges); of many bodies or motions at once."""
 
 @dataclass(frozen=True)
 class ResponseField:
-    """A quantity of a response.
+    """A quantity of a response."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the attribute, variable or column.
-    dtype : str
-        Type code of numpy in memory.
-    unit : str
-        As CF writes it; "1" for a number.
-    equation : str
-        Number of the equation of the paper that it comes from.
-    meaning : str
-        In a few words, without a capital or a full stop.
-    missing : str
-        Where there is no value, as a clause that follows "where"; empty if there always is one. A missing number is
-        nan in memory and in files, null in JSON, and empty in CSV.
-    detail : str
-        What else has to be known; empty if nothing.
-    at_rest : float
-        Value of a block that does not uplift.
-    derive : callable, optional
-        Computes the field from other fields and the groups, both arrays by name, which broadcast, the motion, and the
-        body in SI units. Groups that a response does not know are not there; motion and body are None then. None: the
-        solver computes it, or it is an argument or a property of the body.
-    kinds : frozenset of str
-        Kinds of responses in SI units that have it, see `KINDS`.
-    shown : str
-        Its name on the command line and over HTTP, where it differs; angles are in degrees there, with the ending _deg.
-    """
-
-    name: str
-    dtype: str
-    unit: str
-    equation: str
-    meaning: str
+    name: str  # name of the attribute, variable or column
+    dtype: str  # type code of numpy in memory
+    unit: str  # as CF writes it; "1" for a number
+    equation: str  # number of the equation of the paper that it comes from
+    meaning: str  # in a few words, without a capital or a full stop
+    # where there is no value, as a clause that follows "where"; empty if there always is one. A missing number is nan
+    # in memory and in files, null in JSON, and empty in CSV
     missing: str = ""
-    detail: str = ""
-    at_rest: float = 0.0
+    detail: str = ""  # what else has to be known; empty if nothing
+    at_rest: float = 0.0  # value of a block that does not uplift
+    # computes the field from other fields and the groups, both arrays by name, which broadcast, the motion, and the
+    # body in SI units. Groups that a response does not know are not there; motion and body are None then. None: the
+    # solver computes it, or it is an argument or a property of the body
     derive: Callable[[Mapping[str, Any], Mapping[str, Any], Any, Any], Any] | None = None
-    kinds: frozenset[str] = KINDS
+    kinds: frozenset[str] = KINDS  # kinds of responses in SI units that have it, see `KINDS`
+    # its name on the command line and over HTTP, where it differs; angles are in degrees there, with the ending _deg
     shown: str = ""
 
-    @property
+    @cached_property
     def label(self) -> str:
         """Its name on the command line and over HTTP."""
         return self.shown or (f"{self.name}_deg" if self.unit == "rad" else self.name)
@@ -223,8 +199,7 @@ SOLVED_FIELDS = (
 DERIVED_FIELDS = (RESIDUAL_ENERGY,)
 """Numbers that are computed from fields of a response when they are read, without a kernel."""
 
-RESPONSE_FIELDS = (*SOLVED_FIELDS, *DERIVED_FIELDS)
-"""Fields of `rocking.Response`, in order."""
+RESPONSE_FIELDS = (*SOLVED_FIELDS, *DERIVED_FIELDS)  # fields of `rocking.Response`, in order
 
 BOUNDED_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, FROM_CUBE)
 """Fields of a response with an error bound, of an interpolated cube or of the solver."""

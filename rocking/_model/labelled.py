@@ -53,26 +53,14 @@ def with_index(found: xr.Dataset, axis: Hashable, index: Index | None) -> xr.Dat
 
 
 def in_unit(parameter: str, value: Any, unit: str) -> Any:
-    """A labelled argument that holds texts or quantities, as numbers in `unit`; others as they are.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an entry cannot be converted.
-    """
+    """A labelled argument that holds texts or quantities, as numbers in `unit`; others as they are."""
     if not is_labelled(value) or (value.dtype.kind not in "UO" and not hasattr(value.variable.data, "units")):
         return value
     return value.copy(data=float_array(parameter, value, unit=unit))
 
 
 def broadcast_by_name(arguments: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:
-    """Labelled arguments over all dimensions of them.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the indexes of a dimension differ.
-    """
+    """Labelled arguments over all dimensions of them; dimensions with different indexes are refused."""
     if not arguments:
         return {}
     import xarray as xr  # noqa: PLC0415  # loaded by who made the arguments
@@ -96,22 +84,10 @@ def labelled_response(
 ) -> xr.Dataset:
     """The response as a data set over the dimensions of the arguments.
 
-    Parameters
-    ----------
-    solve : callable
-        Takes the arguments as arrays that broadcast by position, and the options; gives an object with the fields.
-    arguments : mapping
-        Labelled and plain ones by name; None is left out. Plain ones are numbers.
-    options : mapping
-        Other arguments of `solve`. For dask-backed arguments `threads` is 1 unless stated: a worker has its own.
-    fields : sequence of ResponseField
-        Those of the data set, attributes of the result; by default those of `Response`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the indexes of a dimension differ, or a plain argument is an array. An error of `solve` names the value
-        without its place, which is that in a chunk, or among dimensions in another order.
+    `solve` takes the arguments as arrays that broadcast by position, and the options, and gives an object with the
+    fields. `arguments`: labelled ones and plain numbers by name; None is left out. For dask-backed arguments `threads`
+    is 1 unless stated: a worker has its own. Dimensions with different indexes and plain arrays are refused. An error
+    of `solve` names the value without its place, which is that in a chunk, or among dimensions in another order.
     """
     import xarray as xr  # noqa: PLC0415  # loaded by who made the arguments
 

@@ -22,21 +22,11 @@ from rocking._base.errors import InvalidArgumentError
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid body.
+    """A rigid body."""
 
-    Attributes
-    ----------
-    mass : float
-        [kg], > 0.
-    centre : complex
-        Centre of mass [m].
-    inertia : float
-        Mass moment of inertia about the centre [kg m2], > 0.
-    """
-
-    mass: float
-    centre: complex
-    inertia: float
+    mass: float  # [kg], > 0
+    centre: complex  # centre of mass [m]
+    inertia: float  # mass moment of inertia about the centre [kg m2], > 0
 
     @classmethod
     def join(cls, parts: list[Link]) -> Self:
@@ -49,69 +39,36 @@ class Link:
 
 @dataclass(frozen=True)
 class LinearEquation:
-    """Coefficients of M theta'' - K theta + C = -B a for theta > 0.
+    """Coefficients of M theta'' - K theta + C = -B a for theta > 0."""
 
-    Attributes
-    ----------
-    mass : float
-        M [kg m2], > 0.
-    stiffness : float
-        K [N m], > 0: the restoring moment decreases with theta.
-    restoring : float
-        C [N m], > 0: the restoring moment at theta = 0.
-    load : float
-        B [kg m]; its sign is that of the acceleration which keeps the structure closed.
-    """
-
-    mass: float
-    stiffness: float
-    restoring: float
-    load: float
+    mass: float  # M [kg m2], > 0
+    stiffness: float  # K [N m], > 0: the restoring moment decreases with theta
+    restoring: float  # C [N m], > 0: the restoring moment at theta = 0
+    load: float  # B [kg m]; its sign is that of the acceleration which keeps the structure closed
 
 
 @dataclass(frozen=True, eq=False)
 class VelocityField:
-    """A motion of several bodies for a unit rate of its coordinate.
+    """A motion of several bodies for a unit rate of its coordinate."""
 
-    Attributes
-    ----------
-    rotations : float array (bodies,)
-        Counterclockwise [-].
-    centres : complex array (bodies,)
-        Velocities of the centres of mass [m].
-    """
-
-    rotations: NDArray[np.float64]
-    centres: NDArray[np.complex128]
+    rotations: NDArray[np.float64]  # (bodies,) counterclockwise [-]
+    centres: NDArray[np.complex128]  # (bodies,) velocities of the centres of mass [m]
 
 
 @dataclass(frozen=True)
 class FourBarLinkage:
-    """Three links and their hinges.
+    """Three links and their hinges."""
 
-    Attributes
-    ----------
-    hinges : (complex, complex, complex, complex)
-        A, B, C, D [m]; A and D on the ground.
-    links : (Link, Link, Link)
-        Between A and B, B and C, C and D.
-    direction : int
-        Sense of the rotation theta of the first link that opens the mechanism, 1: counterclockwise, or -1.
-    """
-
-    hinges: tuple[complex, complex, complex, complex]
-    links: tuple[Link, Link, Link]
+    hinges: tuple[complex, complex, complex, complex]  # A, B, C, D [m]; A and D on the ground
+    links: tuple[Link, Link, Link]  # between A and B, B and C, C and D
+    # sense of the rotation theta of the first link that opens the mechanism, 1: counterclockwise, or -1
     direction: int = 1
 
     def rotations(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Counterclockwise rotations of the links: first and second derivatives with respect to theta [-].
 
-        The links AB, BC and DC close a polygon: AB exp(i r1) + BC exp(i r2) - DC exp(i r3) is constant.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If B, C and D lie on a line, where the first link cannot move.
+        The links AB, BC and DC close a polygon: AB exp(i r1) + BC exp(i r2) - DC exp(i r3) is constant. Raises
+        `InvalidArgumentError` if B, C and D lie on a line, where the first link cannot move.
         """
         a, b, c, d = self.hinges
         ab, bc, dc = b - a, c - b, c - d
@@ -157,17 +114,11 @@ class FourBarLinkage:
 def restitution_of_impact(
     before: VelocityField, after: VelocityField, masses: NDArray[np.float64], inertias: NDArray[np.float64]
 ) -> float:
-    """Ratio of the rates after and before an impact without bouncing [-].
+    """Ratio of the rates after and before an impact without bouncing [-], from motions for unit rates.
 
     The impulses act at the contact points of the motion after the impact, on which they do no work: the change of the
-    momentum is orthogonal to that motion. For a block on the ground this is (2.4).
-
-    Parameters
-    ----------
-    before, after : VelocityField
-        Motions of the bodies for unit rates.
-    masses, inertias : float arrays (bodies,)
-        Masses [kg] and moments of inertia about the centres [kg m2].
+    momentum is orthogonal to that motion. For a block on the ground this is (2.4). `masses` [kg] and `inertias` about
+    the centres [kg m2], (bodies,).
     """
 
     def product(one: VelocityField, other: VelocityField) -> float:

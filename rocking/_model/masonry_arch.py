@@ -5,8 +5,6 @@ Of all such mechanisms the one with the least uplift acceleration forms (kinemat
 mirror image opens.
 """
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math
@@ -20,32 +18,17 @@ from rocking._base.errors import InvalidArgumentError, integer, number, positive
 from rocking._base.units import Scalar
 from rocking._model.linkage import FourBarLinkage, LinearEquation, Link, VelocityField, restitution_of_impact
 
-MOST_VOUSSOIRS = 24
-"""Largest number of voussoirs: the number of mechanisms grows with its fourth power."""
-
-RADII = 1e-3, 1e6
-"""Smallest and largest radius [m]."""
-
-THINNEST = 1e-6
-"""Smallest thickness over the radius [-]; such an arch does not stand."""
+MOST_VOUSSOIRS = 24  # largest number of voussoirs: the number of mechanisms grows with its fourth power
+RADII = 1e-3, 1e6  # smallest and largest radius [m]
+THINNEST = 1e-6  # smallest thickness over the radius [-]; such an arch does not stand
 
 
 class Mechanism(NamedTuple):
-    """A mechanism of an arch.
+    """A mechanism of an arch."""
 
-    Attributes
-    ----------
-    joints : (int, int, int, int)
-        Joints that open, from 0 at the left springing.
-    linkage : FourBarLinkage
-        The linkage.
-    equation : LinearEquation
-        Its equation of motion.
-    """
-
-    joints: tuple[int, int, int, int]
-    linkage: FourBarLinkage
-    equation: LinearEquation
+    joints: tuple[int, int, int, int]  # joints that open, from 0 at the left springing
+    linkage: FourBarLinkage  # the linkage
+    equation: LinearEquation  # its equation of motion
 
     @property
     def uplift_acceleration(self) -> float:
@@ -57,23 +40,8 @@ class Mechanism(NamedTuple):
 class MasonryArch:
     """A circular arch of equal voussoirs without tension or sliding in the joints.
 
-    Parameters
-    ----------
-    radius : float
-        Radius of the centre line [m], [1e-3, 1e6].
-    thickness : float
-        [m], from 1e-6 to below 2 times the radius.
-    embrace : float
-        Angle between the springings [rad], (0, pi].
-    voussoirs : int
-        Their number, 4 to 24.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    `radius` of the centre line and `thickness` [m], `embrace`: angle between the springings [rad], (0, pi]; in `RADII`
+    and from `THINNEST` to below 2 radii, 4 to `MOST_VOUSSOIRS` voussoirs.
     """
 
     radius: float
@@ -93,7 +61,7 @@ class MasonryArch:
             "gravity": positive("gravity", gravity, "m/s2"),
         }
         for name, value in checked.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+            vars(self)[name] = value  # a frozen dataclass
 
     def angle(self, joint: float) -> float:
         """Direction from the centre of the circle to a joint, or between two [rad]."""
@@ -110,12 +78,8 @@ class MasonryArch:
         return [Link(mass, cmath.rect(distance, self.angle(n + 0.5)), inertia) for n in range(self.voussoirs)]
 
     def mechanism(self) -> Mechanism:
-        """The mechanism of least uplift acceleration that opens under a ground acceleration of one direction.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the arch is too thin to stand under its weight, or does not open.
+        """The mechanism of least uplift acceleration that opens under a ground acceleration of one direction, if
+        any.
         """
         quadruples = itertools.combinations(range(self.voussoirs + 1), 4)
         found = [one for joints in quadruples for face in (-1, 1) if (one := self._opening(joints, face))]

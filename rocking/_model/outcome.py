@@ -1,7 +1,5 @@
 """The final outcome of a block, and the code of the way in which it overturns."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 

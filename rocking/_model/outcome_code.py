@@ -4,8 +4,6 @@ The code is 0 where the block survives, and 4 impacts + outcome where it overtur
 impact, 11 after two. The functions work on numpy arrays and inside compiled kernels.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -14,8 +12,7 @@ from numpy.typing import NDArray
 from rocking._model.outcome import Outcome
 from rocking._numba.compilation import jitable
 
-SURVIVES = 0
-"""Code of a block that comes to rest or does not uplift."""
+SURVIVES = 0  # code of a block that comes to rest or does not uplift
 
 _DIRECTLY = int(Outcome.OVERTURNED_DIRECTLY)
 _RECOVERS = int(Outcome.RECOVERS)

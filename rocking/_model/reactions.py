@@ -5,43 +5,28 @@ angular acceleration from the equation of motion (`rocking._model.body`; (2.2) f
 this requires.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._model.checks import check_number, check_one_alpha
-from rocking._model.parameters import RESTITUTION
+from rocking._base.quantities import RESTITUTION
+from rocking._model.checks import check_one_alpha
 
 Floats = NDArray[np.float64]
 
-INERTIA_RATIO = 0.75
-"""R p^2/g = 3/4 for a rectangle that rotates about its corner, below (2.2)."""
+INERTIA_RATIO = 0.75  # R p^2/g = 3/4 for a rectangle that rotates about its corner, below (2.2)
 
 
 @dataclass(frozen=True)
 class ContactGeometry:
-    """What the reactions of a body need beside alpha of its right edge; the defaults are those of a rectangular block.
+    """What reactions need beside alpha of the right edge; the defaults are those of a rectangular block."""
 
-    Attributes
-    ----------
-    ratio : float
-        alpha of the left edge over that of the right one [-].
-    speed : float
-        p of the left edge over that of the right one [-].
-    inertia_ratio : (float, float)
-        R p^2/g of the right and the left edge [-].
-    tilt : float
-        Angle by which the base is inclined towards the right [rad].
-    """
-
-    ratio: float = 1.0
-    speed: float = 1.0
-    inertia_ratio: tuple[float, float] = (INERTIA_RATIO, INERTIA_RATIO)
-    tilt: float = 0.0
+    ratio: float = 1.0  # alpha of the left edge over that of the right one [-]
+    speed: float = 1.0  # p of the left edge over that of the right one [-]
+    inertia_ratio: tuple[float, float] = (INERTIA_RATIO, INERTIA_RATIO)  # R p^2/g of the right and the left edge [-]
+    tilt: float = 0.0  # angle by which the base is inclined towards the right [rad]
 
 
 BLOCK = ContactGeometry()
@@ -49,19 +34,13 @@ BLOCK = ContactGeometry()
 
 @dataclass(frozen=True, eq=False)
 class Reactions:
-    """Reaction of the ground at the pivot, on the body; arrays of one shape.
+    """Reaction of the ground at the pivot, on the body; arrays of one shape."""
 
-    Attributes
-    ----------
-    horizontal : float array [-]
-        H/(m g tan(alpha)) along the base, positive as the ground acceleration; at rest on a level base it is that
-        acceleration, a f. alpha is that of the right edge.
-    normal : float array [-]
-        N/(m g) normal to the base, positive upwards; at rest 1. Where it is not positive, rocking would require a
-        tensile force.
-    """
-
+    # H/(m g tan(alpha)) along the base, positive as the ground acceleration; at rest on a level base it is that
+    # acceleration, a f. alpha is that of the right edge [-]
     horizontal: Floats
+    # N/(m g) normal to the base, positive upwards; at rest 1. Where it is not positive, rocking would require a tensile
+    # force [-]
     normal: Floats
 
     @property
@@ -83,28 +62,12 @@ def reactions(
     vertical: Floats | float = 1.0,
     geometry: ContactGeometry = BLOCK,
 ) -> Reactions:
-    """Reaction at the pivot from the state of motion.
+    """Reaction at the pivot from the state of motion, arrays of one shape.
 
-    Parameters
-    ----------
-    rotation, angular_velocity : float arrays
-        theta/alpha and d(theta/alpha)/d tau [-].
-    ground_acceleration : float array
-        a f = u/(g tan(alpha)) [-].
-    side : float array
-        Corner in contact: +1 the right one (theta > 0), -1 the left one; 0 at rest on both.
-    alpha : float
-        Slenderness angle of the right edge [rad], [0, pi/2). At 0 the limit: the horizontal reaction stays finite over
-        tan(alpha), and N = m g.
-    vertical : float array
-        V = 1 + (vertical acceleration of the ground)/g [-].
-    geometry : ContactGeometry
-        Of the body.
-
-    Returns
-    -------
-    Reactions
-        Of the shape of the arguments.
+    `rotation`, `angular_velocity`: theta/alpha and d(theta/alpha)/d tau [-]; `ground_acceleration`: a f = u/(g
+    tan(alpha)) [-]; `side`: corner in contact, +1 the right one (theta > 0), -1 the left one, 0 at rest on both;
+    `vertical`: V = 1 + (vertical acceleration of the ground)/g [-]. `alpha` is that of the right edge [rad], [0, pi/2).
+    At 0 the limit: the horizontal reaction stays finite over tan(alpha), and N = m g.
     """
     right = side >= 0.0
     u, lean = ground_acceleration, side * np.where(right, 1.0, geometry.ratio) - rotation
@@ -127,29 +90,12 @@ def reactions(
 def impulse_ratio(restitution: float, alpha: float, other_alpha: float | None = None) -> float:
     """Horizontal over vertical impulse of the ground at an impact, (1 - eta)/((1 + eta) tan(alpha)) [-].
 
-    With edges that differ (1 - eta)/(tan(alpha) + eta tan(alpha')), alpha' of the new edge.
-
-    Parameters
-    ----------
-    restitution : float
-        eta [-], [0, 1].
-    alpha : float
-        Slenderness angle of the edge that is left [rad], [0, pi/2).
-    other_alpha : float, optional
-        That of the new edge; the same without it.
-
-    Returns
-    -------
-    float
-        Coefficient of friction required at an impact for (2.3) to hold without sliding: infinite in the slender limit
-        unless eta = 1. With the eta of (2.4) it is 3 sin(alpha) cos(alpha)/(4 - 3 sin^2(alpha)), less than tan(alpha).
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range.
+    With edges that differ (1 - eta)/(tan(alpha) + eta tan(alpha')), alpha of the edge that is left, alpha' of the new
+    one [rad], [0, pi/2). It is the coefficient of friction required at an impact for (2.3) to hold without sliding:
+    infinite in the slender limit unless eta = 1. With the eta of (2.4) it is 3 sin(alpha) cos(alpha)/(4 - 3
+    sin^2(alpha)), less than tan(alpha).
     """
-    eta = check_number(RESTITUTION, restitution)
+    eta = RESTITUTION.number(restitution)
     slope = math.tan(check_one_alpha(alpha))
     other = slope if other_alpha is None else math.tan(check_one_alpha(other_alpha))
     pressed = slope + eta * other

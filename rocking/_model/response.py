@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import Quantity
+from rocking._base.quantities import FREQUENCY_PARAMETER, GROUPS
+from rocking._base.units import WithUnit
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
 from rocking._model.labelled import Index, variable, with_index
 from rocking._model.outcome import Outcome
-from rocking._model.parameters import FREQUENCY_PARAMETER, GROUPS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -165,6 +165,6 @@ def along_own_axes(
     return tuple(names[first + axis] for axis in axes), value.reshape([value.shape[axis] for axis in axes])
 
 
-def dimensions_of(*arguments: ArrayLike | Quantity | None) -> tuple[Hashable, ...]:
+def dimensions_of(*arguments: ArrayLike | WithUnit | None) -> tuple[Hashable, ...]:
     """Names of the dimensions of the labelled argument (xarray) with the most of them; empty if there is none."""
     return max((tuple(getattr(argument, "dims", ())) for argument in arguments), key=len)

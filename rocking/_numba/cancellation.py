@@ -21,8 +21,7 @@ from rocking._base.errors import StoppedError
 
 T = TypeVar("T")
 
-NEVER_STOPPED = np.zeros(1, np.uint8)
-"""Flag of kernels that are not cancelled."""
+NEVER_STOPPED = np.zeros(1, np.uint8)  # flag of kernels that are not cancelled
 
 
 class StopFlag:
@@ -73,13 +72,7 @@ class StopFlag:
 
 
 def run_with_timeout(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T | None:
-    """Run a part of the work of this thread with a time limit [s]; None if the limit was exceeded.
-
-    Raises
-    ------
-    StoppedError
-        If `stop`, the flag of the whole work, was set.
-    """
+    """Part of the work of this thread with a time limit [s], None beyond it; `StoppedError` if `stop` was set."""
     with stop.child() as part:
         timer = threading.Timer(seconds, part.set)
         timer.daemon = True

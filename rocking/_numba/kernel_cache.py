@@ -9,8 +9,6 @@ which is compared before they are loaded: what is damaged is made again; where t
 is compiled in each process. Either gives one warning in a process.
 """
 
-from __future__ import annotations
-
 import ast
 import gc
 import hashlib
@@ -37,8 +35,7 @@ from rocking._numba.way import INTERNALS
 
 PACKAGE = Path(__file__).parents[1]
 
-DIGEST = "sha256"
-"""File with the digest of the other files of an entry."""
+DIGEST = "sha256"  # file with the digest of the other files of an entry
 
 COMPLETE = "complete"
 """File in the folder of a state that marks it as complete: it serves where it can only be read, as in an installation
@@ -47,8 +44,7 @@ of another user or in a container."""
 LATENCY = 1.0
 """How long the files of an entry may differ from their digest [s]: a process writes them first, then the digest."""
 
-COMPILERS = {"numba", "llvmlite"}
-"""Modules that import one of these are part of what is compiled,"""
+COMPILERS = {"numba", "llvmlite"}  # modules that import one of these are part of what is compiled,
 
 DECORATORS = {"kernel", "specialised_kernel", "array_kernel", "jitable", "entry", "light_entry", "array_entry"}
 """and those with a function that one of these names of `rocking._numba.compilation` decorates."""
@@ -56,8 +52,7 @@ DECORATORS = {"kernel", "specialised_kernel", "array_kernel", "jitable", "entry"
 MADE_WITH = (llvmlite, np, numba)
 """Packages that modules with compiled code import: their versions count, not their files."""
 
-NOT_KEPT = threading.Event()
-"""Set when machine code was compiled that could not be written to the disk."""
+NOT_KEPT = threading.Event()  # set when machine code was compiled that could not be written to the disk
 
 _WARNED = threading.Event()
 

@@ -4,8 +4,6 @@ Kernels write expressions such as `load(series, n) * x + y` as for one cell; com
 combine. numba has no such type, and automatic vectorisation does not recognise the series of a Taylor step.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable
 from typing import Any
@@ -116,8 +114,8 @@ def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any
 
 
 def _square_root(builder: Any, x: Any) -> Any:
-    kind = ir.FunctionType(_LLVM_VECTOR, [_LLVM_VECTOR])
-    return builder.call(builder.module.declare_intrinsic(f"llvm.sqrt.v{LANES}f64", fnty=kind), [x])
+    name = "llvm.sqrt.f64" if x.type == ir.DoubleType() else f"llvm.sqrt.v{LANES}f64"
+    return builder.call(builder.module.declare_intrinsic(name, fnty=ir.FunctionType(x.type, [x.type])), [x])
 
 
 def transpose(builder: Any, rows: list[Any]) -> list[Any]:
@@ -143,10 +141,6 @@ def _element_address(builder: Any, array: Any, index: Any) -> Any:
     return builder.gep(builder.bitcast(array, ir.DoubleType().as_pointer()), [index])
 
 
-def _load_elements(builder: Any, array: Any, start: Any) -> Any:
-    return builder.load(builder.bitcast(_element_address(builder, array, start), _LLVM_VECTOR.as_pointer()), align=8)
-
-
 def _gather(builder: Any, array: Any, places: Any) -> Any:
     vector = ir.Constant(_LLVM_VECTOR, ir.Undefined)
     for i in range(LANES):
@@ -170,20 +164,26 @@ def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
 
 
 def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
-    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address."""
+    """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address.
+
+    `select`, `maximum`, `minimum` and `square_root` take numbers, too, in place of all vectors and masks: rules that
+    hold for one cell and for `LANES` are stated once by them.
+    """
 
     def typed(*given: Any) -> Any:
         kinds = [kind or one for kind, one in zip(parameters, given, strict=True)]
-
-        def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            operands = [
-                context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
-                for kind, value in zip(signature.args, values, strict=True)
-            ]
-            made = generate(builder, *operands)
-            return context.get_dummy_value() if result is types.void else made
-
+        if all(isinstance(one, types.Number | types.Boolean) for one in given) and _VECTOR_TYPE in kinds:
+            kinds = [types.boolean if kind == _MASK_TYPE else types.float64 for kind in kinds]
+            return types.float64(*kinds), lower
         return result(*kinds), lower
+
+    def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        operands = [
+            context.make_array(kind)(context, builder, value).data if isinstance(kind, types.Array) else value
+            for kind, value in zip(signature.args, values, strict=True)
+        ]
+        made = generate(builder, *operands)
+        return context.get_dummy_value() if result is types.void else made
 
     # numba inspects the number of parameters
     forms: dict[int, Callable[..., Any]] = {
@@ -199,9 +199,6 @@ load = instruction(
 )
 """load(array, row): a row of an array (rows, LANES); row 0 of an array (LANES,)."""
 
-load_elements = instruction(_load_elements, _VECTOR_TYPE, None, types.intp)
-"""load_elements(array, start): the elements from `start` on of an array (cells,)."""
-
 gather = instruction(_gather, _VECTOR_TYPE, None, None)
 """gather(array, places): element `places[i]` of an array (cells,) in lane i."""
 
@@ -211,26 +208,13 @@ store = instruction(
 )
 """store(array, row, x): set a row."""
 
-splat = instruction(_splat, _VECTOR_TYPE, types.float64)
-"""splat(number): the number in every lane."""
+splat = instruction(_splat, _VECTOR_TYPE, types.float64)  # splat(number): the number in every lane
+absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)  # absolute(x), lane by lane
 
-absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)
-"""absolute(x), lane by lane."""
-
-maximum = instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-)
+maximum = instruction(lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y), *[_VECTOR_TYPE] * 3)
 """maximum(x, y), lane by lane."""
 
-minimum = instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y),
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-)
+minimum = instruction(lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y), *[_VECTOR_TYPE] * 3)
 """minimum(x, y), lane by lane."""
 
 approx_log2 = instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
@@ -240,11 +224,8 @@ approx_exp2 = instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 """2**x for |x| < 1000, up to 6 % too large: the inverse of `approx_log2`."""
 
 
-square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)
-"""square_root(x), lane by lane, correctly rounded."""
-
-power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)
-"""2**x of integers x from -1022 to 1023."""
+square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)  # square_root(x), lane by lane, correctly rounded
+power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)  # 2**x of integers x from -1022 to 1023
 
 sine_of_quadrant = instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
 """sine_of_quadrant(n, s, c): sin(r + n pi/2) of integers n from s = sin(r) and c = cos(r)."""
@@ -317,33 +298,23 @@ def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
     lower_builtin(operation, _MASK_TYPE, _MASK_TYPE)(lambda _, builder, __, masks: generate(builder, *masks))
 
 
-for _operator, _name in (
-    (operator.add, "fadd"),
-    (operator.iadd, "fadd"),
-    (operator.sub, "fsub"),
-    (operator.isub, "fsub"),
-    (operator.mul, "fmul"),
-    (operator.imul, "fmul"),
-    (operator.truediv, "fdiv"),
-):
-    _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
+_ARITHMETIC = {
+    "fadd": (operator.add, operator.iadd),
+    "fsub": (operator.sub, operator.isub),
+    "fmul": (operator.mul, operator.imul),
+    "fdiv": (operator.truediv,),
+}
+for _name, _operators in _ARITHMETIC.items():
+    for _operator in _operators:
+        _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
 
-for _operator, _name in (
-    (operator.lt, "<"),
-    (operator.le, "<="),
-    (operator.gt, ">"),
-    (operator.ge, ">="),
-    (operator.eq, "=="),
-):
+_COMPARISONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq}
+for _name, _operator in _COMPARISONS.items():
     _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
 
-for _operator, _name in (
-    (operator.and_, "and_"),
-    (operator.iand, "and_"),
-    (operator.or_, "or_"),
-    (operator.ior, "or_"),
-):
-    _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
+for _name, _operators in {"and_": (operator.and_, operator.iand), "or_": (operator.or_, operator.ior)}.items():
+    for _operator in _operators:
+        _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
 
 
 @type_callable(operator.invert)

@@ -1,13 +1,10 @@
 """The scaled complementary error function of a SIMD vector."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
 
-CENTRE = 3.75
-"""x at which the variable t of the polynomial is 0 (Shepherd & Laframboise 1981)."""
+CENTRE = 3.75  # x at which the variable t of the polynomial is 0 (Shepherd & Laframboise 1981)
 
 
 @kernel

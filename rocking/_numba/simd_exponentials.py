@@ -3,8 +3,6 @@
 The functions of the C library take one number. All relative errors are below 6e-16.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
@@ -14,8 +12,7 @@ from rocking._numba.simd_sines import HALF_PI, round_to_nearest
 MAX_EXPONENT = 350.0
 """e^350 determines the sign of any growing term that is not exactly zero, and its square does not overflow."""
 
-SMALLEST_EXPONENT = 700.0
-"""e^-700 is close to the smallest number with all digits."""
+SMALLEST_EXPONENT = 700.0  # e^-700 is close to the smallest number with all digits
 
 LOG_2, LOG_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 """log(2) as the sum of two doubles; the first has 21 trailing zero bits."""

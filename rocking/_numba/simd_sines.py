@@ -5,18 +5,13 @@ reduced to [-pi/4, pi/4] in two parts (Cody and Waite), followed by the polynomi
 The error is about one ulp for angles up to 1e8.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import SimdVector, kernel
 from rocking._numba.simd import cosine_of_quadrant, sine_of_quadrant
 
-ROUNDING_CONSTANT = 6755399441055744.0
-"""1.5 * 2**52 [-]: adding and subtracting it rounds to the nearest integer."""
-
-HALF_PI, HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17
-"""pi/2 as the sum of two doubles."""
+ROUNDING_CONSTANT = 6755399441055744.0  # 1.5 * 2**52 [-]: adding and subtracting it rounds to the nearest integer
+HALF_PI, HALF_PI_LOW = 1.5707963267948966, 6.123233995736766e-17  # pi/2 as the sum of two doubles
 
 
 @kernel

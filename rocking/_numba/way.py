@@ -1,7 +1,5 @@
 """Which of two ways the kernels are compiled: faster, by private names of numba, or by its public interface alone."""
 
-from __future__ import annotations
-
 import os
 from types import ModuleType
 

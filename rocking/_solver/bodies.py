@@ -1,7 +1,5 @@
 """Responses of bodies with two edges under any motion, and how far they are from another outcome."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -23,29 +21,20 @@ Array = NDArray[np.float64]
 def solve_motion(
     motion: AbstractPulse | Record, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None
 ) -> tuple[NDArray[np.void], Array]:
-    """Response records (size,) of bodies, and what differs from edge to edge, float array (size, EDGE_COLUMNS).
+    """Response records (size,) of bodies `BODY_CELL` (size,), and what differs from edge to edge, (size, EDGE_COLUMNS).
 
-    Parameters
-    ----------
-    motion : AbstractPulse or Record
-        The ground motion.
-    cells : array (size,) of `BODY_CELL`
-        The bodies. `rate` is the frequency ratio under a pulse, and p times the time step under a record.
-    threads, stop
-        As for `rocking._solver.peak_response.solve_cells`, which raises the same errors.
+    `rate` of a cell is the frequency ratio under a pulse, and p times the time step under a record. Errors are those of
+    `rocking._solver.peak_response.solve_cells`.
     """
     if isinstance(motion, Record):
         return solve_bodies(motion_samples(motion), cells, threads, stop, each_side=True)
     if motion.samples is not None:
         return solve_bodies_under_pulse(motion, cells, threads, stop, each_side=True)
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, EDGE_COLUMNS))
-    omega = cells["rate"].copy()  # kernels need contiguous arrays
 
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-        unused = omega[part]
         state = solver_state.of_steps(motion, FULL_PRECISION)
-        groups = unused, omega[part], unused, unused
-        solve_batch(*groups, cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
+        solve_batch(cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
 
     cores = threads or AVAILABLE_CORES
     fill_chunks(fill, cells.size, min(max(math.ceil(cells.size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
@@ -57,12 +46,14 @@ def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np
 
     As `rocking._model.energy.outcome_margin`, for bodies with two edges: the largest of three margins, since a
     body that does not escape about its present edge can do so about the other one after an impact, and about the
-    present one after two (`rocking._solver.rules.final_outcome`). Continuous, zero at the transition. Array (size,).
+    present one after two (`rocking._solver.rules.final_outcome`); against a wall all are about the present one.
+    Continuous, zero at the transition. Array (size,).
     """
     right = edges[:, 2] >= 0.0
     ones = np.ones(cells.size)
     ratio, stiffness = np.stack([ones, cells["ratio"]]), np.stack([ones, cells["stiffness"]])
-    order = np.where(right, [[0], [1]], [[1], [0]])  # the present edge, and the other
+    order = np.where(right, [[0], [1]], [[1], [0]])  # the present edge, and that of the next flight
+    order[1] = np.where(np.isinf(cells["slenderness"]).any(axis=1), order[0], order[1])
     ratio, stiffness = np.take_along_axis(ratio, order, 0), np.take_along_axis(stiffness, order, 0)
     eta = np.take_along_axis(cells["eta"].T, order, 0)
     speed = ratio * np.sqrt(stiffness)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
+from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.checks import check_groups
 from rocking._model.fields import (
@@ -23,7 +24,6 @@ from rocking._model.fields import (
     ResponseFields,
 )
 from rocking._model.outcome import Outcome
-from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.rules import IMPACT_LIMIT

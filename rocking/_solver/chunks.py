@@ -1,7 +1,5 @@
 """Distribution of the cells of an array over threads."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -21,10 +19,8 @@ def fill_chunks(
 ) -> None:
     """Call `fill(part, flag)` for consecutive parts of `size` cells of `chunk_size` each, in up to `threads` threads.
 
-    Raises
-    ------
-    StoppedError
-        If `stop` was set; the kernels read `flag` and return early then. If one part fails, the others are stopped.
+    Raises `StoppedError` if `stop` was set; the kernels read `flag` and return early then. If one part fails, the
+    others are stopped.
     """
     parts = [slice(start, start + chunk_size) for start in range(0, size, chunk_size)]
     workers = min(threads, len(parts))

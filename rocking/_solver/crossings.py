@@ -1,7 +1,5 @@
 """Phases at which f crosses a level on monotone pieces of the pulse: bracketed Newton iterations, `LANES` at a time."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -10,8 +8,7 @@ from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimu
 from rocking._numba.simd_exponentials import arccosine
 from rocking._solver.excitation import shapes_and_slopes
 
-MAX_NEWTON_STEPS = 100
-"""Steps after which the bracketed Newton iteration stops; bisection alone needs 55."""
+MAX_NEWTON_STEPS = 100  # steps after which the bracketed Newton iteration stops; bisection alone needs 55
 
 
 @kernel

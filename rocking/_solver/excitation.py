@@ -5,8 +5,6 @@ powers of tau for a Taylor step. A further family adds its module, and a case to
 no exact arcs, nothing else. The record has one layout for all families, so that each kernel is compiled once.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,11 +7,11 @@ says which impacts after the motion can matter. The functions are those of a blo
 edges that differ are scaled by the caller.
 """
 
-from __future__ import annotations
-
 import math
+from typing import Any
 
 from rocking._numba.compilation import kernel
+from rocking._numba.simd import select
 
 
 @kernel
@@ -24,36 +24,38 @@ def barrier_of(alpha: float) -> float:
 def release(z: float, w: float, alpha: float) -> tuple[bool, float, float]:
     """What follows from the rotation z >= 0 and the velocity w at the end of the motion, up to the next impact.
 
-    Parameters
-    ----------
-    z, w : float
-        |theta|/alpha, below pi/(2 alpha), and its rate with respect to tau [-].
-    alpha : float
-        Slenderness angle [rad], [0, pi/2); 0 is the slender limit.
-
-    Returns
-    -------
-    escapes : bool
-        Whether the block overturns without another impact, (3.8).
-    top : float
-        Largest z up to the impact [-].
-    squared : float
-        Square of the velocity at the impact, (3.15).
+    `z`, `w`: |theta|/alpha, below pi/(2 alpha), and its rate with respect to tau [-]. `alpha`: slenderness angle [rad],
+    [0, pi/2); 0 is the slender limit. Returns `escapes`: whether the block overturns without another impact, (3.8);
+    `top`: largest z up to the impact [-]; `squared`: square of the velocity at the impact, (3.15).
     """
     barrier = barrier_of(alpha)
     if alpha == 0.0:
-        x = 1.0 - z
-        climbed = z * (2.0 - z)  # X(0)^2 - X(z)^2
+        x, squared = slender_energy(z, w)
     else:
         x = 2.0 * math.sin(0.5 * alpha * (1.0 - z)) / alpha
         climbed = 4.0 * math.sin(0.5 * alpha * z) * math.sin(0.5 * alpha * (2.0 - z)) / (alpha * alpha)
+        squared = w * w + climbed if x > 0.0 else barrier * barrier - (x - w) * (x + w)
     if w >= x:  # (3.8): B >= 0
         return True, math.inf, math.inf
-    # the second form has no cancellation far beyond alpha
-    squared = w * w + climbed if x > 0.0 else barrier * barrier - (x - w) * (x + w)
     if w > 0.0:  # z increases first
         return False, highest_rotation(squared, math.sqrt((x - w) * (x + w)), barrier, alpha), squared
     return False, z, squared
+
+
+@kernel
+def slender_energy(z: Any, w: Any) -> Any:
+    """X and the squared velocity at the next impact of a slender block, from a number each or a SIMD vector each.
+
+    The second form of the latter has no cancellation far beyond alpha.
+    """
+    x = 1.0 - z
+    return x, select(x > 0.0, w * w + z * (2.0 - z), 1.0 - (x - w) * (x + w))
+
+
+@kernel
+def slender_top(squared: Any, left: Any) -> Any:
+    """`highest_rotation` of a slender block, of numbers or SIMD vectors: without cancellation."""
+    return squared / (1.0 + left)
 
 
 @kernel
@@ -64,7 +66,7 @@ def highest_rotation(squared: float, left: float, barrier: float, alpha: float) 
     sin(A - B) = (sin^2 A - sin^2 B)/(sin A cos B + cos A sin B), which has no cancellation for small z.
     """
     if alpha == 0.0:
-        return squared / (1.0 + left)
+        return float(slender_top(squared, left))
     half = 0.5 * alpha
     cos_a = math.cos(half)
     cos_b = math.sqrt((1.0 - half * left) * (1.0 + half * left))

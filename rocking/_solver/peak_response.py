@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import broadcast, integer, needed, reject_given
+from rocking._base.quantities import RELATIVE_TOLERANCE
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as Recording
-from rocking._model.checks import check_groups, check_number, known_restitution
+from rocking._model.checks import check_groups, known_restitution
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of, is_labelled, labelled_response
-from rocking._model.parameters import RELATIVE_TOLERANCE
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import Record, contiguous_array
@@ -28,11 +28,11 @@ from rocking._solver.records.record_response import record_response, solve_pulse
 from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.state import StageState, stage_state
 from rocking._solver.state import (
-    BODY_CELL,
     EDGE_COLUMNS,
     FOLLOWED_FLIGHT,
     FULL_PRECISION,
     RESPONSE_RECORD,
+    block_cells,
     pulse_state,
     step_state,
 )
@@ -43,8 +43,7 @@ if TYPE_CHECKING:
 MIN_CHUNK, MAX_CHUNK = 2048, 4096
 """Cells given to a thread at a time: at least a millisecond of work, about the time to start a thread."""
 
-MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768
-"""The same for cells that are solved by exact arcs, in a tenth of the time."""
+MIN_ARC_CHUNK, MAX_ARC_CHUNK = 8192, 32768  # the same for cells that are solved by exact arcs, in a tenth of the time
 
 TRUNCATION_FRACTION = 1e-4
 """Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
@@ -53,11 +52,8 @@ NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
 
 
-NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))
-"""For blocks with equal edges."""
-
-NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)
-"""Where only responses are wanted."""
+NO_EDGES = np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges
+NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)  # where only responses are wanted
 
 
 class SolverState(threading.local):
@@ -132,7 +128,8 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     frequency_parameter : array_like
         p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step; of a record.
     restitution : array_like
-        Coefficient of restitution eta [-], [0, 1]; or "momentum": (2.4) of `alpha`, 0 where that is negative.
+        Coefficient of restitution eta [-], [0, 1]; or "momentum": (2.4) of `alpha`, 0 where that is negative;
+        or "kalliontzis(k=...)", the impact at the share k of the half base, (0, 1].
     alpha : array_like, optional
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
     vertical_scale : array_like, optional
@@ -197,7 +194,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     groups = broadcast(given, [*checked.values()][: 3 if alpha is None else 4])
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
-    accepted = 0.0 if relative_tolerance is None else check_number(RELATIVE_TOLERANCE, relative_tolerance)
+    accepted = 0.0 if relative_tolerance is None else RELATIVE_TOLERANCE.number(relative_tolerance)
     exact = made.samples is not None or (made.series.has_exact_arcs and slender)  # no terms to truncate
     precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
@@ -218,26 +215,13 @@ def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> ND
 
 
 def solve_cells(
-    pulse: AbstractPulse,
-    cells: list[NDArray[np.float64]],
-    precision: float,
-    threads: int | None,
-    stop: StopFlag | None,
+    pulse: AbstractPulse, cells: list[NDArray[np.float64]], precision: float, threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
     """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
 
-    Parameters
-    ----------
-    pulse : AbstractPulse
-    cells : list of three or four float arrays (size,)
-        1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each as
-        `contiguous_array` gives it.
-    precision : float
-        Relative truncation error of a Taylor step [-].
-    threads : int or None
-        Number of threads, None: all cores.
-    stop : StopFlag or None
-        Cancels the work, which then raises `StoppedError`.
+    `cells` (size,): 1/a, omega and eta of each cell, and its alpha (0: slender) unless all are slender; in range, each
+    as `contiguous_array` gives it. `precision`: relative truncation error of a Taylor step [-]. `threads`: number of
+    threads, None: all cores.
     """
     if pulse.samples is not None:
         return solve_pulse(pulse, cells, threads, stop)
@@ -301,7 +285,9 @@ def _solve_by_steps(
     records: NDArray[np.void],
 ) -> None:
     state = solver_state.of_steps(pulse, precision)
-    solve_batch(*_with_alpha(cells), NO_BODIES, *state, flag, records, NO_EDGES, NO_FLIGHTS)
+    slenderness, omega, eta, alpha = _with_alpha(cells)
+    bodies = block_cells(omega, slenderness, eta, alpha)
+    solve_batch(bodies, *state, flag, records, NO_EDGES, NO_FLIGHTS)
 
 
 def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

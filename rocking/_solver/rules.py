@@ -2,8 +2,9 @@
 
 A body rests until the ground acceleration exceeds what one of its edges resists (uplift). It rotates about that edge (a
 flight) until the rotation is zero again (impact), and continues about the other edge with the velocity times the
-restitution of the edge that it leaves. Impacts that accumulate end in rest (chatter). When the ground motion has ended,
-the energy alone decides the outcome.
+restitution of the edge that it leaves. A body against a wall (one-sided) has an edge of infinite slenderness, which
+resists any acceleration: after an impact it rotates about the same edge again, with -eta times its velocity. Impacts
+that accumulate end in rest (chatter). When the ground motion has ended, the energy alone decides the outcome.
 
 All functions work on a solver state with the fields `BODY_FIELDS` and `PROGRESS_FIELDS` of `rocking._solver.state`. The
 event loops (`rocking._solver.kernels.event_loop` of pulses, `rocking._solver.records.event_loop` of samples) know where
@@ -24,23 +25,20 @@ w = 0.1. X = 1 - z = 0.6 exceeds w, so that the block does not escape; it rises 
 each further flight is lower: it survives.
 """
 
-from __future__ import annotations
-
 import math
+from typing import Any
 
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking._numba.records import copy_fields
+from rocking._numba.simd import maximum, square_root
 from rocking._solver.free_rocking import barrier_of, highest_rotation, release
 from rocking._solver.state import set_empty_response
 
 IMPACT_LIMIT = 200_000
 """Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
 
-MODES_PER_UPLIFT = 65536
-"""Number of peak modes reserved for the motion between two uplifts from rest."""
-
-MAX_UPLIFT_MODE = 32_767
-"""Largest number of uplifts that the mode of a peak counts: it is an int32."""
+MODES_PER_UPLIFT = 65536  # number of peak modes reserved for the motion between two uplifts from rest
+MAX_UPLIFT_MODE = 32_767  # largest number of uplifts that the mode of a peak counts: it is an int32
 
 NO_UPLIFT, RECOVERS, DIRECTLY, AFTER_IMPACT = 0, 1, 2, 3
 """Values of `rocking.Outcome`, as plain integers for the kernels."""
@@ -55,18 +53,11 @@ def set_edge(state: Record, side: int, slenderness: float, eta: float, ratio: fl
 
 
 @kernel
-def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> None:
-    """Set a body with equal edges; alpha = 0 is the slender limit."""
-    state.alpha, state.pull[0], state.each_side = alpha, 0.0, 0
-    set_edge(state, 0, slenderness, eta, 1.0, 1.0)
-    set_edge(state, 1, slenderness, eta, 1.0, 1.0)
-
-
-@kernel
 def set_body(state: Record, cell: Record, each_side: bool) -> None:
     """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
     differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]
     state.alpha, state.pull[0], state.each_side = cell.alpha, 0.0, int(each_side or differ)
+    state.turn = -1.0 if max(cell.slenderness[0], cell.slenderness[1]) < math.inf else 1.0
     set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
     set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
 
@@ -101,6 +92,12 @@ def known_rotation(state: Record) -> float:
 
 
 @kernel
+def peak_mode(uplifts: Any, impacts: Any, impacts_before: Any, free: Any) -> Any:
+    """Mode of a peak, a number or a SIMD vector: uplifts, impacts since the last of them, whether in free rocking."""
+    return MODES_PER_UPLIFT * (uplifts - 1) + 2 * (impacts - impacts_before) + free
+
+
+@kernel
 def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> None:
     """Update the largest peak. Of two peaks that differ by rounding the mode of the earlier one is kept.
 
@@ -111,14 +108,17 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
     peak = z / state.ratio[side]
     if peak > state.peak_rotation * (1.0 + 1e-12):
         uplifts = min(state.uplifts, MAX_UPLIFT_MODE)
-        state.peak_mode = MODES_PER_UPLIFT * (uplifts - 1) + 2 * (impacts - state.impacts_before_uplift) + free
+        state.peak_mode = peak_mode(uplifts, impacts, state.impacts_before_uplift, free)
     state.peak_rotation = max(state.peak_rotation, peak)
     state.side_peak[side] = z
 
 
 @kernel
 def count_impact(state: Record, time: float, w: float) -> float:
-    """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it."""
+    """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it.
+
+    sgn(theta) after it is `state.turn` times that before.
+    """
     if state.impacts == 0:
         state.first_impact_time, state.first_impact_velocity = time, state.sign * w
     state.impacts += 1
@@ -132,7 +132,7 @@ def overturn(state: Record, further_impacts: int) -> None:
     state.outcome = DIRECTLY if state.impacts == 0 else AFTER_IMPACT
     state.peak_rotation, state.peak_mode = math.nan, -1
     state.side_peak[0], state.side_peak[1] = math.nan, math.nan
-    state.final_sign = state.sign if further_impacts % 2 == 0 else -state.sign
+    state.final_sign = state.sign if further_impacts % 2 == 0 else state.turn * state.sign
 
 
 @kernel
@@ -143,7 +143,7 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
     does not escape about the present edge overturns after the next impact, about the other edge, or else after the one
     after that, about the present edge: later flights about an edge start with less than the energy that did not suffice
     there. Equal edges: the second impact decides nothing, and neither does the first if w > 0, since the energy was
-    below the barrier already.
+    below the barrier already. One edge only: the same, the next impact decides at most.
     """
     side = state.side
     state.end_rotation, state.end_velocity, state.end_sign = z, w, state.sign
@@ -157,7 +157,7 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
     update_peak(state, side, top * state.ratio[side], state.impacts, 1)
     further = 2 if state.each_side == 1 else (1 if w <= 0.0 else 0)
     for impact in range(1, further + 1):
-        other = 1 - side
+        other = 1 - side if state.turn < 0.0 else side
         change = state.eta[side] * (state.speed[side] / state.speed[other])
         squared *= change * change  # of the velocity after the impact, in the units of the other edge
         edge_alpha = state.alpha * state.ratio[other]
@@ -227,12 +227,20 @@ def impacts_accumulate(
     known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
     if softening > 0.5 * weakest or height > known:
         return False
-    spread = max(
-        (right_pull * right[1] + softening) / (right_pull * right[0] - softening),
-        (left_pull * left[1] + softening) / (left_pull * left[0] - softening),
-    )
-    ratio = max(state.eta[0], state.eta[1]) * math.sqrt(spread)
-    return bool(ratio < 1.0 and 2.0 * w <= window * (weakest - softening) * (1.0 - ratio))
+    right, left = (right_pull * right[0], right_pull * right[1]), (left_pull * left[0], left_pull * left[1])
+    return bool(series_fits(w, window, max(state.eta[0], state.eta[1]), weakest, softening, right, left))
+
+
+@kernel
+def series_fits(w: Any, window: Any, eta: Any, weakest: Any, softening: Any, right: Any, left: Any) -> Any:
+    """Whether the series of `impacts_accumulate` ends within a window, a number or a SIMD vector each.
+
+    `right`, `left`: smallest and largest -z'' at z = 0 on both edges, `weakest` the smallest of both; `softening`:
+    largest change of -z'' during a flight.
+    """
+    spread = maximum((right[1] + softening) / (right[0] - softening), (left[1] + softening) / (left[0] - softening))
+    ratio = eta * square_root(spread)
+    return (ratio < 1.0) & (2.0 * w <= window * (weakest - softening) * (1.0 - ratio))
 
 
 @kernel

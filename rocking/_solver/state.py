@@ -4,8 +4,6 @@ The layout is fixed and the same for all excitations. Kernels access the memory 
 compiled once. The records are prepared for each pulse; each thread works on copies.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 
@@ -19,8 +17,7 @@ from rocking._numba.records import constant_fields
 from rocking._numba.simd import LANES, VECTOR_BYTES
 from rocking._solver.excitation import EXCITATION_FIELDS, PULSE_FIELDS, fill_excitation
 
-MAX_ORDER = 22
-"""Largest degree of the Taylor steps."""
+MAX_ORDER = 22  # largest degree of the Taylor steps
 
 FULL_PRECISION = 1e-17
 """Smallest ratio of the last terms of a Taylor step to the motion during the step, far below rounding [-]."""
@@ -38,6 +35,7 @@ BODY_FIELDS = [
     ("ratio", np.float64, EDGES),  # alpha_s/alpha
     ("stiffness", np.float64, EDGES),  # (p_s/p)^2
     ("speed", np.float64, EDGES),  # ratio p_s/p: velocity w over that in the units of the edge
+    ("turn", np.float64),  # sgn(theta) after an impact over that before: -1, or 1 if it rocks about one edge only
     ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
     ("pull", np.float64, EDGES),  # see `rocking._solver.rules.pulls_of`; 0 until it is known
     ("softening", np.float64),
@@ -50,7 +48,8 @@ BODY_CELL = np.dtype(
         ("rate", np.float64),  # samples: p times the unit of their times [tau]; pulses: frequency ratio omega_g/p
         ("vertical", np.float64),  # factor of the vertical component
         ("alpha", np.float64),  # slenderness angle of the right edge [rad], 0: slender limit
-        ("slenderness", np.float64, EDGES),  # g tan(alpha_s)/(largest horizontal acceleration)
+        # g tan(alpha_s)/(largest horizontal acceleration); inf: never lifted about this edge, the body rebounds there
+        ("slenderness", np.float64, EDGES),
         ("eta", np.float64, EDGES),
         ("ratio", np.float64),  # alpha_s/alpha of the left edge
         ("stiffness", np.float64),  # (p_s/p)^2 of the left edge
@@ -137,8 +136,7 @@ def _flight_layout() -> np.dtype[np.void]:
     )
 
 
-FLIGHT_STATE = _flight_layout()
-"""Layout of the record of an excitation and a cell."""
+FLIGHT_STATE = _flight_layout()  # layout of the record of an excitation and a cell
 
 FOLLOWED_FLIGHT = np.dtype(
     [
@@ -238,8 +236,7 @@ def block_cell(rate: float, slenderness: float, eta: float, alpha: float, vertic
     return block_cells(*(np.array([value]) for value in (rate, slenderness, eta, alpha, vertical)))[0]
 
 
-RESPONSE_RECORD = record_dtype(SOLVED_FIELDS)
-"""Record of the response of a cell."""
+RESPONSE_RECORD = record_dtype(SOLVED_FIELDS)  # record of the response of a cell
 
 set_empty_response = constant_fields({field.name: field.at_rest for field in SOLVED_FIELDS})
 """set_empty_response(record): the response of a body without uplift, into a record of the solver or a response."""
@@ -273,13 +270,8 @@ def aligned_record(layout: np.dtype[np.void]) -> Record:
 def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:
     """Taylor steps for the pulse of a record of `pulse_state`.
 
-    Parameters
-    ----------
-    flight
-        The record.
-    precision : float
-        Largest ratio of the last terms of a step's series to the motion during the step [-], `FULL_PRECISION` to 1e-4.
-        It sets the degree: 1 - log(precision)/2 gives the longest steps for the work, Jorba and Zou (2005).
+    `precision`: largest ratio of the last terms of a step's series to the motion during the step [-], `FULL_PRECISION`
+    to 1e-4. It sets the degree: 1 - log(precision)/2 gives the longest steps for the work, Jorba and Zou (2005).
     """
     steps = aligned_record(STEP_STATE)
     for name, *_ in EXCITATION_FIELDS:

@@ -14,26 +14,19 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import one_of
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._datasets.cube import DIMENSIONS, IMPACTS_BEFORE_REST, OPTIONAL_VARIABLES, build_spectrum_dataset
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.slices import windows_of
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
-from rocking._model.checks import check, check_alpha
+from rocking._model.checks import check_alpha
 from rocking._model.fields import CUBE_FIELDS
 from rocking._model.outcome_code import SURVIVES, outcome_codes
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
 from rocking._solver.rules import IMPACT_LIMIT
-from rocking._spectra.layer import (
-    CELL_CENTRE,
-    DIRECT,
-    UNKNOWN,
-    Cells,
-    GridLayer,
-    largest_in_neighbourhood,
-)
+from rocking._spectra.layer import CELL_CENTRE, DIRECT, UNKNOWN, Cells, GridLayer, largest_in_neighbourhood
 from rocking._spectra.level_interval import LevelInterval
 
 Array = NDArray[np.float64]
@@ -48,8 +41,7 @@ FIRST_PROBES = 2
 REFINE_TOL = 1e-6
 """Error at the first probes, in a cell or one next to it, above which the other probes are used as well [-]."""
 
-MAX_ERROR = 5e-5
-"""Largest measured error of a cell that is interpolated [-]."""
+MAX_ERROR = 5e-5  # largest measured error of a cell that is interpolated [-]
 
 PROBE_TOLERANCE = 1e-8
 """Relative error of the peaks with which interpolation is compared [-]: small compared with errors that matter."""
@@ -83,15 +75,7 @@ def spectra(
 ) -> Iterator[xr.Dataset]:
     """The spectrum cubes of one pulse (`rocking._datasets.cube`), one for each coefficient of restitution in turn.
 
-    Parameters
-    ----------
-    pulse, restitution, threads, stop, **grid
-        As for `solve_cubes`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    Arguments and errors are those of `solve_cubes`.
     """
     cubes = [*solve_cubes(pulse, restitution=restitution, threads=threads, stop=stop, **grid)]
     return with_restitution_errors(pulse, cubes, threads=threads, stop=stop)
@@ -111,36 +95,18 @@ def solve_cubes(
 ) -> Iterator[xr.Dataset]:
     """The cubes without the errors of interpolation between restitutions, which `with_restitution_errors` adds.
 
-    Parameters
-    ----------
-    pulse : str or SampledPulse
-        Name of the pulse, or a pulse given by samples.
-    restitution : array_like, shape (l,)
-        eta [-], [0, 1], ascending.
-    slenderness : array_like, shape (n,), n >= 4
-        1/a [-], > 0, ascending.
-    frequency_ratio : array_like, shape (m,), m >= 4
-        omega [-], > 0, ascending.
-    alpha : array_like, shape (k,)
-        Slenderness angles [rad], ascending; 0 for the slender limit.
-    barred : bool array, shape (l, k, n - 1, m - 1), optional
-        Cells that are not interpolated because overturning boundaries cross them (`rocking._boundary.cells`).
-    derived : sequence of str
-        Names of `rocking._model.fields.DERIVED_FIELDS` that the cubes store too.
-    threads : int, optional
-        Threads of the solver; by default all cores.
-    stop : StopFlag, optional
-        The computation ends with `StoppedError` soon after another thread sets it.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    `pulse`: name of the pulse, or a pulse given by samples. `restitution` (l,): eta [-], [0, 1], ascending.
+    `slenderness` (n,): 1/a [-], > 0, ascending. `frequency_ratio` (m,): omega [-], > 0, ascending. `alpha` (k,):
+    slenderness angles [rad], ascending; 0 for the slender limit. `barred` (l, k, n - 1, m - 1): cells that are not
+    interpolated because overturning boundaries cross them (`rocking._boundary.cells`). `derived`: names of
+    `rocking._model.fields.DERIVED_FIELDS` that the cubes store too. `threads`: threads of the solver; by default all
+    cores. `stop`: the computation ends with `StoppedError` soon after another thread sets it. Raises
+    `InvalidArgumentError` if a value is out of range.
     """
-    rows = check(SLENDERNESS, slenderness)
-    columns = check(FREQUENCY_RATIO, frequency_ratio)
+    rows = SLENDERNESS.convert(slenderness)
+    columns = FREQUENCY_RATIO.convert(frequency_ratio)
     angles = check_alpha(alpha)
-    etas = check(RESTITUTION, restitution)
+    etas = RESTITUTION.convert(restitution)
     for name in derived:
         one_of("derived", name, OPTIONAL_VARIABLES)
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
@@ -165,17 +131,10 @@ def with_restitution_errors(
 ) -> Iterator[xr.Dataset]:
     """Some of the cubes of `solve_cubes` in turn, in memory, with the errors of interpolation up to the next one.
 
-    Parameters
-    ----------
-    pulse : str or SampledPulse
-        As for `solve_cubes`.
-    cubes : sequence of xarray.Dataset
-        Cubes of ascending restitutions; those of `rocking._interpolation.slices.windows_of` (first, last) suffice. One
-        angle at a time is read.
-    first, last : int
-        First of the cubes that are wanted, and the one after the last of them; by default all.
-    threads, stop
-        As for `solve_cubes`.
+    `pulse`: as for `solve_cubes`. `cubes`: cubes of ascending restitutions; those of
+    `rocking._interpolation.slices.windows_of` (first, last) suffice. One angle at a time is read. `first`, `last`:
+    first of the cubes that are wanted, and the one after the last of them; by default all. `threads`, `stop`: as for
+    `solve_cubes`.
     """
     etas = np.array([float(cube["restitution"]) for cube in cubes])
     own = slice(first, etas.size if last is None else last)
@@ -316,25 +275,11 @@ class _Grid:
     ) -> list[Array]:
         """Error [-] at a share of each interval, at the centre of each cell.
 
-        Parameters
-        ----------
-        intervals : sequence of LevelInterval
-            Intervals over the same plane.
-        share : float
-            Where in them [-].
-        wanted : sequence of bool arrays (n - 1, m - 1)
-            Cells of each interval that are probed.
-        etas : float array (intervals,)
-            Restitution [-] there.
-        angle : float
-            Slenderness angle [rad] there.
-        known : int or None
-            Kind of cells in which all blocks between overturn in the same way, without asking the solver.
-
-        Returns
-        -------
-        list of float arrays (n - 1, m - 1)
-            0 where all blocks overturn in the same way, nan where the layers or the block between differ in kind.
+        `intervals`: intervals over the same plane; `share`: where in them [-]; `wanted` (n - 1, m - 1): cells of each
+        interval that are probed; `etas`: restitution [-] there; `angle`: slenderness angle [rad] there; `known`: kind
+        of cells in which all blocks between overturn in the same way, without asking the solver. Returns list of float
+        arrays (n - 1, m - 1): 0 where all blocks overturn in the same way, nan where the layers or the block between
+        differ in kind.
         """
         asked = [cells & (interval.kind != known) for interval, cells in zip(intervals, wanted, strict=True)]
         errors = [np.where(interval.kind == known, 0.0, np.nan) for interval in intervals]

@@ -34,8 +34,7 @@ Cells = tuple[NDArray[np.intp], ...]
 
 CELL_CENTRE = (0.5, 0.5)
 
-UNKNOWN = -1
-"""Kind of a cell that is not interpolated."""
+UNKNOWN = -1  # kind of a cell that is not interpolated
 
 DIRECT = int(Outcome.OVERTURNED_DIRECTLY)
 """Kind of a cell in which all blocks overturn without impact: they do so for every restitution."""

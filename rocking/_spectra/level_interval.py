@@ -21,32 +21,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class LevelInterval:
-    """An interval between two slices, and the layers from which it is interpolated.
+    """An interval between two slices, and the layers from which it is interpolated."""
 
-    Attributes
-    ----------
-    layers : sequence of GridLayer
-        The layers of the slice window.
-    levels : float array
-        Their restitutions [-] or angles [rad].
-    power : int
-        Power of the restitution or angle that is the variable of interpolation.
-    lower : int
-        Index of the lower slice of the interval, among all slices.
-    bounds : tuple of float
-        Ends of the interval [-] or [rad].
-    kind : int array (n - 1, m - 1)
-        `GridLayer.kinds` of the cells, `UNKNOWN` where the layers differ in it.
-    creased : bool array (n - 1, m - 1)
-        Whether the mode of the peak changes between the two slices, at a corner of the cell: the peak has a crease.
-    """
-
-    layers: Sequence[GridLayer]
-    levels: Array
-    power: int
-    lower: int
-    bounds: tuple[float, float]
-    kind: NDArray[np.int64]
+    layers: Sequence[GridLayer]  # the layers of the slice window
+    levels: Array  # their restitutions [-] or angles [rad]
+    power: int  # power of the restitution or angle that is the variable of interpolation
+    lower: int  # index of the lower slice of the interval, among all slices
+    bounds: tuple[float, float]  # ends of the interval [-] or [rad]
+    kind: NDArray[np.int64]  # (n - 1, m - 1) `GridLayer.kinds` of the cells, `UNKNOWN` where the layers differ in it
+    # (n - 1, m - 1) whether the mode of the peak changes between the two slices, at a corner of the cell: the peak has
+    # a crease
     creased: NDArray[np.bool_]
 
     @classmethod
@@ -70,16 +54,8 @@ class LevelInterval:
     def errors(self, share: float, cells: Cells, place: tuple[float, float], peak: Array) -> Array:
         """Absolute errors [-] at a share of the interval, in cells in which all blocks survive.
 
-        Parameters
-        ----------
-        share : float
-            Where in the interval [-].
-        cells : tuple of int arrays
-            Rows and columns of the cells.
-        place : tuple of float
-            The point in each cell, as fractions of it [-].
-        peak : float array (cells,)
-            Peaks of the solver there [-], nan where a block overturns.
+        `cells`: rows and columns; `place`: the point in each cell, as fractions of it; `peak` (cells,): peaks of the
+        solver there, nan where a block overturns.
         """
         x, levels = self.level(share) ** self.power, self.levels**self.power
         weights = [lagrange_weight(levels, 0, levels.size, k, x) for k in range(levels.size)]

@@ -6,8 +6,6 @@ from an impact on. It contains (3.10), (3.18) and (3.20) and is an independent c
 the end, published conditions of overturning without impact for three simple pulses.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 
@@ -16,9 +14,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from rocking._base.errors import number, positive
+from rocking._base.quantities import RESTITUTION
 from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking._model.checks import check, check_number
-from rocking._model.parameters import RESTITUTION
 from rocking.paper.arguments import ANY_FREQUENCY_RATIO, Array
 from rocking.paper.roots import find_root
 
@@ -29,10 +26,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 def first_uplift_phase(pulse: str | AbstractPulse, amplitude: float) -> float:
     """Phase of the pulse at which |a f| first reaches 1.
 
-    Returns
-    -------
-    float
-        phi [rad]; nan if the block never uplifts.
+    phi [rad]; nan if the block never uplifts.
     """
     shape = as_pulse(pulse)
     a = positive("amplitude", amplitude, "-")
@@ -55,7 +49,7 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
         phi at tau_0 [rad], within the pulse.
     """
     shape = as_pulse(pulse)
-    omega = check_number(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.number(frequency_ratio)
     phi0 = number("start_phase", start_phase, shape.start, shape.end, unit="rad")
     length = (shape.end - phi0) / omega
     if isinstance(shape, SinusoidalPulse):
@@ -78,12 +72,9 @@ def discounted_integral(pulse: str | AbstractPulse, frequency_ratio: float, star
 def margin_without_impact(pulse: str | AbstractPulse, amplitude: float, frequency_ratio: float) -> float:
     """Margin of overturning without impact, for any pulse.
 
-    Returns
-    -------
-    float
-        +- a * integral of f e^{-(s - tau_0)} ds - 1 [-] from uplift on, with the sign of f at uplift: positive where
-        the block overturns without impact, provided that no impact occurs before the pulse ends. -1 if there is no
-        uplift. For the sine the margin vanishes on (3.10).
+    +- a * integral of f e^{-(s - tau_0)} ds - 1 [-] from uplift on, with the sign of f at uplift: positive where the
+    block overturns without impact, provided that no impact occurs before the pulse ends. -1 if there is no uplift. For
+    the sine the margin vanishes on (3.10).
     """
     shape = as_pulse(pulse)
     a = positive("amplitude", amplitude, "-")
@@ -118,7 +109,7 @@ def margin_after_impact(
         sine the margin vanishes on (3.18) and on (3.20).
     """
     shape = as_pulse(pulse)
-    a, eta = positive("amplitude", amplitude, "-"), check_number(RESTITUTION, restitution)
+    a, eta = positive("amplitude", amplitude, "-"), RESTITUTION.number(restitution)
     phase = number("impact_phase", impact_phase, shape.start, math.inf, unit="rad")
     velocity = number("impact_velocity", impact_velocity, -math.inf, math.inf)
     forced = discounted_integral(shape, frequency_ratio, phase) if phase < shape.end else 0.0
@@ -138,19 +129,16 @@ def rectangular_amplitude(frequency_ratio: ArrayLike) -> Array:
     ndarray
         a = 1/(1 - exp(-p t_1)) [-].
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     return np.asarray(-1 / np.expm1(-np.pi / omega))
 
 
 def half_sine_amplitude(frequency_ratio: ArrayLike) -> Array:
     """Smallest amplitude at which half a sine overturns the block (Shi et al. 1996).
 
-    Returns
-    -------
-    ndarray
-        a = 1/sin(psi) [-] with omega sin(psi) - cos(psi) = exp(-(pi - psi)/omega).
+    a = 1/sin(psi) [-] with omega sin(psi) - cos(psi) = exp(-(pi - psi)/omega).
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = find_root(_half_sine, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -162,10 +150,7 @@ def _half_sine(psi: Array, omega: Array) -> Array:
 def cosine_amplitude(frequency_ratio: ArrayLike) -> Array:
     """Smallest amplitude at which one full cosine overturns the block, if no impact occurs within the pulse.
 
-    Returns
-    -------
-    ndarray
-        a = (1 + omega^2)/(1 - exp(-2 pi/omega)) [-].
+    a = (1 + omega^2)/(1 - exp(-2 pi/omega)) [-].
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     return np.asarray(-(1 + omega**2) / np.expm1(-2 * np.pi / omega))

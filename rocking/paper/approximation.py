@@ -1,7 +1,5 @@
 """Approximate impact time of case 1.1, (3.23) to (3.30): the sine is replaced by a constant and two exponentials."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -71,11 +69,8 @@ def ad_hoc_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Arra
 def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Approximate time from uplift to the first impact inside the pulse, (3.29).
 
-    Returns
-    -------
-    ndarray
-        tau [-], nan where (3.28) has no root with positive slope. Of its two roots, (3.29) takes the one with the plus
-        sign, at which theta increases; `transcendental.rising_root` shows why this root is the impact.
+    tau [-], nan where (3.28) has no root with positive slope. Of its two roots, (3.29) takes the one with the plus
+    sign, at which theta increases; `transcendental.rising_root` shows why this root is the impact.
     """
     return rising_root(*_exponential_terms(amplitude, frequency_ratio))  # (3.29)
 
@@ -83,10 +78,7 @@ def ad_hoc_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arra
 def ad_hoc_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Left side minus right side of the semi-analytical overturning condition (3.30).
 
-    Returns
-    -------
-    ndarray
-        [-], zero on the semi-analytical curve, positive where the block overturns, nan where (3.29) has no root.
+    Zero on the semi-analytical curve, positive where the block overturns, nan where (3.29) has no root [-].
     """
     a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
     tau = ad_hoc_impact_time(a, omega)

@@ -1,21 +1,24 @@
 """Arguments of the closed forms: ranges, and checks that they broadcast."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import broadcast, float_array
-from rocking._base.parameter import Parameter
-from rocking._model.checks import check
-from rocking._model.parameters import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking._base.quantity import Quantity
 
 Array = NDArray[np.float64]
 
-AMPLITUDE = Parameter(
-    "amplitude", "a", "-", 1.0, 1.0 / SLENDERNESS.lower, "both", "amplitude of the pulse over g tan(alpha)"
+AMPLITUDE = Quantity(
+    "amplitude",
+    "-",
+    "amplitude of the pulse over g tan(alpha)",
+    symbol="a",
+    lower=1.0,
+    upper=1.0 / SLENDERNESS.lower,
+    closed="both",
 )
 """Below 1 the block does not uplift."""
 
@@ -26,7 +29,7 @@ ANY_FREQUENCY_RATIO = replace(FREQUENCY_RATIO, lower=1e-12, upper=1e12)
 
 POSITIVE_RESTITUTION = replace(RESTITUTION, closed="right")
 
-TIME = Parameter("time", "tau", "-", 0.0, np.inf, "left", "time p t since uplift")
+TIME = Quantity("time", "-", "time p t since uplift", symbol="tau", lower=0.0, closed="left")
 
 _RANGES = {parameter.name: parameter for parameter in (AMPLITUDE, ANY_FREQUENCY_RATIO, RESTITUTION)}
 
@@ -34,19 +37,11 @@ _RANGES = {parameter.name: parameter for parameter in (AMPLITUDE, ANY_FREQUENCY_
 def checked(**given: ArrayLike) -> list[Array]:
     """The arguments as float64 arrays of their broadcast shape.
 
-    Parameters
-    ----------
-    **given : array_like
-        `amplitude`, `frequency_ratio` and `restitution` are checked against their ranges; others, such as times and
-        velocities, may have any value, nan included.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range, the shapes do not broadcast, or labelled arguments (xarray, pandas) differ in their
-        dimensions or indexes.
+    `amplitude`, `frequency_ratio` and `restitution` are checked against their ranges; others, such as times and
+    velocities, may have any value, nan included. Labelled arguments (xarray, pandas) have to agree in dimensions and
+    indexes.
     """
     arrays = [
-        check(_RANGES[name], value) if name in _RANGES else float_array(name, value) for name, value in given.items()
+        _RANGES[name].convert(value) if name in _RANGES else float_array(name, value) for name, value in given.items()
     ]
     return broadcast(given, arrays)

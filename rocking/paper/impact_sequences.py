@@ -16,20 +16,17 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from rocking._base.errors import InvalidArgumentError, integer
+from rocking._base.quantities import RESTITUTION
 from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse, as_pulse
-from rocking._model.checks import check_ends, check_number
-from rocking._model.parameters import RESTITUTION
+from rocking._model.checks import check_ends
 from rocking.paper.any_pulse import first_uplift_phase, margin_after_impact
 from rocking.paper.arguments import ANY_FREQUENCY_RATIO, UPLIFTING_AMPLITUDE
 
 _SAMPLES = 48
 """Points per radian of the pulse at which a change of sign of theta is looked for [-]: no two impacts are closer."""
 
-MAX_IMPACTS = 1000
-"""Most impacts that are followed [-]."""
-
-_AMPLITUDES = 401
-"""Amplitudes at which overturning is looked for first [-]."""
+MAX_IMPACTS = 1000  # most impacts that are followed [-]
+_AMPLITUDES = 401  # amplitudes at which overturning is looked for first [-]
 
 
 class Impact(NamedTuple):
@@ -73,9 +70,9 @@ def _motion(
     shape = as_pulse(pulse)
     if not isinstance(shape, SinusoidalPulse):
         raise InvalidArgumentError("pulse", shape.name, "a sum of sinusoids")
-    a = check_number(UPLIFTING_AMPLITUDE, amplitude)
-    omega = check_number(ANY_FREQUENCY_RATIO, frequency_ratio)
-    eta = check_number(RESTITUTION, restitution)
+    a = UPLIFTING_AMPLITUDE.number(amplitude)
+    omega = ANY_FREQUENCY_RATIO.number(frequency_ratio)
+    eta = RESTITUTION.number(restitution)
     most = integer("most", most, 1, MAX_IMPACTS)
     phase, y_dot = first_uplift_phase(shape, a), 0.0
     found: list[Impact] = []

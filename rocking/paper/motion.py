@@ -13,15 +13,12 @@ a = 1 the first impact follows shortly after uplift, where (3.4) as printed lose
 there.
 """
 
-from __future__ import annotations
-
 from math import factorial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking._model.checks import check
 from rocking.paper.arguments import AMPLITUDE, TIME, Array, checked
 
 
@@ -41,12 +38,9 @@ def cot_psi(a: Array) -> Array:
 def uplift_phase(amplitude: ArrayLike) -> Array:
     """Phase psi of the sine at uplift, (3.3).
 
-    Returns
-    -------
-    ndarray
-        psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
+    psi = arcsin(1/a) [rad], (0, pi/2]. The paper prints 1/alpha instead of 1/a; a is defined in (3.6).
     """
-    a = check(AMPLITUDE, amplitude)
+    a = AMPLITUDE.convert(amplitude)
     # accurate near a = 1, where arcsin(1/a) loses half the digits
     return np.asarray(np.arctan2(1.0, cot_psi(a)))  # (3.3)
 
@@ -94,10 +88,7 @@ def after_pulse_coefficients(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
 def d0_star(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """D0* by the product in the first line of (3.9); -inf where e^{p T_ex} exceeds the double range.
 
-    Returns
-    -------
-    ndarray
-        D0* [-]; the velocity at the first impact is sqrt(1 - D0*), (3.15).
+    D0* [-]; the velocity at the first impact is sqrt(1 - D0*), (3.15).
     """
     decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     with np.errstate(over="ignore"):
@@ -122,7 +113,7 @@ _SERIES_TERMS = 10
 
 def rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
     """theta/alpha [-] before any impact while the pulse acts, (3.4)."""
-    check(TIME, time)
+    TIME.convert(time)
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     Yc, Ys = arc_terms(tau, omega)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -131,7 +122,7 @@ def rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) 
 
 def angular_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
     """d(theta/alpha)/d tau [-] before any impact while the pulse acts, (3.4) and, at an impact, (3.22)."""
-    check(TIME, time)
+    TIME.convert(time)
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     _, Ys = arc_terms(tau, omega)
     decay = np.exp(-tau)
@@ -166,7 +157,7 @@ def _short_time_series(tau: Array, omega: Array) -> tuple[Array, Array]:
 
 def printed_rotation(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayLike) -> Array:
     """theta/alpha [-] before any impact, (3.4) term by term as in (3.21): inaccurate at short and at long times."""
-    check(TIME, time)
+    TIME.convert(time)
     a, omega, tau = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, time=time)
     A0, B0, C0 = coefficients(a, omega)
     forced = C0 * np.sin(omega * tau + uplift_phase(a))

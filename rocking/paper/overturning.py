@@ -8,15 +8,12 @@ is linear in s = sqrt(a^2 - 1) (see `motion`), so its inverse a(tau_i1) is expli
 one equation in tau_i1 alone. The curve is then found by a single root search, without nested iterations.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import in_range
-from rocking._model.checks import check
 from rocking.paper.arguments import ANY_FREQUENCY_RATIO, POSITIVE_RESTITUTION, Array, checked
 from rocking.paper.motion import (
     after_pulse_coefficients,
@@ -42,10 +39,7 @@ class AmplitudeInterval(NamedTuple):
 def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Margin of overturning without impact, (3.10).
 
-    Returns
-    -------
-    ndarray
-        sqrt(a^2 - 1) - a e^{-p T_ex} - omega [-]; zero on the curve, positive where the block overturns without impact.
+    sqrt(a^2 - 1) - a e^{-p T_ex} - omega [-]; zero on the curve, positive where the block overturns without impact.
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     return np.asarray(cot_psi(a) - a * np.exp(-pulse_end(a, omega)) - omega)  # (3.10), second line
@@ -54,11 +48,8 @@ def case_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
 def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """2 B_ex0/alpha [-], left side of the first line of (3.10): the block overturns without impact where it is <= 0.
 
-    Returns
-    -------
-    ndarray
-        B0* e^{p T_ex} + (omega/2) C0* [-], infinite where e^{p T_ex} exceeds the double range. In free rocking
-        B = 0 leads to the unstable equilibrium, (3.8).
+    B0* e^{p T_ex} + (omega/2) C0* [-], infinite where e^{p T_ex} exceeds the double range. In free rocking B = 0 leads
+    to the unstable equilibrium, (3.8).
     """
     _, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     with np.errstate(over="ignore"):
@@ -68,12 +59,9 @@ def growing_coefficient(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Arr
 def case_2_amplitude(frequency_ratio: ArrayLike) -> Array:
     """Smallest amplitude at which the block overturns without impact, the curve of (3.10).
 
-    Returns
-    -------
-    ndarray
-        a [-], > 1, of the shape of `frequency_ratio`. It is unique: (3.10) divided by a is monotone in psi.
+    a [-], > 1, of the shape of `frequency_ratio`. It is unique: (3.10) divided by a is monotone in psi.
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = case_2_phase(omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -91,11 +79,8 @@ def _manifold(psi: Array, omega: Array) -> Array:
 def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Margin of (3.31): sign and distance to the limit between cases 1.1 and 1.2.
 
-    Returns
-    -------
-    ndarray
-        (3.31), left side minus right side, times e^{-p T_ex} [-]: positive where the first impact is after the end of
-        the pulse or does not occur; negative where it is within the pulse.
+    (3.31), left side minus right side, times e^{-p T_ex} [-]: positive where the first impact is after the end of the
+    pulse or does not occur; negative where it is within the pulse.
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     left = 1 + omega**2 + np.sqrt(1 + (a**2 + 1) * omega**2)
@@ -105,14 +90,11 @@ def limit_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
 def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
     """Amplitude at which the first impact coincides with the end of the pulse, the curve of (3.31).
 
-    Returns
-    -------
-    ndarray
-        a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact is after the pulse (case 1.2, up to
-        `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and
-        that of case 2 agree in all printed digits.
+    a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact is after the pulse (case 1.2, up to
+    `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and that of
+    case 2 agree in all printed digits.
     """
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
     return np.asarray(1 / np.sin(psi))
 
@@ -127,14 +109,11 @@ def _limit(psi: Array, omega: Array) -> Array:
 def limit_velocity(frequency_ratio: ArrayLike) -> Array:
     """d(theta/alpha)/d tau [-] just before the impact at the end of the pulse, on the curve of (3.31).
 
-    Returns
-    -------
-    ndarray
-        [-]; where eta times this value exceeds 1 the curve separates overturning by case 1.1 from overturning by case
-        1.2; elsewhere it lies in the region where the block survives.
+    [-]; where eta times this value exceeds 1 the curve separates overturning by case 1.1 from overturning by case 1.2;
+    elsewhere it lies in the region where the block survives.
     """
     a = limit_amplitude(frequency_ratio)
-    omega = check(ANY_FREQUENCY_RATIO, frequency_ratio)
+    omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     A0, B0, C0 = coefficients(a, omega)
     grown = 1 + np.sqrt(1 - A0 * B0)  # B0* e^{p T_ex}, (3.31)
     return np.asarray((grown - A0 * np.exp(-pulse_end(a, omega)) + C0 * omega) / 2)  # (3.11)
@@ -143,11 +122,8 @@ def limit_velocity(frequency_ratio: ArrayLike) -> Array:
 def case_1_1_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Time tau_i1 from uplift to the first impact if that impact is within the pulse, the root of (3.21).
 
-    Returns
-    -------
-    ndarray
-        tau_i1 [-], nan where the pulse ends before the impact (above (3.31)); 0 for a = 1, where the block does not
-        lift off.
+    tau_i1 [-], nan where the pulse ends before the impact (above (3.31)); 0 for a = 1, where the block does not lift
+    off.
 
     Notes
     -----
@@ -203,10 +179,7 @@ def overturning_condition(
 def case_1_1_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Margin of overturning after an impact within the pulse, (3.20) at the root of (3.21).
 
-    Returns
-    -------
-    ndarray
-        [-], zero on the curve, positive where the block overturns, nan where the pulse ends before the impact.
+    Zero on the curve, positive where the block overturns, nan where the pulse ends before the impact [-].
     """
     tau = case_1_1_impact_time(amplitude, frequency_ratio)
     velocity = case_1_1_impact_velocity(amplitude, frequency_ratio)
@@ -288,7 +261,7 @@ def case_1_1_end(restitution: ArrayLike) -> Array:
         branch of (3.18) and the curve (3.20) meet there on the limit (3.31); for smaller eta the curve (3.20) has a
         turning point there.
     """
-    eta = check(POSITIVE_RESTITUTION, restitution)
+    eta = POSITIVE_RESTITUTION.convert(restitution)
     return find_root(_best_condition, np.full_like(eta, 0.05), np.full_like(eta, 8.0), eta)
 
 
@@ -320,11 +293,8 @@ def case_1_2_residual(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: Ar
 def case_1_2_impact_time(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Time tau_i2 from uplift to the first impact if that impact is after the pulse, (3.13).
 
-    Returns
-    -------
-    ndarray
-        tau_i2 [-]: ln[(1 + sqrt(1 - D0*))/(B0* + (omega/2) C0* e^{-p T_ex})]; nan where the block overturns first.
-        Physical where it is at least p T_ex, that is above (3.31).
+    tau_i2 [-]: ln[(1 + sqrt(1 - D0*))/(B0* + (omega/2) C0* e^{-p T_ex})]; nan where the block overturns first. Physical
+    where it is at least p T_ex, that is above (3.31).
     """
     decaying, growing = after_pulse_coefficients(amplitude, frequency_ratio)
     T = pulse_end(amplitude, frequency_ratio)
@@ -347,12 +317,8 @@ def free_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike, time: ArrayL
 def impact_velocity_squared(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """Square of the velocity at an impact after the pulse, 1 - D0* of (3.15).
 
-    Returns
-    -------
-    ndarray
-        (d(theta/alpha)/d tau)^2 [-]; infinite where e^{p T_ex} exceeds the double range. For short pulses D0* is close
-        to one; 1 - D0* is then computed as the energy of free rocking, v_ex^2 - y_ex (y_ex + 2), without
-        cancellation.
+    (d(theta/alpha)/d tau)^2 [-]; infinite where e^{p T_ex} exceeds the double range. For short pulses D0* is close to
+    one; 1 - D0* is then computed as the energy of free rocking, v_ex^2 - y_ex (y_ex + 2), without cancellation.
     """
     a, omega = checked(amplitude=amplitude, frequency_ratio=frequency_ratio)
     y, v = state_at_pulse_end(a, omega)
@@ -371,11 +337,8 @@ def case_1_2_impact_velocity(amplitude: ArrayLike, frequency_ratio: ArrayLike) -
 def case_1_2_margin(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Margin of overturning after an impact that follows the pulse, (3.16) to (3.18).
 
-    Returns
-    -------
-    ndarray
-        eta v_i2 - 1 = B_i2 [-], zero on (3.18), positive where the block overturns; valid between `limit_amplitude`
-        and `case_2_amplitude` only.
+    eta v_i2 - 1 = B_i2 [-], zero on (3.18), positive where the block overturns; valid between `limit_amplitude` and
+    `case_2_amplitude` only.
     """
     a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
     with np.errstate(invalid="ignore"):

@@ -1,7 +1,5 @@
 """Peak rotation of a block that survives and whose first impact is after the pulse, (4.12) to (4.16)."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -43,12 +41,9 @@ def _peak(squared: Array) -> Array:
 def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Peak rotation theta_m/alpha after the first impact, (4.13): closed-form rocking spectrum of the sine.
 
-    Returns
-    -------
-    ndarray
-        [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2, and above (3.10),
-        where it overturns without impact. Exact where the first impact is after the pulse (above (3.31)) and the
-        rotation before it is smaller; approximate elsewhere.
+    [-], [0, 1]; nan where (4.13) has no real root, i.e. where the block overturns by case 1.2, and above (3.10), where
+    it overturns without impact. Exact where the first impact is after the pulse (above (3.31)) and the rotation before
+    it is smaller; approximate elsewhere.
     """
     a, omega, eta = checked(amplitude=amplitude, frequency_ratio=frequency_ratio, restitution=restitution)
     return _peak(_velocity_squared(a, omega, eta))  # (4.13), first form
@@ -57,10 +52,7 @@ def case_1_2_peak(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution:
 def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, restitution: ArrayLike) -> Array:
     """Peak rotation g theta_m/a_g after the first impact [-], second form of (4.13), as in figure 8.
 
-    Returns
-    -------
-    ndarray
-        [-]; nan as in `case_1_2_peak`.
+    [-]; nan as in `case_1_2_peak`.
     """
     peak = case_1_2_peak(amplitude, frequency_ratio, restitution)
     return np.asarray(peak / np.asarray(amplitude))  # (4.13), second form
@@ -69,10 +61,7 @@ def case_1_2_peak_by_pulse(amplitude: ArrayLike, frequency_ratio: ArrayLike, res
 def scale_function(amplitude: ArrayLike, frequency_ratio: ArrayLike) -> Array:
     """f(a, omega) of the scale law (4.16) [-] in case 1.2: 1 - D0*.
 
-    Returns
-    -------
-    ndarray
-        [-], >= 0; nan above (3.10), where the block overturns without impact.
+    [-], >= 0; nan above (3.10), where the block overturns without impact.
 
     Notes
     -----

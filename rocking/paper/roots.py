@@ -3,8 +3,6 @@
 The bracketed roots and maxima are those of many scalar functions at once; nan where there is none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -56,19 +54,9 @@ Function = Callable[..., Array]
 
 
 def find_root(function: Function, low: Array, high: Array, *args: Array) -> Array:
-    """Root of `function(x, *args)` in [low, high] to rounding error (Chandrupatla), element by element.
+    """Root of the vectorised `function(x, *args)` in [low, high] to rounding error (Chandrupatla), element by element.
 
-    Parameters
-    ----------
-    function : callable
-        Vectorised.
-    low, high : ndarray
-        Brackets; all arrays broadcast. An infinite or nan limit is treated as no bracket.
-
-    Returns
-    -------
-    ndarray
-        nan where the function has the same sign at both ends.
+    Nan where the function has the same sign at both ends; an infinite or nan limit is no bracket.
     """
     low, high, *args_ = np.broadcast_arrays(low, high, *args)
     if low.size == 0:

@@ -3,16 +3,13 @@
 The functions work on peaks that the solver or a closed form computed along an axis of restitutions.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import InvalidArgumentError, float_array, integer
-from rocking._model.checks import check, check_number
-from rocking._model.parameters import RESTITUTION
+from rocking._base.quantities import RESTITUTION
 from rocking.paper.arguments import Array
 
 
@@ -42,7 +39,7 @@ def scale_law_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, ref
         If `reference` is not one of the restitutions or the shapes do not match.
     """
     peak, eta = _aligned(peak_rotation, restitution, axis)
-    at = np.flatnonzero(np.isclose(eta, check_number(RESTITUTION, reference, "reference"), rtol=0.0, atol=1e-9))
+    at = np.flatnonzero(np.isclose(eta, RESTITUTION.number(reference, "reference"), rtol=0.0, atol=1e-9))
     if at.size == 0:
         raise InvalidArgumentError("reference", reference, f"one of the restitutions {eta.tolist()}")
     scaled = peak / eta**2  # f(a, omega)/2 of (4.16) if the law is exact
@@ -93,7 +90,7 @@ def _aligned(peak_rotation: ArrayLike, restitution: ArrayLike, axis: int) -> tup
     """Peaks with restitution as the last axis, and the restitutions."""
     peak = float_array("peak_rotation", peak_rotation)
     peak = np.moveaxis(peak, integer("axis", axis, -peak.ndim, peak.ndim - 1), -1)
-    eta = check(replace(RESTITUTION, closed="right"), restitution)
+    eta = replace(RESTITUTION, closed="right").convert(restitution)
     if eta.shape != peak.shape[-1:]:
         raise InvalidArgumentError("restitution", eta.shape, f"one value for each of {peak.shape[-1]} peaks")
     return peak, eta

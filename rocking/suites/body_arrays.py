@@ -1,7 +1,5 @@
 """Fragility of arrays of bodies: labelled by their dimensions, and lazy where they are backed by dask."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
@@ -37,21 +35,11 @@ OWN_DIMENSIONS = ("intensity", "record", "demand", "model")
 def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     """The fragility of each body of an array, over the dimensions of its labelled arguments in place of `block`.
 
-    Parameters
-    ----------
-    analyse : callable
-        Gives the fragility, over `block`, of a sequence of blocks; or of bodies (bodies,) if one of all has two
-        different edges.
-    body : RigidBody
-        Of unlabelled arrays the axes are dim_0, dim_1, ...; the result is lazy, in the
-        chunks of the arguments, where one of them is backed by dask.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a dimension of the body is one of the result.
+    `analyse` gives the fragility, over `block`, of a sequence of blocks; or of bodies (bodies,) if one of all has two
+    different edges. Axes of unlabelled arrays are dim_0, dim_1, ...; the result is lazy, in the chunks of the
+    arguments, where one of them is backed by dask. A dimension of the body must not be one of the result.
     """
-    labels, equal = body.labels, _has_equal_edges(body)
+    labels, equal = body.labels, has_equal_edges(body)
     plain = {name: value for name, value in body.parameters.items() if name not in labels}
     # a variable of the name of a dimension would become its coordinate
     given = xr.Dataset({f"of body: {name}": value for name, value in broadcast_by_name(labels).items()})
@@ -61,9 +49,9 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
 
     def part(chunk: xr.Dataset) -> xr.Dataset:
         with without_place():
-            bodies = RigidBody(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
+            bodies = body.changed(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
         names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
-        found = _over(analyse(_blocks_of(bodies) if equal else _in_a_row(bodies)), names, bodies.shape).assign_coords(
+        found = _over(analyse(blocks_of(bodies) if equal else _in_a_row(bodies)), names, bodies.shape).assign_coords(
             chunk.coords
         )
         return with_index(found, names[-1], body.index) if names else found
@@ -75,21 +63,22 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     return xr.map_blocks(part, given, template=template.chunk(given.chunksizes))
 
 
-def _has_equal_edges(bodies: RigidBody) -> bool:
+def has_equal_edges(bodies: RigidBody) -> bool:
+    """Whether all bodies have two equal edges."""
     edge = bodies.right
-    return bool(
+    return bodies.sides == "both" and bool(
         np.all((bodies.left.alpha == edge.alpha) & (bodies.left.frequency_parameter == edge.frequency_parameter))
     )
 
 
 def _in_a_row(bodies: RigidBody) -> RigidBody:
     """The bodies as an array (bodies,), in C order."""
-    return RigidBody(
+    return bodies.changed(
         **{name: np.broadcast_to(value, bodies.shape).ravel() for name, value in bodies.parameters.items()}
     )
 
 
-def _blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
+def blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
     """Bodies with equal edges as blocks, in C order: rectangles where all are, else blocks of the same alpha and p."""
     edge, shape = bodies.right, bodies.shape
     uniform = np.hypot(bodies.width, bodies.top_height) / math.sqrt(12.0)

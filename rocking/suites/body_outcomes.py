@@ -4,8 +4,6 @@ A record and its mirror image, both signs of its acceleration, overturn such a b
 side from which the ground moves first is a matter of chance. Both count, each with half the weight of the record.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -13,19 +11,17 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
-from rocking._dimensional.problem import Problem
+from rocking._dimensional.problem import Problem, spread_restitution
 from rocking._dimensional.response import respond
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.intensity import measure_of
 from rocking.suites.outcomes import FIELDS, check_levels, checked_levels, checked_records, labelled_outcomes
 
-SIGNS = 2
-"""Motions of one record: as recorded and mirrored [-]."""
+SIGNS = 2  # motions of one record: as recorded and mirrored [-]
 
 BODY_MEASURES = "pga", "pgv", "pga_ratio"
 """Measures that two different edges leave defined; uplift is that of the weaker edge."""
@@ -42,13 +38,9 @@ def body_outcomes(
 ) -> xr.Dataset:
     """The response of bodies (bodies,) to every record and its mirror image at every level.
 
-    The arguments are those of `rocking.fragility`. The result is that of `rocking.suites.outcomes.suite_outcomes`, with
-    the mirror image of each record after it, and with other properties of the bodies.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument that is not as described, and for a measure that refers to one slenderness angle.
+    The arguments are those of `rocking.fragility`, without measures that refer to one slenderness angle. The result is
+    that of `rocking.suites.outcomes.suite_outcomes`, with the mirror image of each record after it, and with other
+    properties of the bodies.
     """
     chosen = measure_of(measure)
     if measure not in BODY_MEASURES:
@@ -57,8 +49,9 @@ def body_outcomes(
         )
     motions = [one for record in checked_records(records) for one in (record, mirrored(record))]
     levels = checked_levels(intensity, chosen)
-    eta = None if restitution == "momentum" else np.array(check_number(RESTITUTION, restitution))
-    column = RigidBody(
+    spread = spread_restitution(body, restitution)
+    eta = None if isinstance(spread, str) and spread == "momentum" else np.array(RESTITUTION.number(spread))
+    column = body.changed(
         **{name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
     )
     shape = (*body.shape, levels.size, len(motions))

@@ -4,8 +4,6 @@ A configuration is a mapping, as read from a file; `docs/fragility.md` lists its
 out: `DEFAULTS`, and what the files of the records state, `STATED_BY_FILES`.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Mapping
@@ -18,12 +16,14 @@ from numpy.typing import NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
+from rocking._base.quantities import RESTITUTION
+from rocking._dimensional.body_kinds import body
+from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
-from rocking._model.block import RectangularBlock
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
+from rocking._model.block import AbstractBlock
+from rocking.suites.body_arrays import blocks_of, has_equal_edges
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES
@@ -45,11 +45,8 @@ STATED_BY_FILES: dict[str, Any] = dict.fromkeys(
 )
 """The same in its section `records`."""
 
-MAX_POINTS = 10_000
-"""Most levels, and most points of one axis of the map."""
-
-MAX_CELLS = 1_000_000
-"""Most points of the map."""
+MAX_POINTS = 10_000  # most levels, and most points of one axis of the map
+MAX_CELLS = 1_000_000  # most points of the map
 
 
 @dataclass(frozen=True)
@@ -66,13 +63,7 @@ class RecordFiles:
     skip: int | None = None
 
     def paths(self) -> list[Path]:
-        """The files, in the order of their names.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If there is none.
-        """
+        """The files, at least one, in the order of their names."""
         found = sorted(path for path in self.folder.glob(self.pattern) if path.is_file()) if self.pattern else []
         if not found:
             raise InvalidArgumentError(
@@ -83,13 +74,7 @@ class RecordFiles:
         return found
 
     def read(self, path: Path) -> Record:
-        """The motion of a file, without its baseline if an order is given; named after the file, without its suffix.
-
-        Raises
-        ------
-        InvalidArgumentError, RecordFileError
-            As `rocking.read_record`.
-        """
+        """The motion of a file, without its baseline if an order is given; named after the file, without its suffix."""
         motion = parse_record(  # read_record would take a file of the name `vertical` in the working directory
             read_content("path", path),
             path.name,
@@ -106,37 +91,19 @@ class RecordFiles:
 
 @dataclass(frozen=True, eq=False)
 class BlockMap(EqualByValue):
-    """Grid of sizes and shapes at one level of intensity.
+    """Grid of sizes and shapes at one level of intensity."""
 
-    Attributes
-    ----------
-    intensity : float
-        The level, in the unit of the measure.
-    half_diagonal : array
-        R [m], ascending.
-    alpha : array
-        Slenderness angles [rad], ascending.
-    """
-
-    intensity: float
-    half_diagonal: Array
-    alpha: Array
+    intensity: float  # the level, in the unit of the measure
+    half_diagonal: Array  # R [m], ascending
+    alpha: Array  # slenderness angles [rad], ascending
 
 
 @dataclass(frozen=True, eq=False)
 class Sensitivity(EqualByValue):
-    """What `rocking.suites.suite_sensitivity` is asked for.
+    """What `rocking.suites.suite_sensitivity` is asked for."""
 
-    Attributes
-    ----------
-    intensity : array
-        Levels, ascending, in the unit of the measure.
-    restitution_step : float
-        Change of the coefficient of restitution [-].
-    """
-
-    intensity: Array
-    restitution_step: float
+    intensity: Array  # levels, ascending, in the unit of the measure
+    restitution_step: float  # change of the coefficient of restitution [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +112,7 @@ class SuiteConfiguration(EqualByValue):
 
     name: str
     records: RecordFiles
-    blocks: tuple[RectangularBlock, ...]
+    blocks: tuple[AbstractBlock, ...]
     restitution: str | float
     measure: str
     intensity: Array
@@ -161,20 +128,10 @@ class SuiteConfiguration(EqualByValue):
 
 
 def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfiguration:
-    """Check a configuration.
+    """Check a configuration as described above; `records.folder` is relative to `folder`, that of its file.
 
-    Parameters
-    ----------
-    given : mapping
-        As described above.
-    folder : Path
-        Folder of its file, to which `records.folder` is relative.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For the first key that is missing, unknown or has an invalid value; `parameter` is the key, such as
-        `map.alpha_deg`.
+    Raises `InvalidArgumentError` for the first key that is missing, unknown or has an invalid value; `parameter` is the
+    key, such as `map.alpha_deg`.
     """
     given = _with_defaults(given, DEFAULTS)
     _keys("suite", given, SuiteConfiguration.__annotations__)
@@ -187,9 +144,7 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         name=_name(given["name"]),
         records=_record_files(given["records"], folder),
         blocks=_blocks(given["blocks"]),
-        restitution="momentum"
-        if given["restitution"] == "momentum"
-        else check_number(RESTITUTION, given["restitution"]),
+        restitution="momentum" if given["restitution"] == "momentum" else RESTITUTION.number(given["restitution"]),
         measure=measure,
         intensity=_levels("intensity", given["intensity"], logarithmic=True),
         demand=tuple(check_demands(given["demand"])),
@@ -248,16 +203,24 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
     )
 
 
-def _blocks(given: Any) -> tuple[RectangularBlock, ...]:
+def _blocks(given: Any) -> tuple[AbstractBlock, ...]:
     if not isinstance(given, list) or not given:
-        raise InvalidArgumentError("blocks", given, "a list of width and height [m]")
+        raise InvalidArgumentError("blocks", given, "a list of bodies, such as their width and height [m]")
     return tuple(_block(f"blocks[{place}]", item) for place, item in enumerate(given))
 
 
-def _block(section: str, given: Any) -> RectangularBlock:
-    """A block of its width and height."""
-    _keys(section, given, ("width", "height"))
-    return RectangularBlock(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
+def _block(section: str, given: Any) -> AbstractBlock:
+    """A body with equal edges from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
+    try:
+        made = body(given)
+    except InvalidArgumentError as error:
+        place = section if error.parameter == "body" else f"{section}.{error.parameter}"
+        raise InvalidArgumentError(place, error.value, error.allowed) from None
+    if isinstance(made, AbstractBlock):
+        return made
+    if not (isinstance(made, RigidBody) and has_equal_edges(made)):
+        raise InvalidArgumentError(section, given, "a body with equal edges")
+    return blocks_of(made)[0]
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:

@@ -9,8 +9,6 @@ Baker J. W. (2015), Efficient analytical fragility function fitting using dynami
 Spectra 31(1), 579-599.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,25 +22,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Link:
-    """A distribution, symmetric about 0, whose logarithm is concave.
+    """A distribution, symmetric about 0, whose logarithm is concave."""
 
-    Attributes
-    ----------
-    cdf, log_cdf : callable
-        F(z) and ln F(z).
-    slope : callable
-        d ln F/dz.
-    curvature : callable
-        -d2 ln F/dz2, >= 0, from z and the slope at z.
-    deviation : float
-        Its standard deviation [-].
-    """
-
+    # cdf, log_cdf: F(z) and ln F(z)
     cdf: Callable[[Array], Array]
     log_cdf: Callable[[Array], Array]
-    slope: Callable[[Array], Array]
-    curvature: Callable[[Array, Array], Array]
-    deviation: float
+    slope: Callable[[Array], Array]  # d ln F/dz
+    curvature: Callable[[Array, Array], Array]  # -d2 ln F/dz2, >= 0, from z and the slope at z
+    deviation: float  # its standard deviation [-]
 
 
 def _normal_slope(z: Array) -> Array:

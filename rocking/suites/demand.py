@@ -3,8 +3,6 @@
 Separate from `fragility`, so that a configuration is checked without the imports of the statistics.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np
@@ -21,13 +19,7 @@ def label(limit: str | float) -> str:
 
 
 def check_demands(demand: str | float | Iterable[str | float]) -> list[str | float]:
-    """The limit states, thresholds as floats.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If one is not allowed, there is none, or two are equal.
-    """
+    """The limit states, all different, thresholds as floats."""
     given = [demand] if isinstance(demand, str) or np.ndim(demand) == 0 else list(demand)  # type: ignore[arg-type]
     found: list[str | float] = []
     for limit in given:

@@ -20,8 +20,6 @@ Biometrics Bulletin 2(6), 110-114. Clopper C. J., Pearson E. S. (1934), The use 
 illustrated in the case of the binomial, Biometrika 26(4), 404-413.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import IntEnum
@@ -37,8 +35,7 @@ from rocking.suites.curve import LINKS, Link, curve_probability
 
 Array = NDArray[np.float64]
 
-LARGEST_SLOPE = 1e8
-"""b at which a fit counts as a step [-]; it is reached only by data that are separated to rounding."""
+LARGEST_SLOPE = 1e8  # b at which a fit counts as a step [-]; it is reached only by data that are separated to rounding
 
 
 class FitStatus(IntEnum):
@@ -67,51 +64,27 @@ _SENTENCES = {
 
 @dataclass(frozen=True)
 class CurveFit:
-    """A fitted fragility curve. Ends of intervals are 0 or infinite where the data do not bound them.
+    """A fitted fragility curve. Ends of intervals are 0 or infinite where the data do not bound them."""
 
-    Attributes
-    ----------
-    status : FitStatus
-        Whether there is a curve; the numbers below are nan where there is none.
-    median : float
-        Intensity of probability 1/2, in the unit of the intensity.
-    median_interval : (float, float)
-        Its confidence interval. Without a fitted curve it is the distribution-free one: the median is above the levels
-        at which the binomial interval is below 1/2, and below those at which it is above.
-    dispersion : float
-        Standard deviation of the logarithm of the intensity at which the limit state is reached [-]: beta of the
-        lognormal curve, s pi/sqrt(3) of the logistic one. 0 for a step.
-    dispersion_interval : (float, float)
-        Its confidence interval.
-    log_likelihood : float
-        ln of the likelihood of all outcomes, taken as independent [-].
-    deviance : float
-        Twice what ln of the likelihood lacks of that of the observed fractions [-], >= 0.
-    largest_deviation : float
-        Largest difference of the curve from the observed fraction at a level [-].
-    """
-
-    status: FitStatus
-    median: float
+    status: FitStatus  # whether there is a curve; the numbers below are nan where there is none
+    median: float  # intensity of probability 1/2, in the unit of the intensity
+    # its confidence interval. Without a fitted curve it is the distribution-free one: the median is above the
+    # levels at which the binomial interval is below 1/2, and below those at which it is above
     median_interval: tuple[float, float]
+    # standard deviation of the logarithm of the intensity at which the limit state is reached [-]: beta of the
+    # lognormal curve, s pi/sqrt(3) of the logistic one. 0 for a step
     dispersion: float
-    dispersion_interval: tuple[float, float]
-    log_likelihood: float
-    deviance: float
-    largest_deviation: float
+    dispersion_interval: tuple[float, float]  # its confidence interval
+    log_likelihood: float  # ln of the likelihood of all outcomes, taken as independent [-]
+    deviance: float  # twice what ln of the likelihood lacks of that of the observed fractions [-], >= 0
+    largest_deviation: float  # largest difference of the curve from the observed fraction at a level [-]
 
 
 def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple[Array, Array]:
     """Clopper-Pearson intervals of probabilities [-], which cover with the given confidence at least.
 
-    Parameters
-    ----------
-    count : array
-        Successes, 0 to `trials`, any shape; a fraction where trials succeed in part.
-    trials : int
-        Trials of each, > 0.
-    confidence : float
-        [-], (0, 1).
+    `count`: successes, 0 to `trials`, any shape; a fraction where trials succeed in part. `trials`: trials of each, >
+    0. `confidence`: [-], (0, 1).
     """
     successes, tail = np.asarray(count), 0.5 * (1.0 - confidence)
     with np.errstate(invalid="ignore"):
@@ -125,7 +98,7 @@ def counted(
 ) -> dict[str, tuple[NDArray[Any], str]]:
     """Number and fraction of the motions, the last axis, that do something, with interval; each with its meaning.
 
-    `signs` motions after each other are one record; the interval is that of so many fewer independent trials.
+    `signs` consecutive motions are one record and count as one independent trial of the interval.
     """
     count, trials = reached.sum(axis=-1), reached.shape[-1]
     low, high = binomial_interval(count / signs, trials // signs, confidence)
@@ -148,20 +121,10 @@ def fit_curve(
 ) -> CurveFit:
     """Fit a fragility curve to the outcomes of records at levels.
 
-    Parameters
-    ----------
-    reached : bool array, (levels, records)
-        Whether the limit state is reached.
-    intensity : float array, (levels,)
-        Levels, > 0.
-    model : {"lognormal", "logistic"}
-        Kind of curve.
-    confidence : float
-        Of the intervals [-], (0, 1).
-    falling : bool
-        Whether the probability falls with the intensity; the dispersion is then negative.
-    signs : int
-        Outcomes after each other that belong to one record and count as a share of it: 2 with its mirror image [-].
+    `reached` (levels, records): whether the limit state is reached. `intensity` (levels,): levels, > 0. `model`
+    {"lognormal", "logistic"}: kind of curve. `confidence`: of the intervals [-], (0, 1). `falling`: whether the
+    probability falls with the intensity; the dispersion is then negative. `signs`: outcomes after each other that
+    belong to one record and count as a share of it: 2 with its mirror image [-].
     """
     outcomes = np.asarray(reached, dtype=bool)
     records = outcomes.shape[1] // signs
@@ -278,19 +241,9 @@ def _covariance(design: Array, curvature: Array, slope: Array) -> Array | None:
     """Covariance (2, 2) of (a, b) when records are independent and the levels of a record need not be.
 
     The jackknife over records with one Newton step for each: the change of (a, b) without record i is the inverse of
-    the information of the others times the score of i.
-
-    Parameters
-    ----------
-    design : (2, levels) array
-        1 and x.
-    curvature, slope : (levels, records) arrays
-        Of the logarithm of the likelihood of each outcome, by z.
-
-    Returns
-    -------
-    array or None
-        None where the other records do not determine (a, b).
+    the information of the others times the score of i. `design` (2, levels): 1 and x; `curvature`, `slope` (levels,
+    records): of the logarithm of the likelihood of each outcome, by z. None where the other records do not determine
+    (a, b).
     """
     records = slope.shape[1]
     own = np.einsum("al,bl,lr->rab", design, design, curvature)

@@ -6,8 +6,6 @@ level. The curve of first exceedance, in which a record counts from the lowest l
 state, is given for comparison only: it is the usual result of incremental dynamic analysis, and its median is too low.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -76,7 +74,7 @@ def fragility(
     measure : str
         "pga" [m/s2], "pgv" [m/s], "pga_ratio" PGA/(g tan alpha), "pgv_ratio" p PGV/(g tan alpha) or "frequency_ratio"
         omega_p/p: see `rocking.suites.intensity`. The last two are those of blocks with equal edges.
-    restitution : "momentum" or float
+    restitution : "momentum", "kalliontzis(k=...)" or float
         (2.4), 0 where that is negative; or eta [-], [0, 1]. An `Object` may have its own, which a number replaces.
     demand : "overturning", "alpha", a number, or a sequence of these
         The limit state: final overturning; passage of alpha at some time; max |theta|/alpha above a threshold [-],
@@ -142,23 +140,11 @@ def fragility(
 
 
 def fragility_of_outcomes(
-    outcomes: xr.Dataset,
-    demand: Sequence[str | float] = ("overturning",),
-    confidence: float = 0.95,
-    signs: int = 1,
+    outcomes: xr.Dataset, demand: Sequence[str | float] = ("overturning",), confidence: float = 0.95, signs: int = 1
 ) -> xr.Dataset:
-    """Counts, intervals and fitted curves from the outcomes of a suite, as `fragility` describes them.
+    """Counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
 
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.outcomes.suite_outcomes`.
-    demand : sequence
-        Limit states.
-    confidence : float
-        Of all intervals [-], (0, 1).
-    signs : int
-        Columns after each other that belong to one record: 2 with its mirror image.
+    `signs`: columns after each other that belong to one record, 2 with its mirror image.
     """
     limits = check_demands(list(demand))
     levels = outcomes["intensity"].values

@@ -10,8 +10,6 @@ Cornell C. A. (1968), Engineering seismic risk analysis, Bulletin of the Seismol
 1583-1606. McGuire R. K. (2004), Seismic hazard and risk analysis, Earthquake Engineering Research Institute.
 """
 
-from __future__ import annotations
-
 import math
 from os import PathLike
 from typing import Any, TypeAlias
@@ -28,16 +26,14 @@ from rocking.suites.hazard_files import hazard_arrays
 
 Array = NDArray[np.float64]
 
-STEP = 0.02
-"""Largest part of ln x that is integrated at once [-], by `NODES` Gauss points."""
+STEP = 0.02  # largest part of ln x that is integrated at once [-], by `NODES` Gauss points
 
 NODES = 4
 
 NARROW, PARTS = 0.1, np.linspace(-8.0, 8.0, 65)
 """Dispersion below which the parts are divided around the median [-], and where, in dispersions from it."""
 
-NEGLIGIBLE = 0.01
-"""Share of the rate that intensities below the hazard curve may add without a word [-]."""
+NEGLIGIBLE = 0.01  # share of the rate that intensities below the hazard curve may add without a word [-]
 
 
 Hazard: TypeAlias = "str | PathLike[str] | xr.DataArray | tuple[ArrayLike, ArrayLike]"
@@ -101,21 +97,10 @@ def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
 
 
 def curve_rates(model: str, x: Array, rates: Array, median: Array, dispersion: Array) -> tuple[Array, Array]:
-    """Bounds of the annual rate at which curves reach their limit states, nan without a curve [1/year].
+    """Bounds of the annual rate at which curves reach their limit states, at least and at most, nan without a curve
+    [1/year].
 
-    Parameters
-    ----------
-    model : str
-        Kind of the curves.
-    x, rates : float array
-        The hazard curve.
-    median, dispersion : float array (...)
-        Of the curves.
-
-    Returns
-    -------
-    (float array (...), float array (...))
-        At least and at most, see `annual_rate`.
+    `x`, `rates`: the hazard curve; `median`, `dispersion` (...): of the curves of kind `model`. See `annual_rate`.
     """
     weights, nodes = hazard_quadrature(x, rates)
     found = np.asarray(curve_probability(model, nodes, median[..., None], dispersion[..., None]) @ weights)

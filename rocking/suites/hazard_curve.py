@@ -3,8 +3,6 @@
 Separate from `hazard`, so that a configuration is checked without the imports of the statistics.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -17,13 +15,7 @@ RANGE = 1e-30, 1e30
 
 
 def check_hazard_curve(hazard: tuple[ArrayLike, ArrayLike]) -> tuple[Array, Array]:
-    """Intensities and annual rates of a hazard curve, as `annual_rate` describes them.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If they are not.
-    """
+    """Intensities and annual rates of a hazard curve, as `annual_rate` describes them."""
     if len(hazard) != 2:
         raise InvalidArgumentError("hazard", f"{len(hazard)} arrays", "intensities and annual rates")
     x = in_range("hazard intensity", hazard[0], *RANGE)

@@ -12,8 +12,6 @@ the top with the rate zero, and at the bottom with the probability one, say noth
 in g and PGV in cm/s in those of the services.
 """
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Iterator, Sequence
@@ -39,8 +37,7 @@ LABELS = {"Peak Ground Acceleration": "PGA", "Peak Ground Velocity": "PGV"}
 
 OWN = "two columns with the header `pga [g],annual rate [1/year]`"
 
-MAX_BYTES = 10_000_000
-"""Largest file that is read."""
+MAX_BYTES = 10_000_000  # largest file that is read
 
 
 def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
@@ -88,17 +85,7 @@ def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
 def hazard_arrays(hazard: Any, measure: str | None = None) -> tuple[ArrayLike, ArrayLike]:
     """Intensities and annual rates of a hazard curve in any form: a file, a result of `read_hazard`, or two arrays.
 
-    Parameters
-    ----------
-    hazard : path, xarray.DataArray or pair of arrays
-        The curve.
-    measure : str, optional
-        That of the fragility, with which a curve that states one has to agree.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is nothing of these, of another measure, or a file that `read_hazard` refuses.
+    `measure` is that of the fragility, with which a curve that states one has to agree.
     """
     curve = read_hazard(hazard) if isinstance(hazard, str | PathLike) else hazard
     if isinstance(curve, xr.DataArray):

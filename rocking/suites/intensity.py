@@ -19,8 +19,6 @@ Dimitrakopoulos E. G., Paraskeva T. S. (2015), Dimensionless fragility curves fo
 excitations, Earthquake Engineering & Structural Dynamics 44(12), 2015-2033.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,26 +30,13 @@ from rocking._model.block import AbstractBlock
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of intensity.
+    """A measure of intensity."""
 
-    Attributes
-    ----------
-    name : str
-        As in the signature of `rocking.fragility`.
-    unit : str
-        As CF writes it; "1" for a number.
-    meaning : str
-        In a few words.
-    of : callable
-        Its value > 0 from a record and a block.
-    scales_amplitude : bool
-        Whether a level is reached by scaling the amplitude of the record; else by changing the size of the block.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    of: Callable[[Record, AbstractBlock], float]
+    name: str  # as in the signature of `rocking.fragility`
+    unit: str  # as CF writes it; "1" for a number
+    meaning: str  # in a few words
+    of: Callable[[Record, AbstractBlock], float]  # its value > 0 from a record and a block
+    # whether a level is reached by scaling the amplitude of the record; else by changing the size of the block
     scales_amplitude: bool = True
 
 
@@ -83,11 +68,5 @@ MEASURES = {
 
 
 def measure_of(name: str) -> Measure:
-    """The measure of that name.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If there is none.
-    """
+    """The measure of that name."""
     return MEASURES[one_of("measure", name, MEASURES)]

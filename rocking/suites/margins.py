@@ -1,13 +1,12 @@
 """The mildest intensity at which each record of a suite overturns each block, found between the levels."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.scan import RESOLUTION, lowest_overturning
-from rocking._dimensional.problem import HIGHEST_SCALE, uplift_scale
+from rocking._dimensional.problem import uplift_scale
 from rocking._dimensional.thresholds import block_lines
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
@@ -18,25 +17,12 @@ from rocking.suites.outcomes import Suite
 def with_margins(
     outcomes: xr.Dataset, suite: Suite, *, threads: int | None = None, stop: StopFlag | None = None
 ) -> xr.Dataset:
-    """Outcomes with the mildest intensity at which each record overturns each block.
+    """Outcomes of `suite_outcomes` with `overturning_intensity` (block, record), nan where the block survives all.
 
-    From uplift on, or from the mildest level if the measure is a size of the block, intensities are searched up to the
-    first level at which the block overturns, or to the last one, by `rocking._boundary.scan.lowest_overturning`. A
-    range narrower than its resolution can be missed unless a level lies in it.
-
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.outcomes.suite_outcomes` for this suite.
-    suite : Suite
-        Checked arguments.
-    threads, stop
-        As for `rocking.fragility`.
-
-    Returns
-    -------
-    xarray.Dataset
-        The outcomes, and `overturning_intensity` (block, record) in the unit of the measure, nan where it survives all.
+    The mildest intensity at which each record overturns each block, in the unit of the measure. From uplift on, or from
+    the mildest level if the measure is a size of the block, intensities are searched up to the first level at which the
+    block overturns, or to the last one, by `rocking._boundary.scan.lowest_overturning`. A range narrower than its
+    resolution can be missed unless a level lies in it.
     """
     overturned = outcomes["overturned"].transpose("block", "intensity", "record").values.astype(bool)
     found = np.array(

@@ -1,7 +1,5 @@
 """Outcomes of blocks under the records of a suite, each at several levels of intensity."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -57,27 +55,13 @@ RECORD_COORDINATES: dict[str, tuple[str, str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Suite:
-    """Arguments of a fragility analysis, checked.
+    """Arguments of a fragility analysis, checked."""
 
-    Attributes
-    ----------
-    records : tuple of Record
-        One or more.
-    blocks : tuple of Block
-        One or more.
-    levels : (levels,) array
-        Intensities, > 0, ascending, in the unit of the measure.
-    measure : Measure
-        Measure of intensity.
-    restitution : (blocks,) array
-        eta [-] of each block.
-    """
-
-    records: tuple[Record, ...]
-    blocks: tuple[AbstractBlock, ...]
-    levels: Array
-    measure: Measure
-    restitution: Array
+    records: tuple[Record, ...]  # one or more
+    blocks: tuple[AbstractBlock, ...]  # one or more
+    levels: Array  # (levels,) intensities, > 0, ascending, in the unit of the measure
+    measure: Measure  # measure of intensity
+    restitution: Array  # (blocks,) eta [-] of each block
 
     @property
     def gravity(self) -> list[float]:
@@ -92,14 +76,7 @@ def check_suite(
     measure: str,
     restitution: Scalar,
 ) -> Suite:
-    """The arguments of `rocking.fragility`, checked.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If there is no record or no block, the levels do not ascend, a value is not allowed, or at a level the vertical
-        acceleration of a record reaches -g.
-    """
+    """The arguments of `rocking.fragility`, checked."""
     chosen, motions = measure_of(measure), checked_records(records)
     bodies: tuple[Any, ...] = (
         (blocks,) if isinstance(blocks, AbstractBody) or not isinstance(blocks, Iterable) else (*blocks,)
@@ -140,13 +117,7 @@ def checked_levels(intensity: ArrayLike, measure: Measure) -> Array:
 
 
 def check_levels(levels: Array, record: Record, scales: Array, gravity: Sequence[float]) -> None:
-    """Refuse levels at which the vertical acceleration of a record times `scales` (blocks, levels) reaches -g.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For the first of them, with the time.
-    """
+    """Refuse levels at which the vertical acceleration of a record times `scales` (blocks, levels) reaches -g."""
     if record.vertical is None:
         return
     for scale, g in zip(scales, gravity, strict=True):
@@ -171,18 +142,8 @@ def different_names(names: Sequence[str]) -> list[str]:
 def suite_outcomes(suite: Suite, *, threads: int | None = None, stop: StopFlag | None = None) -> xr.Dataset:
     """The response of every block to every record at every level, by the solver for (2.2).
 
-    Parameters
-    ----------
-    suite : Suite
-        Checked arguments.
-    threads, stop
-        As for `rocking.fragility`.
-
-    Returns
-    -------
-    xarray.Dataset
-        `peak_rotation`, `overturned`, `exceeded_alpha`, `outcome`, `impacts` and `scale` over (block, intensity,
-        record), the properties of the blocks and of the records as coordinates.
+    Result over (block, intensity, record): `peak_rotation`, `overturned`, `exceeded_alpha`, `outcome`, `impacts` and
+    `scale`, with the properties of the blocks and of the records as coordinates.
     """
     shape = tuple(map(len, (suite.blocks, suite.levels, suite.records)))
     fields = {field.name: np.empty(shape, dtype=field.file_dtype) for field in FIELDS}

@@ -18,9 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array, one_of
+from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.block import Block
-from rocking._dimensional.problem import HIGHEST_SCALE
 from rocking._dimensional.thresholds import overturning_scale
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
@@ -35,14 +35,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-COMPARED_ALPHA = 0.2
-"""Slenderness angle of the blocks of the comparison [rad]: five times as high as wide."""
-
-COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)
-"""Their half diagonals R [m]."""
-
-HIGHEST_AMPLITUDE = 1000.0
-"""Largest a = a_g/(g tan alpha) searched for overturning [-]."""
+COMPARED_ALPHA = 0.2  # slenderness angle of the blocks of the comparison [rad]: five times as high as wide
+COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)  # their half diagonals R [m]
+HIGHEST_AMPLITUDE = 1000.0  # largest a = a_g/(g tan alpha) searched for overturning [-]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

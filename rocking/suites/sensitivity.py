@@ -9,8 +9,6 @@ The friction demand takes 94 % of the time, 4 to 33 ms for a record of 2,500 to 
 about 1.5 ms. All of these are therefore computed at a few levels, not at those of a fragility curve.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -41,11 +39,8 @@ from rocking.suites.outcomes import (
 
 Array = NDArray[np.float64]
 
-RESTITUTION_STEP = 0.05
-"""Change of the coefficient of restitution by default [-]."""
-
-REFINEMENT = 2
-"""Samples into which one is divided by band-limited interpolation."""
+RESTITUTION_STEP = 0.05  # change of the coefficient of restitution by default [-]
+REFINEMENT = 2  # samples into which one is divided by band-limited interpolation
 
 VARIANTS = {
     "low_restitution": "with the smaller restitution",

@@ -1,18 +1,15 @@
 """Volume under the rocking spectrum of a record: one number for its effect on blocks of many sizes and shapes."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, integer
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
-from rocking._model.checks import check_number
 from rocking._model.labelled import variable
-from rocking._model.parameters import RESTITUTION
 from rocking._solver.records.record_response import record_response
 
 Array = NDArray[np.float64]
@@ -70,7 +67,7 @@ def spectrum_volume(
         record,
         frequency_parameter=p[:, None],
         slenderness=STANDARD_GRAVITY * np.tan(angle) / record.peak_acceleration,
-        restitution=momentum if restitution == "momentum" else check_number(RESTITUTION, restitution),
+        restitution=momentum if restitution == "momentum" else RESTITUTION.number(restitution),
         alpha=angle,
     )
     mean = float(np.where(found.overturned, 1.0, np.minimum(found.peak_rotation, 1.0)).mean())

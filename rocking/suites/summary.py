@@ -1,7 +1,5 @@
 """What the outcomes of a suite say of each block: the margin of each record, and quantiles of the peak rotation."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -14,17 +12,9 @@ QUANTILES = (0.16, 0.5, 0.84)
 def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
     """The mildest intensity at which each record overturns each block, and the levels above it that the block survives.
 
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        Result of `rocking.suites.margins.with_margins`, or the file `outcomes.nc` of the workflow.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over (block, record): `overturning_intensity`, in the unit of the measure, nan where the block survives all;
-        `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-], the number of stronger
-        levels at which the block survives all the same.
+    From a result of `with_margins`, over (block, record): `overturning_intensity`, in the unit of the measure, nan
+    where the block survives all; `overturning_scale` [-], the factor of the record there; `levels_survived_above` [-],
+    the number of stronger levels at which the block survives all the same.
     """
     order = ("block", "record", "intensity")
     survived = ~outcomes["overturned"].transpose(*order).values.astype(bool)
@@ -48,20 +38,11 @@ def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
 
 
 def rotation_quantiles(outcomes: xr.Dataset) -> xr.DataArray:
-    """The peak rotation |theta|/alpha that a share of the records does not exceed, at each level.
+    """The peak rotation |theta|/alpha that a share of the records does not exceed, at each level: (quantile, block,
+    intensity).
 
-    A record that overturns the block exceeds every rotation. A quantile is the smallest peak of the sample that at
-    least this share of the records does not exceed: nothing is interpolated.
-
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        As for `record_margins`.
-
-    Returns
-    -------
-    xarray.DataArray
-        (quantile, block, intensity) [-]; nan where too many records overturn the block.
+    A record that overturns the block exceeds every rotation: nan where too many do. A quantile is the smallest peak of
+    the sample that at least this share of the records does not exceed: nothing is interpolated.
     """
     dims = ("block", "intensity", "record")
     overturned = outcomes["overturned"].transpose(*dims).values.astype(bool)

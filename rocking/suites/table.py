@@ -1,7 +1,5 @@
 """Fragility as columns, for CSV, JSON and text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -16,14 +14,8 @@ LEVEL_COLUMNS = ("exceedances", "fraction", "fraction_lower", "fraction_upper", 
 """Variables over (demand, block, intensity) that the table of levels holds."""
 
 CURVE_COLUMNS = (
-    "median_intensity",
-    "median_intensity_lower",
-    "median_intensity_upper",
-    "dispersion",
-    "dispersion_lower",
-    "dispersion_upper",
-    "largest_deviation",
-    "first_median_intensity",
+    *("median_intensity", "median_intensity_lower", "median_intensity_upper"),
+    *("dispersion", "dispersion_lower", "dispersion_upper", "largest_deviation", "first_median_intensity"),
 )
 """Variables over (demand, block, model) that the table of curves holds."""
 
@@ -31,11 +23,8 @@ CURVE_COLUMNS = (
 def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     """One row for each limit state, block and level of a result of `rocking.fragility`.
 
-    Returns
-    -------
-    dict
-        Columns demand, width [m], height [m], intensity (unit of the measure), the counts and fractions with
-        their interval, and the fitted probability of each model, such as `lognormal`.
+    Columns demand, width [m], height [m], intensity (unit of the measure), the counts and fractions with their
+    interval, and the fitted probability of each model, such as `lognormal`.
     """
     found = _with_dimensions(fragility)
     order = ("demand", "block", "intensity")
@@ -48,11 +37,8 @@ def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
 def curve_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     """One row for each limit state, block and model: the fitted curve, its intervals, and the records named.
 
-    Returns
-    -------
-    dict
-        Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if
-        there are annual rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
+    Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if there are annual
+    rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
     """
     found = _with_dimensions(fragility)
     order = ("demand", "block", "model")
@@ -76,11 +62,8 @@ SENSITIVITY_COLUMNS = (
 def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
     """One row for each block and level of a result of `rocking.suites.suite_sensitivity`.
 
-    Returns
-    -------
-    dict
-        Columns width [m], height [m], intensity (unit of the measure), restitution and its smaller and larger
-        value `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
+    Columns width [m], height [m], intensity (unit of the measure), restitution and its smaller and larger value
+    `restitution_low` and `restitution_high` [-], and `SENSITIVITY_COLUMNS`.
     """
     found = with_block(sensitivity)
     columns = {name: found[name].transpose("block", "intensity").values for name in SENSITIVITY_COLUMNS}

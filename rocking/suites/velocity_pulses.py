@@ -21,8 +21,6 @@ pseudo-inverses and nonlinear least squares problems whose variables separate, S
 413-432.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -39,50 +37,27 @@ from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse
 
 Array = NDArray[np.float64]
 
-MAX_CYCLES = 10.0
-"""Largest gamma of a fit [-]. Pulses of the cited study have 1 to 3."""
-
-MIN_CYCLES = 1.0 + 1e-6
-"""Smallest gamma of a fit [-]; at 1 a term of the acceleration vanishes."""
-
-SHORTEST_PERIOD = 8
-"""Shortest period of a fit, in samples."""
+MAX_CYCLES = 10.0  # largest gamma of a fit [-]. Pulses of the cited study have 1 to 3
+MIN_CYCLES = 1.0 + 1e-6  # smallest gamma of a fit [-]; at 1 a term of the acceleration vanishes
+SHORTEST_PERIOD = 8  # shortest period of a fit, in samples
 
 PERIOD_RATIO = 1.08
 """Ratio of the periods of the scan [-]; the correlation with a pulse falls by a few percent between them."""
 
-SCANNED_CYCLES = (1.1, 1.4, 1.8, 2.4, 3.2, 4.5, 6.5, 9.5)
-"""Values of gamma of the scan [-]."""
-
-SAMPLES_PER_PERIOD = 24
-"""Samples to which the velocity is averaged for the scan; the refinement uses all samples."""
-
-STARTS = 4
-"""Refined cells of the scan, with periods that differ by `PERIOD_SEPARATION`."""
-
-PERIOD_SEPARATION = 0.15
-"""Smallest difference of ln(T_p) between refined cells [-]."""
+SCANNED_CYCLES = (1.1, 1.4, 1.8, 2.4, 3.2, 4.5, 6.5, 9.5)  # values of gamma of the scan [-]
+SAMPLES_PER_PERIOD = 24  # samples to which the velocity is averaged for the scan; the refinement uses all samples
+STARTS = 4  # refined cells of the scan, with periods that differ by `PERIOD_SEPARATION`
+PERIOD_SEPARATION = 0.15  # smallest difference of ln(T_p) between refined cells [-]
 
 
 @dataclass(frozen=True)
 class Family:
-    """A kind of velocity pulse.
+    """A kind of velocity pulse."""
 
-    Attributes
-    ----------
-    name : str
-        Of the pulse of `rocking._excitation.pulses` whose acceleration is its derivative.
-    basis : callable
-        From phi [rad], (n,), and gamma [-]: the basis functions, (1 or 2, n).
-    half_window : callable
-        From gamma: largest abs(phi) [rad] at which they do not vanish.
-    cycles : tuple of float
-        Values of gamma of the scan; one, without meaning, for a family that has none.
-    """
-
-    name: str
-    basis: Callable[[Array, float], Array]
-    half_window: Callable[[float], float]
+    name: str  # of the pulse of `rocking._excitation.pulses` whose acceleration is its derivative
+    basis: Callable[[Array, float], Array]  # from phi [rad], (n,), and gamma [-]: the basis functions, (1 or 2, n)
+    half_window: Callable[[float], float]  # from gamma: largest abs(phi) [rad] at which they do not vanish
+    # values of gamma of the scan; one, without meaning, for a family that has none
     cycles: tuple[float, ...] = (math.nan,)
 
     @property
@@ -113,31 +88,16 @@ FAMILIES = {
 
 @dataclass(frozen=True, eq=False)
 class VelocityPulse(EqualByValue):
-    """A fitted pulse.
+    """A fitted pulse."""
 
-    Attributes
-    ----------
-    family : str
-        Name of its family.
-    period : float
-        T_p [s].
-    centre : float
-        t_0 [s] from the first sample.
-    cycles, phase : float
-        gamma [-] and nu [rad], (-pi, pi], of Mavroeidis & Papageorgiou; nan for the others.
-    amplitude : float
-        Of the velocity [m/s]; positive with a phase, of either sign without.
-    explained : float
-        Share of the sum of squares of the velocity, zero before and after the record, that the pulse takes away [-],
-        [0, 1].
-    """
-
-    family: str
-    period: float
-    centre: float
+    family: str  # name of its family
+    period: float  # T_p [s]
+    centre: float  # t_0 [s] from the first sample
+    # cycles, phase: gamma [-] and nu [rad], (-pi, pi], of Mavroeidis & Papageorgiou; nan for the others
     cycles: float
     phase: float
-    amplitude: float
+    amplitude: float  # of the velocity [m/s]; positive with a phase, of either sign without
+    # share, 0 to 1, of the sum of squares of the velocity, zero before and after the record, that the pulse takes away
     explained: float
 
     def velocity(self, time: Array) -> Array:
@@ -172,19 +132,8 @@ def _slope_peak(pulse: AbstractPulse) -> float:
 def fit_velocity(velocity: Array, time_step: float, family: str) -> VelocityPulse:
     """The pulse of a family that takes most of the energy of a velocity.
 
-    Parameters
-    ----------
-    velocity : (n,) array
-        [m/s], at n >= 2 `SHORTEST_PERIOD` uniform times; not all zero.
-    time_step : float
-        [s], > 0.
-    family : str
-        One of `FAMILIES`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the velocity is too short or zero.
+    `velocity` (n,): [m/s], at n >= 2 `SHORTEST_PERIOD` uniform times; not all zero. `time_step`: [s], > 0. `family`:
+    one of `FAMILIES`. Raises `InvalidArgumentError` if the velocity is too short or zero.
     """
     chosen, values = FAMILIES[family], np.asarray(velocity, dtype=np.float64)
     if values.size < 2 * SHORTEST_PERIOD:

@@ -97,7 +97,7 @@ def main():
     failed = False
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        with serving(folder, folder / "log", ROCKING_READING_SECONDS="3") as server, ExitStack() as stack:
+        with serving(folder, folder / "log") as server, ExitStack() as stack:
             ways = {"service alone": (server.port, False)}
             if proxied:
                 ways["behind nginx"] = (stack.enter_context(proxy(server.port, folder))[0], True)

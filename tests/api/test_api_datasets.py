@@ -30,6 +30,21 @@ def test_catalogue_lists_every_file_with_its_digest(client, results):
         assert client.get(entry["zarr"] + "/.zmetadata").status_code == 200
 
 
+@pytest.mark.parametrize(("path", "key"), [("datasets", "datasets"), ("suites", "suites"), ("pulses", "pulses")])
+def test_lists_are_served_in_parts(client, path, key):
+    whole = client.get(f"/v1/{path}").json()
+    assert whole["next_cursor"] is None
+    found, cursor = [], None
+    while cursor or not found:
+        query = {"limit": 2} | ({"cursor": cursor} if cursor else {})
+        part = client.get(f"/v1/{path}", params=query).json()
+        assert len(part[key]) <= 2
+        found += part[key]
+        cursor = part["next_cursor"]
+    assert found == whole[key]
+    assert_problem(client.get(f"/v1/{path}", params={"limit": 0}), 422, "limit")
+
+
 def test_catalogue_tells_pulse_restitution_extent_and_links(client, own_results):
     listed = {entry["name"]: entry for entry in client.get("/v1/datasets").json()["datasets"]}
     cube = listed[NAME]

@@ -1,23 +1,19 @@
-"""Under load: queue limit and time limit of heavy work, disconnects, micro-batching."""
+"""Under load: queue limit and time limit of heavy work, disconnects."""
 
 import asyncio
-import json
 import re
-import sys
 import threading
 import time
 from types import SimpleNamespace
 
-import httpx2
 import pytest
 import rocking_api.execution.evaluation
-from rocking_api.execution.batching import MicroBatcher
 from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
 from rocking_api.models.params import ResponseParams
+from rocking_api.routers.response import get_response
 from starlette.requests import ClientDisconnect
 
 import rocking
-from rocking._base.equality import equal_values
 from rocking._base.errors import StoppedError
 from rocking._numba.cancellation import run_with_timeout
 from tests.api.conftest import assert_problem, client_of
@@ -171,13 +167,6 @@ def test_the_thread_is_free_soon_after_timeout_or_disconnect(seconds, request_, 
     assert asyncio.run(scenario()) < 0.1
 
 
-def test_work_is_not_traced():
-    def work(_):
-        return sys.getprofile(), sys.gettrace()
-
-    assert asyncio.run(BoundedExecutor(1, 0, 30).run(work)) == (None, sys.gettrace())
-
-
 def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(results, monkeypatch):
     gate = Gate()
     with client_of(results, max_workers=1, max_queue=0) as client:
@@ -314,83 +303,20 @@ def test_batches_in_chunks_are_equal(client, monkeypatch):
     assert client.post("/v1/response", json=many).json() == whole
 
 
-def test_batched_requests_have_the_results_of_single_requests(results):
-    queries = [POINT | {"slenderness": 0.05 + 0.03 * k} for k in range(30)]
-    queries += [POINT | {"method": "cube", "slenderness": s} for s in (0.01, 0.6, 0.02)]
-    queries += [POINT | {"slenderness": -1.0}, POINT | {"absolute_tolerance": -1.0}, POINT | {"pulse": "sinus"}]
-    with client_of(results) as client:
-        alone = [client.get("/v1/response", params=query) for query in queries]
-        calls = _count_calls(client.app.state.service.cubes)
-        together = asyncio.run(_all_at_once(client.app, queries))
-    assert [response.status_code for response in alone] == [status for status, _ in together]
-    for one, (_, body) in zip(alone, together, strict=True):
-        found = json.loads(body)
-        assert found == one.json()
-    assert len(calls) < len(queries) / 2
-
-
-def test_a_request_waits_for_those_of_the_next_iterations_of_the_loop(results):
-    async def one_a_turn(together, queries):
-        tasks = []
-        for query in queries:
-            tasks.append(asyncio.create_task(together.evaluate(query)))
-            await asyncio.sleep(0)
-        return await asyncio.gather(*tasks)
-
-    queries = [ResponseParams(**POINT | {"slenderness": 0.5 + 0.01 * k}) for k in range(9)]
-    with client_of(results) as client:
-        cubes = client.app.state.service.cubes
-
-        def gathered():
-            return MicroBatcher(cubes, BoundedExecutor(1, 16, 30.0))
-
-        alone = [asyncio.run(one_a_turn(gathered(), [query]))[0] for query in queries]
-        calls = _count_calls(cubes)
-        assert equal_values(asyncio.run(one_a_turn(gathered(), queries)), alone)
-    assert len(calls) == 1
-
-
-def test_an_internal_error_reaches_all_requests_of_a_batch(results, monkeypatch):
-    with client_of(results) as client:
-        client.get("/v1/response", params=POINT)  # the kernels are loaded in the event loop of the client
-        monkeypatch.setattr(client.app.state.service.cubes, "is_open", lambda *_: 1 / 0)
-        together = asyncio.run(_all_at_once(client.app, [POINT, POINT | {"slenderness": 0.5}]))
-    assert [status for status, _ in together] == [500, 500]
-
-
 def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
     """One of them takes a sixth of a second, computed twice."""
     elastic = {"pulse": "c2", "slenderness": 1 - 1e-7, "frequency_ratio": 0.05, "restitution": 1.0, "alpha_deg": 11.0}
     with client_of(results) as client:
-        together = client.app.state.service.batcher
         client.get("/v1/response", params=POINT)
 
         async def scenario():
-            tasks = asyncio.create_task(together.evaluate(ResponseParams(**elastic)))
+            task = asyncio.create_task(get_response(ResponseParams(**elastic), client.app.state.service))
             longest, before = 0.0, time.perf_counter()
-            while not tasks.done():
+            while not task.done():
                 await asyncio.sleep(0.001)
                 longest, before = max(longest, time.perf_counter() - before), time.perf_counter()
-            return longest, (await tasks).source
+            return longest, (await task).source
 
         longest, source = asyncio.run(scenario())
     assert source == "solver"
     assert longest < 0.1
-
-
-def _count_calls(cubes):
-    calls, respond = [], cubes.response
-
-    def counted(*args, **kwargs):
-        calls.append(args)
-        return respond(*args, **kwargs)
-
-    cubes.response = counted
-    return calls
-
-
-async def _all_at_once(app, queries):
-    transport = httpx2.ASGITransport(app=app, raise_app_exceptions=False)
-    async with httpx2.AsyncClient(transport=transport, base_url="http://service") as client:
-        responses = await asyncio.gather(*(client.get("/v1/response", params=query) for query in queries))
-    return [(response.status_code, response.content) for response in responses]

@@ -1,6 +1,5 @@
 """Health, pages, and what the service does when data sets are missing or damaged."""
 
-import hashlib
 import logging
 import re
 import time
@@ -102,13 +101,13 @@ def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog):
         assert all(name in problem["detail"] for name in names)
         assert client.get("/health").status_code == 200
         assert damaged_of(client) == dict.fromkeys(names, 1.0)
-        lines = [record.fields for record in caplog.records if record.getMessage() == "a data set is damaged"]
-        assert sorted(line["dataset"] for line in lines) == names
+        lines = [record.args for record in caplog.records if record.msg.startswith("a data set is damaged")]
+        assert sorted(name for name, _ in lines) == names
         paths[0].write_bytes(whole[0])
         paths[1].unlink()
         assert ready_of(client).status_code == 200
         assert damaged_of(client) == dict.fromkeys(names, 0.0)
-        repaired = [record for record in caplog.records if record.getMessage() == "a data set is no longer damaged"]
+        repaired = [record for record in caplog.records if record.msg.startswith("a data set is no longer damaged")]
         assert len(repaired) == 2
 
 
@@ -165,50 +164,6 @@ def test_pages_load_nothing_from_outside(client, page):
         if link != "/guide/":  # built apart: tests/api/test_guide.py
             assert client.get(link).status_code in (200, 422)  # 422: the form's action, without its parameters
     assert "http" not in response.text
-
-
-def test_vendored_files_are_what_was_published():
-    listed = (STATIC / "swagger-ui" / "SHA256SUMS").read_text().split()
-    digests = dict(zip(listed[1::2], listed[::2], strict=True))
-    assert {"LICENSE", "NOTICE"} < set(digests)
-    assert set(digests) == {path.name for path in (STATIC / "swagger-ui").iterdir()} - {"SHA256SUMS"}
-    for name, digest in digests.items():
-        assert hashlib.sha256((STATIC / "swagger-ui" / name).read_bytes()).hexdigest() == digest
-
-
-def test_openapi_describes_every_route(client):
-    described = client.get("/openapi.json").json()
-    assert set(described["paths"]) == {
-        "/v1/response",
-        "/v1/assess",
-        "/v1/identify",
-        "/v1/spectrum",
-        "/v1/map",
-        "/v1/overturning",
-        "/v1/history",
-        "/v1/blocks/response",
-        "/v1/records/response",
-        "/v1/records/history",
-        "/v1/records/scales",
-        "/v1/records/pulse",
-        "/v1/pulses",
-        "/v1/metadata",
-        "/v1/suites",
-        "/v1/suites/{name}",
-        "/v1/datasets/{name}/subset",
-        "/v1/thresholds",
-        "/v1/datasets",
-        "/v1/datasets.zip",
-        "/v1/datasets/{name}",
-        "/v1/datasets/{name}.nc",
-        "/v1/datasets/{name}.zarr/{key}",
-        "/health",
-        "/ready",
-        "/metrics",
-    }
-    text = str(described)
-    for reference in set(re.findall(r"#/components/schemas/(\w+)", text)):
-        assert reference in described["components"]["schemas"]
 
 
 @pytest.mark.parametrize(

@@ -1,31 +1,23 @@
 """What the service does where functions of Linux are missing: taken away here, the other systems were not at hand."""
 
-import ctypes
-import multiprocessing
 import os
 import runpy
 import subprocess
 import sys
-from contextlib import ExitStack
 
 import httpx2
-import pytest
-import rocking_api.server
-import uvicorn
-from typer.testing import CliRunner
 
 import workflow.run
-from rocking._cli.app import app
 from rocking._solver import chunks
 from tests.api.servers import ROOT, serving
 
 LIMITED = """
-import os, runpy, socket, sys
+import os, runpy, sys
 import netCDF4, numba, pandas, scipy, typer, xarray  # as they are for the system where this test runs
 sys.platform = "freebsd14"  # of darwin and win32 Python itself has modules that are missing here
 sys.modules["uvloop"] = sys.modules["httptools"] = None
 os.process_cpu_count = os.cpu_count  # from Python 3.13 on it calls the function that goes
-del os.sched_getaffinity, socket.TCP_NOTSENT_LOWAT
+del os.sched_getaffinity
 runpy.run_module("rocking._cli", run_name="__main__")
 """
 
@@ -36,33 +28,6 @@ def test_a_service_answers_without_the_packages_and_functions_of_linux(results, 
         answer = httpx2.get(f"{server.address}/v1/response?{question}", timeout=120)
         assert answer.status_code == 200
         assert server.stop() in (0, -15)
-
-
-def test_workers_of_other_systems_share_one_socket(monkeypatch):
-    config = uvicorn.Config("", port=0)
-    for system, count in (("linux", 3), ("darwin", 1)):
-        monkeypatch.setattr(sys, "platform", system)
-        with ExitStack() as stack:
-            sockets = [stack.enter_context(one) for one in rocking_api.server._listen(config, 3)]
-            assert len({one.fileno() for one in sockets}) == count
-            assert len({one.getsockname() for one in sockets}) == 1
-
-
-def test_several_workers_are_refused_where_processes_cannot_be_forked(monkeypatch, tmp_path):
-    monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: ["spawn"])
-    refused = CliRunner().invoke(app, ["serve", "--workers", "2", "--results", str(tmp_path)])
-    assert refused.exit_code == 2
-    assert refused.output == "Error: --workers = 2 is not allowed; allowed: 1 on a system that cannot fork\n"
-
-
-@pytest.mark.parametrize("error", [OSError, AttributeError, TypeError])
-def test_another_c_library_is_left_as_it_is(monkeypatch, error):
-    def refuse(name):
-        assert name is None
-        raise error
-
-    monkeypatch.setattr(ctypes, "CDLL", refuse)
-    rocking_api.server._return_freed_memory()
 
 
 def test_cores_are_those_of_the_machine_where_a_process_has_none_of_its_own(monkeypatch):

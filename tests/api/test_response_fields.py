@@ -1,10 +1,9 @@
 """The response models and the CSV columns have the fields that `rocking._model.fields` declares."""
 
 import pytest
-from rocking_api.execution.evaluation import PointResult
 from rocking_api.models.responses import BatchResponse, PointResponse, SpectrumResponse
 
-from rocking._model.fields import BOUNDED_FIELDS, COLUMN_FIELDS
+from rocking._model.fields import COLUMN_FIELDS
 
 NAMES = [field.name for field in COLUMN_FIELDS]
 
@@ -14,10 +13,6 @@ def test_models_have_the_declared_fields_in_order(model):
     assert [name for name in model.model_fields if name in NAMES] == NAMES
     for field in COLUMN_FIELDS:
         assert field.meaning in model.model_fields[field.name].description
-
-
-def test_a_point_has_the_fields_of_a_bounded_response():
-    assert PointResult._fields == (*(field.name for field in BOUNDED_FIELDS[:-1]), "source", "data_version", "derived")
 
 
 def test_csv_has_the_declared_columns(client):

@@ -13,6 +13,7 @@ from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, FileVersion, UnknownDatasetError, version_of
 from rocking._datasets.cube import read_spectrum, write_dataset
 from rocking._lookup.collection import CubeCollection
+from rocking._lookup.cube import Points, UnreadError
 from rocking._spectra.cubes import spectrum
 
 NAME = "spectra/sine/eta-0.85"
@@ -113,11 +114,46 @@ def test_response_names_the_version_it_was_read_from(cubes, path, contents, monk
     assert cubes.response("sine", **POINT)[1] == (sha256(contents[0]),)
 
 
+def is_open(cubes, restitution=0.85):
+    """Whether no file has to be read for a response."""
+    try:
+        points = Points.of(*(POINT | {"restitution": restitution}).values(), None)[0]
+        cubes.cube("sine", may_read=False).evaluate(points, 1e-4, "auto")
+    except UnreadError:
+        return False
+    return True
+
+
 def test_cube_whose_file_changed_is_not_open(cubes, path, contents):
+    assert not is_open(cubes)
     cubes.response("sine", **POINT)
-    assert cubes.is_open("sine", 0.85)
+    assert is_open(cubes)
     replaced(path, contents[1])
-    assert not cubes.is_open("sine", 0.85)
+    assert not is_open(cubes)
+
+
+def test_an_angle_is_read_when_it_is_needed_and_from_the_version_that_was_opened(tmp_path, monkeypatch):
+    angles = np.linspace(0.1, 0.5, 6)
+    axes = {"slenderness": np.linspace(0.3, 0.8, 9), "frequency_ratio": np.linspace(5.0, 9.0, 8), "alpha": angles}
+    path = tmp_path / "spectra" / "sine" / "eta-0.85.nc"
+    write_dataset(spectrum("sine", restitution=0.85, **axes), path, chunks={"alpha": 1})
+    read, layer = [], rocking._lookup.cube_slice._layer_of_file
+    monkeypatch.setattr(rocking._lookup.cube_slice, "_layer_of_file", lambda *one: read.append(one[-1]) or layer(*one))
+    cube = rocking.open_cube(path)
+    assert read == []
+    assert cube.response(**POINT, alpha=0.1).from_cube
+    assert read == [0]
+    between = cube.response(**POINT, alpha=[0.31, 0.15, 0.6], method="auto")
+    assert read == [0, 1, 2, 3, 4]
+    monkeypatch.setattr(rocking._lookup.cube_slice, "MAX_LAYER_BYTES", 4 * cube.slice_at(0).layers.at([0])[0].nbytes)
+    assert cube.response(**POINT, alpha=0.5).from_cube
+    assert read[5:] == [5]  # the others are forgotten
+    again = cube.response(**POINT, alpha=[0.31, 0.15, 0.6])
+    np.testing.assert_array_equal(again.peak_rotation, between.peak_rotation)
+    cube.response(**POINT, alpha=0.2)
+    replaced(path, path.read_bytes())
+    with pytest.raises(DatasetError, match="was replaced after it was opened"):
+        cube.response(**POINT, alpha=0.5)
 
 
 def loop(path, _):
@@ -231,9 +267,9 @@ def test_memory_is_limited_to_the_cubes_that_were_used_last(cubes, path, monkeyp
     for eta in (0.86, 0.87):
         other = spectrum("sine", restitution=eta, slenderness=np.linspace(0.6, 0.8, 5), frequency_ratio=[6, 7, 8, 9])
         write_dataset(other, path.with_name(f"eta-{eta:.2f}.nc"))
-    sizes = {eta: cubes.slice_at("sine", eta).nodes.nbytes for eta in (0.86, 0.85, 0.86)}
+    sizes = {eta: cubes.slice_at("sine", eta).layers.nbytes for eta in (0.86, 0.85, 0.86)}
     monkeypatch.setattr(rocking._lookup.collection, "MAX_BYTES", sum(sizes.values()))
     kept = cubes.slice_at("sine", 0.86)  # used after that of 0.85
     cubes.slice_at("sine", 0.87)
-    assert not cubes.is_open("sine", 0.85)
+    assert not is_open(cubes)
     assert cubes.slice_at("sine", 0.86) is kept

@@ -10,11 +10,11 @@ import pytest
 
 import rocking._lookup.cube
 from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
+from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_spectrum, write_dataset
 from rocking._lookup.cube import SAFETY, Cube, Points, open_cube
 from rocking._lookup.cube_slice import slice_of
-from rocking._model.parameters import FREQUENCY_RATIO, SLENDERNESS
 from rocking._model.response import Outcome
 from rocking._solver.bounded_response import SOLVER_ERROR, solve_with_bound
 from rocking._solver.peak_response import peak_response

@@ -24,13 +24,14 @@ LAYERS = (
     ("rocking/_spectra",),
     ("rocking/_datasets",),
     ("rocking/_boundary", "rocking/_history", "rocking/_interpolation"),
-    ("rocking/_solver", "rocking/paper"),
+    ("rocking/_solver", "rocking/paper", "rocking/standards"),
     ("rocking/_model", "rocking/_excitation"),
     ("rocking/_numba",),
-    ("rocking/_base/column",),
+    ("rocking/_base/cells", "rocking/_base/kinds", "rocking/_base/quantities"),
+    ("rocking/_base/quantity",),
     ("rocking/_base/errors", "rocking/_base/equality"),
     ("rocking/_base/units",),
-    ("rocking/_base/constants", "rocking/_base/parameter", "rocking/_base/version", "rocking/_base/source_tree"),
+    ("rocking/_base/constants", "rocking/_base/version", "rocking/_base/source_tree"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SOURCES = SourceTree(ROOT)

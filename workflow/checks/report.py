@@ -22,15 +22,7 @@ class Verdicts:
 
 
 def run_tests(tests: Path, environment: Mapping[str, str]) -> list[str]:
-    """Results of the tests of a module, one line each; the process ends if one fails.
-
-    Parameters
-    ----------
-    tests : path
-        The module.
-    environment : mapping
-        Variables of the environment that it reads.
-    """
+    """Results of the tests of a module, one line each; the process ends if one fails."""
     os.environ.update(environment)
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # seconds for plugins that these tests do not use
     verdicts = Verdicts()

@@ -1,7 +1,5 @@
 """The data sets of a pulse: consistent, and in agreement with the solver. Run by `rule check_data_sets`."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os
@@ -28,8 +26,7 @@ STEPS = (1e-6, 3e-6, 1e-7, 1e-8, 1e-10, 2 * RESOLUTION)
 LAYERS = (3e-6, 1e-5, 3e-5, 1e-4, 3e-4)
 """How far off the neighbour may lie where regions between are too thin to be resolved, up to what a file states [-]."""
 
-VERTICES = 3000
-"""Vertices that are tested for each angle of a file, about, evenly spaced along its curves."""
+VERTICES = 3000  # vertices that are tested for each angle of a file, about, evenly spaced along its curves
 
 TIP = 0.2
 """Frequency ratio below which the surviving region ends, near 1/a = 0.99, in layers that are not all resolved [-]."""

@@ -1,7 +1,5 @@
 """The finished products: all there, whole, and saying what they should. Run by `rule check_results`."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

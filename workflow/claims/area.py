@@ -1,7 +1,5 @@
 """Areas of the control plane, so that a share does not depend on where a grid has its nodes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,12 +13,8 @@ MEASURE = "area in (1/a, log omega)"
 def node_areas(slenderness: Floats, frequency_ratio: Floats, *, logarithmic: bool = True) -> Floats:
     """Area that belongs to each node of a grid, (slenderness, frequency_ratio): half-way to its neighbours.
 
-    Parameters
-    ----------
-    slenderness, frequency_ratio : float arrays
-        Ascending nodes of 1/a and omega [-].
-    logarithmic : bool
-        Whether frequencies are measured by their logarithm.
+    `slenderness`, `frequency_ratio`: ascending nodes of 1/a and omega [-]; `logarithmic`: whether frequencies are
+    measured by their logarithm.
     """
     x = np.log(frequency_ratio) if logarithmic else frequency_ratio
     return _lengths(slenderness)[:, None] * _lengths(x)

@@ -1,7 +1,5 @@
 """Claims of section 3 on the overturning curves: closed forms compared with the solver."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -22,13 +20,7 @@ CASES = {
 
 
 def exact_curves(boundaries: Sequence[xr.Dataset]) -> Iterator[Claim]:
-    """(3.10), (3.18) and (3.20) with (3.21) against the traced points of their own mode.
-
-    Parameters
-    ----------
-    boundaries : sequence of datasets
-        Traced curves of slender blocks under the sine, one for each restitution.
-    """
+    """(3.10), (3.18), (3.20) with (3.21) against the traced points of their own mode: slender blocks, sine."""
     worst = dict.fromkeys(CASES, 0.0)
     count = dict.fromkeys(CASES, 0)
     for curves in boundaries:
@@ -99,8 +91,7 @@ def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
     )
 
 
-STEP = 1e-9
-"""Relative distance from a curve at which blocks are tested on either side [-]."""
+STEP = 1e-9  # relative distance from a curve at which blocks are tested on either side [-]
 
 
 def sides_of_limit() -> tuple[Floats, Flags, Flags]:

@@ -4,8 +4,6 @@ The paper states most of its claims in words. The thresholds below, which say wh
 rule of the verdict are the same for all claims and do not depend on what is found.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -14,54 +12,25 @@ IN_RANGE = "holds within stated range"
 FAILS = "does not hold"
 VERDICTS = (HOLDS, IN_RANGE, FAILS)
 
-PART = 0.5
-"""Share of what was tested from which a claim is said to hold within a stated range [-]."""
-
-SAME = 1e-9
-"""Difference, relative or in 1/a, up to which two results are the same: "exact", "equal", "collapse" [-]."""
-
-CLOSE = 0.01
-"""Relative difference up to which two results "coincide" or are in "excellent" agreement [-]."""
-
-SMALL = 0.05
-"""Relative difference that is "small", "weak", "practically" nothing, or "accurate" [-]."""
-
-FAIR = 0.20
-"""Relative difference that is "satisfactory" [-]."""
-
-ABOUT = 0.25
-"""Relative difference up to which a number is "about" or "approximately" another [-]."""
+PART = 0.5  # share of what was tested from which a claim is said to hold within a stated range [-]
+SAME = 1e-9  # difference, relative or in 1/a, up to which two results are the same: "exact", "equal", "collapse" [-]
+CLOSE = 0.01  # relative difference up to which two results "coincide" or are in "excellent" agreement [-]
+SMALL = 0.05  # relative difference that is "small", "weak", "practically" nothing, or "accurate" [-]
+FAIR = 0.20  # relative difference that is "satisfactory" [-]
+ABOUT = 0.25  # relative difference up to which a number is "about" or "approximately" another [-]
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One row of the table of claims.
+    """One row of the table of claims."""
 
-    Attributes
-    ----------
-    key : str
-        Short unique name.
-    place : str
-        Section and equation of the paper.
-    printed : str
-        The statement of the paper, in short or with its numbers.
-    criterion : str
-        What is tested, over which range, and the threshold; stated without looking at the result.
-    found : str
-        What we found, with the range where it holds.
-    verdict : str
-        One of `VERDICTS`.
-    numbers : mapping of str to float
-        The measured numbers behind `found` [-].
-    """
-
-    key: str
-    place: str
-    printed: str
-    criterion: str
-    found: str
-    verdict: str
-    numbers: dict[str, float] = field(default_factory=dict)
+    key: str  # short unique name
+    place: str  # section and equation of the paper
+    printed: str  # the statement of the paper, in short or with its numbers
+    criterion: str  # what is tested, over which range, and the threshold; stated without looking at the result
+    found: str  # what we found, with the range where it holds
+    verdict: str  # one of `VERDICTS`
+    numbers: dict[str, float] = field(default_factory=dict)  # the measured numbers behind `found` [-]
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
@@ -82,7 +51,7 @@ def verdict_of(share: float) -> str:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """A share as text, with so many significant digits; 100 % and 0 % for these only."""
+    """A share as text with `digits` significant digits; 100 % and 0 % are exact."""
     if 0.0 < share < 1.0:
         text = f"{100 * share:.{digits}g}"
         while float(text) == 100.0:

@@ -1,7 +1,5 @@
 """Claims of section 3 on the time of the first impact, exact (3.13) and approximate (3.23) to (3.30)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -22,8 +20,7 @@ from rocking.paper.overturning import (
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import ABOUT, CLOSE, FAIR, SAME, SMALL, Claim, percent, verdict_of
 
-WINDOW = 0.25
-"""Distance from tau = 1 within which (3.27) is tested [-]."""
+WINDOW = 0.25  # distance from tau = 1 within which (3.27) is tested [-]
 
 
 class Impacts(NamedTuple):
@@ -122,7 +119,7 @@ class Curve(NamedTuple):
         return np.isfinite(self.amplitude)
 
     def holds_from(self, good: Flags) -> float:
-        """The frequency ratio from which on all known points are good, nan if the last is not."""
+        """The frequency ratio above which all known points are good, nan if the last is not."""
         failing = (self.known & ~good).any(axis=0)
         kept = self.known.any(axis=0) & ~np.logical_or.accumulate(failing[::-1])[::-1]
         return float(self.frequency_ratio[kept].min()) if kept.any() else np.nan

@@ -1,12 +1,9 @@
 """Misprints of the paper: what is printed, what is right, and the tests that show it; also in docs/equations.md."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from typing import Any
 
-TESTS = "tests/paper/test_errata.py"
-"""The file of the tests that show the misprints."""
+TESTS = "tests/paper/test_errata.py"  # the file of the tests that show the misprints
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """Claims of section 5 on blocks that are not slender: similar blocks, dependence on alpha, the slender limit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -16,11 +14,8 @@ from rocking.paper.overturning import overturning_amplitudes
 from workflow.claims.area import Flags, Floats
 from workflow.claims.claim import SMALL, Claim, percent, verdict_of
 
-ANGLES = (5.0, 10.0, 15.0, 20.0, 30.0)
-"""Slenderness angles compared with the slender limit [deg]."""
-
-LESS_THAN_15 = 15.0
-"""The angle up to which the paper calls the dependence on alpha relatively small [deg]."""
+ANGLES = (5.0, 10.0, 15.0, 20.0, 30.0)  # slenderness angles compared with the slender limit [deg]
+LESS_THAN_15 = 15.0  # the angle up to which the paper calls the dependence on alpha relatively small [deg]
 
 FREQUENCY_RATIOS = {"sine": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0), "cosine": (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0)}
 """Frequency ratios before and beyond the tip of the region of overturning after impacts [-]."""
@@ -188,8 +183,7 @@ def convergence(distances: Floats) -> Iterator[Claim]:
     )
 
 
-STEP = 1e-9
-"""Relative distance from g tan(alpha) at which it is tested whether a block uplifts [-]."""
+STEP = 1e-9  # relative distance from g tan(alpha) at which it is tested whether a block uplifts [-]
 
 
 def uplifts() -> tuple[Floats, Flags, Flags]:

@@ -1,7 +1,5 @@
 """Claims of section 4 on orientation and self-similarity."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np

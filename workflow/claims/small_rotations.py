@@ -1,7 +1,5 @@
 """Claims of section 6: accuracy and limits of the groups of (6.1) for blocks of any slenderness."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -14,8 +12,7 @@ from rocking._solver.peak_response import peak_response
 from workflow.claims.area import MEASURE, Flags, Floats, node_areas, share_of_area
 from workflow.claims.claim import SMALL, Claim, percent, verdict_of
 
-ALPHA = np.radians([0, 5, 10, 15, 20])
-"""Slenderness angles compared [rad]; 0 is the slender limit."""
+ALPHA = np.radians([0, 5, 10, 15, 20])  # slenderness angles compared [rad]; 0 is the slender limit
 
 SLENDERNESS = np.linspace(0.20, 0.98, 79)
 OMEGA = np.geomspace(1.0, 8.0, 60)
@@ -23,11 +20,8 @@ OMEGA = np.geomspace(1.0, 8.0, 60)
 BANDS = ((0.20, 0.35), (0.35, 0.50), (0.50, 0.65), (0.65, 0.80), (0.80, 1.00))
 """Ranges of g tan(alpha)/a_g that are compared [-]."""
 
-SIZES = ((0.0, 0.2), (0.2, 0.5), (0.5, 1.0))
-"""Ranges of theta_max/alpha of the slender block that are compared [-]."""
-
-LIKELY = 0.5
-"""Share of blocks from which something is "likely" [-]."""
+SIZES = ((0.0, 0.2), (0.2, 0.5), (0.5, 1.0))  # ranges of theta_max/alpha of the slender block that are compared [-]
+LIKELY = 0.5  # share of blocks from which something is "likely" [-]
 
 
 class Spread(NamedTuple):

@@ -1,7 +1,5 @@
 """Claims of section 4a on peak rotation: the closed form (4.13) and the scale law (4.16) for restitution."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -23,11 +21,8 @@ OCTAVES = ((0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 8.0), (8.0, 15.0))
 DISTANCES = ((0.0, 0.05), (0.05, 0.1), (0.1, 0.2), (0.2, 0.3))
 """Ranges of the distance in 1/a from (3.31) in which the error of (4.13) is compared [-]."""
 
-SLOW_IMPACT = 0.3
-"""Largest eta v that is considered small [-]."""
-
-LAW = 0.10
-"""Error of the scale law up to which a spectrum is "approximated" by it [-]."""
+SLOW_IMPACT = 0.3  # largest eta v that is considered small [-]
+LAW = 0.10  # error of the scale law up to which a spectrum is "approximated" by it [-]
 
 
 class Spectra(NamedTuple):

@@ -5,8 +5,6 @@ description of DataCite, the licence of the data, a page for readers, and a scri
 package. Equal products give equal bytes of the archive in the same year.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime as dt
 import hashlib
@@ -26,8 +24,8 @@ from workflow.verify import MANIFEST, problems
 
 ROOT = Path(__file__).parents[2]
 TEXTS = Path(__file__).parent
-OLDEST = 1980, 1, 1, 0, 0, 0
-"""Time stamp of all files in the archive, the first that zip knows."""
+PROBLEMS = ROOT / "reference" / "problems"
+OLDEST = 1980, 1, 1, 0, 0, 0  # time stamp of all files in the archive, the first that zip knows
 
 
 def datacite(manifest: dict[str, Any], citation: dict[str, Any], year: int) -> dict[str, Any]:
@@ -82,6 +80,7 @@ def files(folder: Path) -> Iterator[tuple[str, bytes | Path]]:
         "LICENSE.txt": TEXTS / "LICENSE.txt",
         "verify.py": TEXTS / "verify.py",
         "datacite.json": (json.dumps(about, indent=2) + "\n").encode(),
+        **{f"reference-problems/{path.name}": path for path in sorted(PROBLEMS.glob("*.json"))},
         "data/manifest.json": folder / MANIFEST,
         **{f"data/{name}": folder / "results" / name for name in sorted(manifest["products"])},
     }

@@ -1,7 +1,5 @@
 """Traced overturning boundaries of files as lines, and as variables of plotted data."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -17,12 +15,8 @@ from workflow.figures.style import plotted
 def lines_of_files(files: Sequence[Path], alphas: Sequence[float] | None = None) -> Iterator[tuple[int, float, Lines]]:
     """Index of the pulse, angle [rad] and lines of several files, one for each pulse.
 
-    Parameters
-    ----------
-    files : sequence of paths
-        Overturning boundaries, results/overturning/PULSE/eta-0.85.nc.
-    alphas : sequence, optional
-        Slenderness angles [rad], 0 for the slender limit; all that the files hold by default.
+    `files`: overturning boundaries, results/overturning/PULSE/eta-0.85.nc. `alphas`: slenderness angles [rad], 0 for
+    the slender limit; all that the files hold by default.
     """
     for k, path in enumerate(files):
         curves = read_dataset(path)

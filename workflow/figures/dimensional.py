@@ -21,11 +21,8 @@ from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 
 Array = NDArray[np.float64]
 
-AT_REST = 1e-9
-"""Angular velocity in units of p alpha below which free rocking is considered to have ended [-]."""
-
-MAX_DURATION = 60.0
-"""Time p t after the pulse within which a block that overturns reaches the ground [-]."""
+AT_REST = 1e-9  # angular velocity in units of p alpha below which free rocking is considered to have ended [-]
+MAX_DURATION = 60.0  # time p t after the pulse within which a block that overturns reaches the ground [-]
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """Figure 1: the block, drawn to scale, and the pulse that moves its base."""
 
-from __future__ import annotations
-
 import matplotlib.patches as patches
 import numpy as np
 import xarray as xr
@@ -19,17 +17,8 @@ def data(
 ) -> xr.Dataset:
     """Corners of the block at rest and rotated about its right corner, and the ground acceleration.
 
-    Parameters
-    ----------
-    pulse : str
-    width, height : float
-        b and h [m].
-    rotation : float
-        theta/alpha of the rotated block [-].
-    peak_acceleration : float
-        a_g [g].
-    period : float
-        T_p [s].
+    `width`, `height`: b and h [m]; `rotation`: theta/alpha of the rotated block [-]; `peak_acceleration`: a_g [g];
+    `period`: T_p [s].
     """
     block = RectangularBlock(width, height)
     theta = rotation * block.alpha

@@ -1,7 +1,5 @@
 """Figure 2: the response sequences of a block under one sine, and a history of each way of overturning."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -21,13 +19,7 @@ SAMPLES = 451
 def data(*, pulse: str, restitution: float, cases: Mapping[str, Mapping[str, Any]]) -> xr.Dataset:
     """Two histories of each case: amplitudes on either side of an overturning threshold.
 
-    Parameters
-    ----------
-    pulse : str
-    restitution : float
-        eta [-].
-    cases : mapping
-        For each case its frequency_ratio omega [-] and two amplitudes a [-].
+    `restitution`: eta [-]; `cases`: for each case its frequency_ratio omega [-] and two amplitudes a [-].
     """
     tau = np.linspace(0.0, DURATION, SAMPLES)
     rotation = np.full((len(cases), 2, tau.size), np.nan)

@@ -1,7 +1,5 @@
 """Figure 3: overturning after an impact inside the pulse (case 1.1), exact against semi-analytical."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -14,19 +12,13 @@ from rocking.paper.overturning import amplitude_of_impact_time, case_1_1_amplitu
 from rocking.plot.style import GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted
 
-IMPACT_TIMES = 1500
-"""Times of impact among which solutions beyond the pulse are looked for [-]."""
+IMPACT_TIMES = 1500  # times of impact among which solutions beyond the pulse are looked for [-]
 
 
 def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) -> xr.Dataset:
     """Amplitudes between which case 1.1 overturns, by (3.20) with (3.21) and by (3.30), over frequency ratio.
 
-    Parameters
-    ----------
-    restitution : sequence
-        eta [-].
-    frequency_ratio : mapping
-        low, high [-] and points of the axis.
+    `restitution`: eta [-]; `frequency_ratio`: low, high [-] and points of the axis.
     """
     eta = np.array(restitution)
     omega = np.linspace(frequency_ratio["low"], frequency_ratio["high"], int(frequency_ratio["points"]))

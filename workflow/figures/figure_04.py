@@ -1,7 +1,5 @@
 """Figure 4: overturning curves of the sine in closed form, their regions, and the islands that they do not contain."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -23,12 +21,7 @@ POINTS = 401
 def data(*, boundaries: Sequence[Path], restitution: Sequence[float]) -> xr.Dataset:
     """Closed forms over frequency ratio, and the traced points of islands, as amplitudes a = a_g/(g alpha).
 
-    Parameters
-    ----------
-    boundaries : sequence of paths
-        Traced boundaries of the sine, one file for each restitution.
-    restitution : sequence
-        eta [-].
+    `boundaries`: traced boundaries of the sine, one file for each restitution; `restitution`: eta [-].
     """
     eta = np.array(restitution)
     tips = _tips(eta)

@@ -1,7 +1,5 @@
 """Figure 5: two blocks of different size and shape under different pulses, in degrees and seconds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -26,17 +24,8 @@ def data(
 ) -> xr.Dataset:
     """Histories of two blocks with equal groups (4.11), each integrated in SI units.
 
-    Parameters
-    ----------
-    pulse : str
-    restitution : float
-        eta [-].
-    slenderness, frequency_ratio : float
-        1/a and omega [-], the same for both.
-    slenderness_angle, half_diagonal : sequences of equal length
-        alpha [rad] and R [m] of each block.
-    duration : float
-        tau = p t at the end [-].
+    `restitution`: eta [-]; `slenderness`, `frequency_ratio`: 1/a and omega [-], the same for both; `slenderness_angle`,
+    `half_diagonal`: alpha [rad] and R [m] of each block; `duration`: tau = p t at the end [-].
     """
     blocks = [
         RectangularBlock.from_slenderness_angle(alpha, R)

@@ -1,7 +1,5 @@
 """Figure 6: the two histories of figure 5 in the groups of (4.1), in which they coincide."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -16,13 +14,7 @@ from workflow.figures.style import panel_letters, plotted
 
 
 def data(**settings: Any) -> xr.Dataset:
-    """The histories of figure 5 scaled by (4.1), and the one that the solver of `rocking` computes from the groups.
-
-    Parameters
-    ----------
-    **settings
-        As for figure 5.
-    """
+    """The histories of figure 5 scaled by (4.1), and the one that the solver of `rocking` computes from the groups."""
     dimensional = figure_05.data(**settings)
     p = dimensional.frequency_parameter
     intensity = dimensional.peak_acceleration / STANDARD_GRAVITY

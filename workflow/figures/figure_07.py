@@ -1,7 +1,5 @@
 """Figure 7: histories of one block for several coefficients of restitution, the damping of the motion."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -25,15 +23,7 @@ def data(
 ) -> xr.Dataset:
     """Rotation and angular velocity in the groups of (4.1), over pulse and restitution.
 
-    Parameters
-    ----------
-    pulses : sequence of names
-    restitution : sequence
-        eta [-].
-    slenderness, frequency_ratio : float
-        1/a and omega [-].
-    duration : float
-        tau = p t at the end [-].
+    `restitution`: eta [-]; `slenderness`, `frequency_ratio`: 1/a and omega [-]; `duration`: tau = p t at the end [-].
     """
     tau = np.linspace(0.0, duration, SAMPLES)
     shape = (len(pulses), len(restitution), tau.size)

@@ -1,7 +1,5 @@
 """Figure 8: rocking spectra for many coefficients of restitution, with the closed form (4.13) for the sine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -18,8 +16,7 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-EXACT = 1e-9
-"""Relative difference up to which (4.13) and the solver are considered equal [-]."""
+EXACT = 1e-9  # relative difference up to which (4.13) and the solver are considered equal [-]
 
 HOLDS = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 0.7}
 APPROXIMATE = {"color": "black", "linestyle": (0, (1, 2)), "linewidth": 0.7}
@@ -30,14 +27,8 @@ def data(
 ) -> xr.Dataset:
     """Spectra in the groups of (4.11), g theta_max/a_g over omega, sampled with the solver up to their ends.
 
-    Parameters
-    ----------
-    restitution : sequence
-        eta [-].
-    slenderness : sequence
-        1/a [-], one row of panels each.
-    frequency_ratio : mapping
-        low and high [-] of what is shown.
+    `restitution`: eta [-]; `slenderness`: 1/a [-], one row of panels each; `frequency_ratio`: low and high [-] of what
+    is shown.
     """
     blocks = [SpectrumBlock(pulse, s, eta) for pulse in PULSES for s in slenderness for eta in restitution]
     # theta/alpha times 1/a is g theta/a_g

@@ -1,7 +1,5 @@
 """Figure 9: overturning of two geometrically similar blocks, two curves in SI units and one in groups."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -25,26 +23,16 @@ from workflow.figures.style import panel_letters, plotted
 
 Floats = NDArray[np.float64]
 
-HIGHEST = 12.0
-"""Largest amplitude a shown [-], as in figure 4."""
-
-WIDEST = {"sine": 7.2, "cosine": 6.0}
-"""Largest frequency ratio shown, beyond the tip of the overturning region [-]."""
+HIGHEST = 12.0  # largest amplitude a shown [-], as in figure 4
+WIDEST = {"sine": 7.2, "cosine": 6.0}  # largest frequency ratio shown, beyond the tip of the overturning region [-]
 
 FEWEST, NODES = 0.2, 301
 """Smallest frequency ratio shown, and number of grid nodes in each direction for `upper_surviving_region` [-]."""
 
-HALVINGS = 40
-"""Times that the distance of two nodes is halved to find a bound of the upper surviving region [-]."""
-
-MAIN = 1
-"""Thresholds of overturning after more impacts than this are marked in the inset only [-]."""
-
-DETAIL = ((0.4, 2.0), (1.03, 1.38))
-"""Limits of omega and of a in the inset of the cosine [-]."""
-
-STEP = 1e-6
-"""Relative distance from a threshold at which the block is integrated in SI units [-]."""
+HALVINGS = 40  # times that the distance of two nodes is halved to find a bound of the upper surviving region [-]
+MAIN = 1  # thresholds of overturning after more impacts than this are marked in the inset only [-]
+DETAIL = ((0.4, 2.0), (1.03, 1.38))  # limits of omega and of a in the inset of the cosine [-]
+STEP = 1e-6  # relative distance from a threshold at which the block is integrated in SI units [-]
 
 COLOURS, SURVIVES = (BLUE, VERMILION), "#D9D9D9"
 
@@ -59,18 +47,9 @@ def data(
 ) -> xr.Dataset:
     """The traced boundary, thresholds of each block in SI units, and where blocks pass alpha and survive.
 
-    Parameters
-    ----------
-    boundaries : sequence of paths
-        Overturning boundaries of this restitution, one for each pulse.
-    alpha_deg : float
-        Slenderness angle [deg] of all blocks.
-    half_diagonal : sequence
-        R [m] of each block.
-    restitution : float
-        eta [-].
-    period : sequence
-        T_p [s] at which thresholds are found and checked.
+    `boundaries`: overturning boundaries of this restitution, one for each pulse; `alpha_deg`: slenderness angle [deg]
+    of all blocks; `half_diagonal`: R [m] of each block; `restitution`: eta [-]; `period`: T_p [s] at which thresholds
+    are found and checked.
     """
     alpha = float(np.radians(alpha_deg))
     pulses = [read_dataset(path).pulse.attrs["pulse_name"] for path in boundaries]
@@ -132,10 +111,7 @@ def upper_surviving_region(
 ) -> tuple[Floats, Floats]:
     """The largest range of amplitudes, up to `HIGHEST`, in which a block passes alpha and survives, for each omega.
 
-    Returns
-    -------
-    lower, upper : float arrays
-        Amplitudes a [-], bisected between nodes; nan where no node is inside.
+    Returns `lower`, `upper`: amplitudes a [-], bisected between nodes; nan where no node is inside.
     """
 
     def recovers(amplitude: Floats) -> NDArray[np.bool_]:
@@ -169,14 +145,7 @@ def block_thresholds(
 ) -> Iterator[dict[str, Any]]:
     """Peak accelerations at which the outcome of a block changes, from the groups, and outcomes integrated in SI units.
 
-    Parameters
-    ----------
-    pulse : str
-    block : RectangularBlock
-    period : float
-        T_p [s].
-    restitution : float
-        eta [-].
+    `period`: T_p [s]; `restitution`: eta [-].
     """
     p, frequency = block.frequency_parameter, 2 * np.pi / period
     groups = groups_of(Problem(block.alpha, p, block.uplift_acceleration, frequency), GroupSet.RIGID)  # (5.3)

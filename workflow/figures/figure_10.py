@@ -1,7 +1,5 @@
 """Figure 10: overturning of blocks of several slenderness angles, with the limit of slender blocks of figure 4."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,8 +17,7 @@ from workflow.figures.style import panel_letters, plotted
 WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 5.6)}
 """Frequency ratios shown [-]; beyond them almost no block overturns at the amplitudes shown."""
 
-AMPLITUDES = (1.0, 12.0)
-"""Amplitudes a shown [-], as in figure 4."""
+AMPLITUDES = (1.0, 12.0)  # amplitudes a shown [-], as in figure 4
 
 DETAILS = {
     "sine": [((0.10, 0.70, 0.31, 0.27), ((0.3, 1.2), (1.03, 1.13)))],
@@ -37,14 +34,8 @@ SLENDER = "#BDBDBD"
 def data(*, sine: Path, cosine: Path, restitution: float, alpha_deg: Sequence[float]) -> xr.Dataset:
     """Boundaries of both pulses at several angles, and the closed forms of the slender block under the sine.
 
-    Parameters
-    ----------
-    sine, cosine : path
-        Traced boundaries of this restitution.
-    restitution : float
-        eta [-].
-    alpha_deg : sequence
-        Slenderness angles [deg] beside the slender limit; angles of the files.
+    `sine`, `cosine`: traced boundaries of this restitution. `restitution`: eta [-]. `alpha_deg`: slenderness angles
+    [deg] beside the slender limit; angles of the files.
     """
     angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
     files = {"sine": sine, "cosine": cosine}

@@ -1,7 +1,5 @@
 """Figure 13: rocking spectra of blocks of several slenderness angles, which nearly coincide in the groups of (6.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -15,8 +13,7 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-LARGEST_DIFFERENCE = 10.0
-"""Largest difference to the slender block that the lower panels show [%]."""
+LARGEST_DIFFERENCE = 10.0  # largest difference to the slender block that the lower panels show [%]
 
 
 def data(
@@ -28,16 +25,8 @@ def data(
 ) -> xr.Dataset:
     """Spectra of each angle and of the slender limit, g theta_max/(a_g cos alpha) over omega, up to their ends.
 
-    Parameters
-    ----------
-    restitution : float
-        eta [-].
-    slenderness : sequence
-        g tan(alpha)/a_g [-], one row of panels each.
-    alpha_deg : sequence
-        Slenderness angles [deg].
-    frequency_ratio : mapping
-        low and high [-] of what is shown.
+    `restitution`: eta [-]; `slenderness`: g tan(alpha)/a_g [-], one row of panels each; `alpha_deg`: slenderness angles
+    [deg]; `frequency_ratio`: low and high [-] of what is shown.
     """
     angles = [0.0, *(float(alpha) for alpha in np.radians(alpha_deg))]
     blocks = [SpectrumBlock(pulse, s, restitution, alpha) for pulse in PULSES for s in slenderness for alpha in angles]

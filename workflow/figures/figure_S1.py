@@ -1,7 +1,5 @@
 """Figure S1: the sine of the excitation and the ad hoc exponentials (3.27) that approximate it around tau = 1."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,12 +15,7 @@ from workflow.figures.style import panel_letters, plotted
 def data(*, slenderness: float, frequency_ratio: Sequence[float]) -> xr.Dataset:
     """sin(omega tau + psi) and (3.27) on 0 <= tau <= 2.
 
-    Parameters
-    ----------
-    slenderness : float
-        1/a [-], which sets the phase psi of uplift, (3.3).
-    frequency_ratio : sequence
-        omega [-], one panel each.
+    `slenderness`: 1/a [-], which sets the phase psi of uplift, (3.3); `frequency_ratio`: omega [-], one panel each.
     """
     a, omega, tau = 1 / slenderness, np.array(frequency_ratio), np.linspace(0.0, 2.0, 201)
     dims = ("frequency_ratio", "tau")

@@ -1,7 +1,5 @@
 """Additional figure: accuracy of the scaling of peak rotation with eta squared, (4.16), for the sine."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,21 +16,14 @@ from rocking.paper.scale_law import largest_deviation, restitution_exponent
 from rocking.plot.style import WIDTH
 from workflow.figures.style import panel_letters, plotted
 
-LARGEST = 12.0
-"""Largest amplitude a shown [-], as in figure 4."""
+LARGEST = 12.0  # largest amplitude a shown [-], as in figure 4
 
 
 def data(*, cubes: Sequence[Path], restitution: Sequence[float], reference: float) -> xr.Dataset:
     """Errors of the law where the block survives for every restitution.
 
-    Parameters
-    ----------
-    cubes : sequence of paths
-        Spectrum cubes of the sine, one for each restitution.
-    restitution : sequence
-        eta [-].
-    reference : float
-        The eta from which the law predicts the other peaks [-].
+    `cubes`: spectrum cubes of the sine, one for each restitution; `restitution`: eta [-]; `reference`: the eta from
+    which the law predicts the other peaks [-].
     """
     opened = [read_spectrum(path).sel(alpha=0.0) for path in cubes]
     eta = np.array(restitution)

@@ -1,7 +1,5 @@
 """Master spectra: peak rotation over the whole control plane in the groups of (6.1), for blocks of any slenderness."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,11 +21,8 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-PEAKS, SPREADS = (0.003, 1.0), (0.1, 100.0)
-"""Ranges of the colours of the peaks [-] and of the spread [%]."""
-
-NODES = 81
-"""Nodes in each direction of the grid from which boundaries are traced where no file holds them."""
+PEAKS, SPREADS = (0.003, 1.0), (0.1, 100.0)  # ranges of the colours of the peaks [-] and of the spread [%]
+NODES = 81  # nodes in each direction of the grid from which boundaries are traced where no file holds them
 
 OVERTURNS = "#E3E3E3"
 
@@ -42,16 +37,10 @@ def data(
 ) -> xr.Dataset:
     """Peaks of each angle on a grid, their spread over the angles, and the boundaries of overturning.
 
-    Parameters
-    ----------
-    alpha_deg : sequence
-        Slenderness angles [deg] beside the slender limit.
-    slenderness, frequency_ratio : mapping
-        low, high [-] and points of the axes g tan(alpha)/a_g, in equal steps, and omega_g/p, in equal ratios.
-    restitution : float, optional
-        eta [-] of all blocks; by default that of Housner for the angle of each, (2.4), 1 in the slender limit.
-    **files : path
-        Traced boundaries of this restitution for sine and cosine; without them they are traced.
+    `alpha_deg`: slenderness angles [deg] beside the slender limit. `slenderness`, `frequency_ratio`: low, high [-] and
+    points of the axes g tan(alpha)/a_g, in equal steps, and omega_g/p, in equal ratios. `restitution`: eta [-] of all
+    blocks; by default that of Housner for the angle of each, (2.4), 1 in the slender limit. **files: traced boundaries
+    of this restitution for sine and cosine; without them they are traced.
     """
     angles = np.array([0.0, *np.radians(alpha_deg)])
     eta = np.full(angles.size, restitution) if restitution is not None else housner_restitutions(angles)

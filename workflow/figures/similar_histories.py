@@ -1,7 +1,5 @@
 """Figures 11 and 12: histories of blocks of different shape, in the groups of (4.11) and in those of (6.1)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -28,17 +26,8 @@ def data(
 ) -> xr.Dataset:
     """Rotations by (2.2) of blocks that share the groups of (4.11), then of blocks that share those of (6.1).
 
-    Parameters
-    ----------
-    pulses : sequence of names
-    restitution : float
-        eta [-].
-    alpha_deg : sequence
-        Slenderness angles [deg], > 0.
-    slenderness, frequency_ratio : float
-        The group 1/a and omega [-]: g alpha/a_g in the first set, g tan(alpha)/a_g in the second.
-    duration : float
-        tau = p t at the end [-].
+    `restitution`: eta [-]; `alpha_deg`: slenderness angles [deg], > 0; `slenderness`, `frequency_ratio`: the group 1/a
+    and omega [-]: g alpha/a_g in the first set, g tan(alpha)/a_g in the second; `duration`: tau = p t at the end [-].
     """
     tau = np.linspace(0.0, duration, SAMPLES)
     angles = np.radians(alpha_deg)

@@ -4,8 +4,6 @@ A curve is the peak rotation over the frequency ratio on one connected range of 
 of many blocks stand one after the other, `row_size` points each, as in the files of overturning boundaries.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -21,14 +19,9 @@ from workflow.figures.style import plotted
 
 Floats = NDArray[np.float64]
 
-STRAIGHT = 5e-4
-"""Largest distance between a curve and the straight line between two of its points, in theta/alpha [-]."""
-
-FIRST_POINTS = 200
-"""Points per decade of omega from which the sampling starts [-]."""
-
-ROUNDS = 40
-"""Times that intervals are halved: the shortest one is far below the resolution of the boundary [-]."""
+STRAIGHT = 5e-4  # largest distance between a curve and the straight line between two of its points, in theta/alpha [-]
+FIRST_POINTS = 200  # points per decade of omega from which the sampling starts [-]
+ROUNDS = 40  # times that intervals are halved: the shortest one is far below the resolution of the boundary [-]
 
 
 class SpectrumBlock(NamedTuple):
@@ -113,13 +106,7 @@ def curve_variables(
 ) -> dict[str, xr.Variable]:
     """The spectra of several blocks as variables over `curve` and `point`.
 
-    Parameters
-    ----------
-    blocks : sequence of SpectrumBlock
-    window : mapping
-        low and high of omega [-].
-    scale : sequence of float
-        Factor of max |theta|/alpha for each block [-].
+    `window`: low and high of omega [-]; `scale`: factor of max |theta|/alpha for each block [-].
     """
     limits = window["low"], window["high"]
     found = [(k, branch) for k, block in enumerate(blocks) for branch in branches(block, limits)]

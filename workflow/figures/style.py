@@ -1,7 +1,5 @@
 """Settings of matplotlib for the figures, letters of panels, and variables of plotted data."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from string import ascii_lowercase
 from typing import Any

@@ -1,7 +1,5 @@
 """Fragility curves of each block of a suite: observed fractions with intervals, fitted curves, first exceedance."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -17,18 +15,11 @@ from rocking.suites.curve import curve_probability
 from workflow.figures.style import panel_letters, plotted
 from workflow.figures.suite_outcomes import block_title, intensity_label
 
-COLUMNS = 3
-"""Panels in a row."""
+COLUMNS = 3  # panels in a row
 
 
 def data(*, fragility: Path) -> xr.Dataset:
-    """Counts and curves of the first limit state.
-
-    Parameters
-    ----------
-    fragility : path
-        Fragility of the suite.
-    """
+    """Counts and curves of the first limit state of a suite."""
     given = read_dataset(fragility).isel(demand=0)
     levels = given.intensity.values
     fine = np.geomspace(levels[0], levels[-1], POINTS)

@@ -1,7 +1,5 @@
 """Probability of overturning over size and slenderness, at one level of intensity."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +12,7 @@ from workflow.figures.style import plotted
 
 
 def data(*, outcomes: Path) -> xr.Dataset:
-    """The fraction of the records that overturn each block of the map.
-
-    Parameters
-    ----------
-    outcomes : path
-        Outcomes of the suite, with `map_overturned`.
-    """
+    """The fraction of the records that overturn each block of the map, from `map_overturned`."""
     given = read_dataset(outcomes)
     overturned = given.map_overturned
     probability = plotted(

@@ -1,7 +1,5 @@
 """Outcome of each record at each level, for each block of a suite."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -20,13 +18,7 @@ CLASSES = ("no uplift", "rotation below alpha/2", "below alpha", "above alpha, s
 
 
 def data(*, outcomes: Path) -> xr.Dataset:
-    """The class of each outcome; the records in the order of the lowest level at which any block overturns.
-
-    Parameters
-    ----------
-    outcomes : path
-        Outcomes of the suite.
-    """
+    """The class of each outcome; the records in the order of the lowest level at which any block overturns."""
     given = read_dataset(outcomes)
     peak, overturned = given.peak_rotation.values, given.overturned.values.astype(bool)
     code = np.select([overturned, peak > 1.0, peak > 0.5, peak > 0.0], [4, 3, 2, 1], 0).astype(np.int8)

@@ -1,7 +1,5 @@
 """Table 1: products of the unit orientations, computed from Siano's rules (4.4) and (4.5)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure

@@ -9,18 +9,9 @@ from workflow.scripts.job import run
 
 
 def main(*, boundaries: Sequence[Path], cubes: Sequence[Path], tests: Path, report: Path, code: str) -> None:
-    """Test the files of a pulse; write one line per test if all pass.
+    """Test the files `results/KIND/PULSE/` of a pulse; write one line per test if all pass.
 
-    Parameters
-    ----------
-    boundaries, cubes : sequence of paths
-        The files, in `results/KIND/PULSE/`.
-    tests : path
-        The module of the tests.
-    report : path
-        Output.
-    code : str
-        Digest of the tests and of all that they import.
+    `code` is the digest of the tests and of all that they import.
     """
     results = boundaries[0].parents[2]
     names = [path.relative_to(results).as_posix() for path in (*boundaries, *cubes)]

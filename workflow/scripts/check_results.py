@@ -8,20 +8,9 @@ from workflow.scripts.job import run
 
 
 def main(*, manifest: Path, tests: Path, reports: Sequence[Path], report: Path, code: str) -> None:
-    """Test the results beside `manifest`; write one line per test, also of the data sets, if all pass.
+    """Test the results beside `manifest`; write one line per test, also of the data sets (`reports`), if all pass.
 
-    Parameters
-    ----------
-    manifest : path
-        The manifest.
-    tests : path
-        The module of the tests.
-    reports : sequence of paths
-        Results of the tests of the data sets.
-    report : path
-        Output.
-    code : str
-        Digest of the tests and of all that they import.
+    `code` is the digest of the tests and of all that they import.
     """
     lines = [line for path in reports for line in path.read_text(encoding="utf-8").splitlines()]
     lines += run_tests(tests, {"ROCKING_RESULTS": str(manifest.parent.resolve())})

@@ -34,24 +34,9 @@ def main(
 ) -> None:
     """Collect the claims and write them as JSON (`table`) and as Markdown (`text`).
 
-    Parameters
-    ----------
-    boundaries, cubes : sequences of paths
-        Traced boundaries and spectrum cubes of the sine.
-    collapse : path
-        Plotted data of figure 6.
-    similar_blocks : path
-        Plotted data of figure 9.
-    histories : sequence of paths
-        Plotted data of figures 11 and 12.
-    master, momentum : path
-        Plotted data of figure-master-spectra and figure-master-housner.
-    restitution : sequence
-        eta [-] at which the closed forms are compared with each other.
-    table, text : path
-        Outputs.
-    provenance : mapping
-        Digests of the code and settings.
+    `boundaries`, `cubes`: of the sine. Plotted data: `collapse` of figure 6, `similar_blocks` of figure 9, `histories`
+    of figures 11 and 12, `master` of figure-master-spectra, `momentum` of figure-master-housner. `restitution`: eta at
+    which the closed forms are compared with each other.
     """
     two_blocks = read_dataset(similar_blocks)
     pulses, eta = two_blocks.attrs["pulse_names"].split(), float(two_blocks.attrs["restitution"])  # of sections 5 and 6

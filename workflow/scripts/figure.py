@@ -23,19 +23,9 @@ def main(
 ) -> None:
     """Compute and save the plotted data, draw them, and save the drawing in two formats.
 
-    Parameters
-    ----------
-    figure : str
-        Module of the figure. Its `data` takes the input paths and the configured values by name and returns the
-        plotted data; its `draw` draws only these.
-    svg, png, nc : path
-        Outputs.
-    provenance : mapping
-        Digests of the code and settings.
-    paper, ours : mapping, optional
-        Values that the paper prints, and values chosen here because it does not.
-    **inputs : path or list of paths
-        Data sets to read.
+    `figure`: module whose `data` takes the input paths and the configured values by name and returns the plotted data;
+    its `draw` draws only these. `paper`, `ours`: values that the paper prints, and values chosen here because it does
+    not.
     """
     module = importlib.import_module(f"workflow.figures.{figure}")
     dataset = module.data(**inputs, **(paper or {}), **(ours or {}))

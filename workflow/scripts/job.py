@@ -1,7 +1,5 @@
 """Adapter between Snakemake and the scripts: a job is one call of a plain function."""
 
-from __future__ import annotations
-
 import inspect
 import traceback
 from collections.abc import Callable
@@ -17,14 +15,8 @@ def run(task: Callable[..., None], snakemake: Any) -> None:
     """Call `task` with the named inputs, outputs and parameters of the job; its output goes to the log of the job.
 
     The output `record` is not passed to the task: the digests of the other outputs are written to it afterwards. Parts
-    of products, which end with a digest of their own, have no record.
-
-    Parameters
-    ----------
-    task : callable
-        Takes paths (or lists of paths) and plain values by name.
-    snakemake : snakemake.iocontainers.Snakemake
-        The job object that Snakemake provides to a script.
+    of products, which end with a digest of their own, have no record. `snakemake` is the object that Snakemake provides
+    to a script.
     """
     join_run()
     paths = {name: _paths(value) for part in (snakemake.input, snakemake.output) for name, value in part.items()}

@@ -19,20 +19,9 @@ def main(
 ) -> None:
     """Write the manifest; paths in it are relative to the folder that holds it, so that it can be moved.
 
-    Parameters
-    ----------
-    products : sequence of paths
-        All products.
-    records : sequence of paths
-        Records of the jobs, with the digests of the products.
-    sources : mapping
-        For the path of each product its `rule`, `code_sha256` and `settings_sha256`.
-    title : str
-        Title of the configuration.
-    manifest : path
-        Output.
-    code : str
-        Digest of this script, so that Snakemake runs it again when it changes.
+    `records` of the jobs hold the digests of the products; `sources` for the path of each product its `rule`,
+    `code_sha256` and `settings_sha256`. `code` is the digest of this script, so that Snakemake runs it again when it
+    changes.
     """
     recorded = {name: entry for record in records for name, entry in read_record(record).items()}
     listed = {

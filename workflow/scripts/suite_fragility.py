@@ -31,20 +31,9 @@ def main(
 ) -> None:
     """Join the outcomes of all records, count them, and fit curves.
 
-    Parameters
-    ----------
-    files : sequence of paths
-        Outcomes under each motion.
-    suite : mapping
-        Configuration of the suite.
-    outcomes, fragility, table : path
-        Outputs: all outcomes; counts, intervals and curves, as netCDF and, by level, as CSV.
-    provenance : mapping
-        Digests of the code and settings.
-    sensitivities : sequence of paths
-        Friction demand and changed outcomes under each motion, if the suite asks for them.
-    sensitivity, sensitivity_rows : path, optional
-        Outputs: these under all motions with their counts, as netCDF and, by level, as CSV.
+    `files`: outcomes under each motion. Outputs: `outcomes` of all, `fragility` and `table` with counts, intervals and
+    curves. If the suite asks for it: `sensitivities`, friction demand and changed outcomes under each motion, which go
+    to `sensitivity` and, by level, to `sensitivity_rows`.
     """
     chosen = suite_configuration(suite, Path())
     joined = _joined(files, chosen.measure)

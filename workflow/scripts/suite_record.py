@@ -27,18 +27,7 @@ def main(
 ) -> None:
     """Compute the outcomes of the blocks, and of the grid of blocks of the map, under the motion of a file.
 
-    Parameters
-    ----------
-    file : path
-        File of the motion.
-    suite : mapping
-        Configuration of the suite.
-    outcomes : path
-        Output.
-    provenance : mapping
-        Digests of the code and settings.
-    sensitivity : path, optional
-        Output, if the suite asks for it: friction demand, and outcomes with other restitution and sampling.
+    `sensitivity`, if the suite asks for it: friction demand, and outcomes with other restitution and sampling.
     """
     chosen = suite_configuration(suite, Path())
     motion = chosen.records.read(file)

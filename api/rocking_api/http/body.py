@@ -12,7 +12,6 @@ from fastapi import Request
 from rocking_api.execution.executor import BusyError
 from rocking_api.http.encoding import MEDIA_TYPES, Form
 from rocking_api.http.errors import SlowBodyError, TooLargeError, UnsupportedBodyError
-from rocking_api.http.memory_budget import Reservation
 
 TURN_BYTES = 64 * 1024
 """Bytes of a body that arrive without waiting for other bodies.
@@ -22,14 +21,36 @@ other request, and `/health` took 1.4 to 2.7 s.
 """
 
 
-def body_form(request: Request, accepted: Sequence[Form]) -> Form:
-    """Format of the body by its Content-Type; JSON without one.
+class MemoryBudget:
+    """Bytes of the requests whose bodies arrive or are worked on, at most `limit` unless a single one holds more.
 
-    Raises
-    ------
-    UnsupportedBodyError
-        For a type that is not accepted.
+    Without it 64 clients that send bodies of 64 MB at the same time make the service hold 4 GB.
     """
+
+    def __init__(self, limit: int) -> None:
+        self.limit = limit
+        self.held = 0
+
+
+class Reservation:
+    """Bytes held for one request, in `request.state.reservation`; its methods are called by the event loop only."""
+
+    def __init__(self, budget: MemoryBudget) -> None:
+        self._budget = budget
+        self.held = 0
+
+    def replace(self, count: int) -> None:
+        """Set the number of bytes; `RequestLog` sets 0 at the end of the request."""
+        budget = self._budget
+        others = budget.held - self.held
+        if count > self.held and others and others + count > budget.limit:
+            raise BusyError(f"the limit of {budget.limit} bytes for bodies is reached; retry in a moment")
+        budget.held = others + count
+        self.held = count
+
+
+def body_form(request: Request, accepted: Sequence[Form]) -> Form:
+    """Format of the body by its Content-Type; JSON without one."""
     declared = request.headers.get("content-type", MEDIA_TYPES["json"]).split(";")[0].strip().lower()
     for form in accepted:
         if declared in (MEDIA_TYPES[form], "application/netcdf" if form == "nc" else MEDIA_TYPES[form]):
@@ -45,15 +66,6 @@ async def limited_body(
 
     Beyond `TURN_BYTES` bodies arrive in turns: one connection is read in each iteration of the event loop. A body that
     exceeds the bytes in flight is read to its end and dropped, also in turns, before it is refused.
-
-    Raises
-    ------
-    TooLargeError, SlowBodyError
-        If it is larger, or takes longer.
-    UnsupportedBodyError
-        If it is compressed: a few bytes could expand to any number.
-    BusyError
-        If the bytes in flight exceed their limit.
     """
     limit, meaning = allowed
     coding = request.headers.get("content-encoding", "identity")
@@ -71,7 +83,7 @@ async def limited_body(
                 raise TooLargeError("body", size, meaning)
             if refusal is None:
                 try:
-                    reservation.add(len(chunk))
+                    reservation.replace(reservation.held + len(chunk))
                     body.write(chunk)
                 except BusyError as error:
                     refusal, body = error, io.BytesIO()

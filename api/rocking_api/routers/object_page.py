@@ -17,9 +17,8 @@ from rocking._assessment.objects import Object, Plane
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
-from rocking._model.checks import check_number
-from rocking._model.parameters import RESTITUTION
 from rocking_api.dial import dial_of, worst_directions
 from rocking_api.http.caching import revalidated
 from rocking_api.http.parameters import query_parameters
@@ -114,13 +113,7 @@ async def _assessed(
 
 
 def site_of(given: dict[str, str]) -> Site:
-    """The site of the fields of a form.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a field is wrong.
-    """
+    """The site of the fields of a form."""
     modes: dict[str, Any] = {}
     if given["floor_periods"].strip():
         for name in ("floor_periods", "floor_participation"):
@@ -144,13 +137,7 @@ def _is_asked(asked: dict[str, str]) -> bool:
 
 
 def fields_of(asked: dict[str, str]) -> dict[str, str]:
-    """The fields of the form; those that an address leaves out are as at first, or empty if it describes an object.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If there is no such way to describe an object.
-    """
+    """The fields of the form; those that an address leaves out are as at first, or empty if it describes an object."""
     shape = asked.get("shape", "rectangle")
     if shape not in SHAPES:
         raise InvalidArgumentError("shape", shape, f"one of {', '.join(SHAPES)}")
@@ -173,7 +160,7 @@ def _restitution(given: dict[str, str]) -> Scalar:
         number = float(text)
     except ValueError:
         raise InvalidArgumentError("restitution", text, "momentum, or a number from 0 to 1") from None
-    return check_number(RESTITUTION, number)
+    return RESTITUTION.number(number)
 
 
 def _object(given: dict[str, str]) -> Object:

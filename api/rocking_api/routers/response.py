@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._lookup.cube import Points, UnreadError
 from rocking._numba.cancellation import StopFlag
-from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate_many
+from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate, evaluate_many
 from rocking_api.http.body import body_form
 from rocking_api.http.encoding import (
     CONTENT,
     MEDIA_TYPES,
     Form,
+    columns_as_they_are,
     csv_stream,
     dataset_of,
     json_stream,
@@ -22,9 +25,16 @@ from rocking_api.http.encoding import (
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.batch import Batch, Columns, batch_of, parse_csv, parse_netcdf
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.params import BatchOptions, BatchParams, LookupOptions, ResponseParams, TableParams
+from rocking_api.models.params import (
+    BatchOptions,
+    BatchParams,
+    LookupOptions,
+    ResponseParams,
+    TableParams,
+    check_point,
+)
 from rocking_api.models.pulses import options_of, with_samples
-from rocking_api.models.responses import BatchResponse, PointResponse, columns_of, point_response
+from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -33,13 +43,27 @@ MAX_JSON = 2 * 1024 * 1024
 """Largest JSON body [bytes], fifty thousand blocks: pydantic holds the interpreter lock for 0.015 s to read it."""
 
 
+MAX_INLINE_RESTITUTION = 0.9
+"""Restitution above which one block is computed in a thread [-]. Up to it a block has at most a few hundred impacts,
+half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of a second."""
+
+
 @router.get("/response", summary="One block")
 async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep) -> PointResponse:
     """Whether it overturns, and its peak rotation."""
-    await service.kernels.wait()
-    point = await service.batcher.evaluate(params)
-    service.metrics.points(point.source, 1)
-    return point_response(params, point)
+    check_point(params)
+    if not service.kernels.is_loaded:
+        await service.kernels.wait()
+    alpha = math.radians(params.alpha_deg or 0.0)
+    points = Points.of_one(params.slenderness, params.frequency_ratio, params.restitution, alpha)
+    try:
+        if params.restitution > MAX_INLINE_RESTITUTION:
+            raise UnreadError
+        found = evaluate(service.cubes, params, points, may_read=False)
+    except UnreadError:
+        found = await service.single.run(lambda stop: evaluate(service.cubes, params, points, stop))
+    service.metrics.points(SOURCES[found[0].from_cube.item()], 1)
+    return point_response(params, *found)
 
 
 @router.post(
@@ -65,7 +89,7 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     The three groups, where the body does not hold them, are query parameters, too.
     """
     batch, form = await _read(request, service)
-    request.state.reservation.replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
+    service.reservation(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
     return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, request, form, stop), request)
 
 
@@ -98,6 +122,6 @@ def _answered(service: Service, batch: Batch, request: Request, form: Form, stop
         return netcdf_response(dataset_of(batch.groups, result, attributes), "response")
     columns = columns_of(result)  # JSON and CSV are written while they are sent
     if form == "csv":
-        return csv_stream(batch.groups | columns, "response")
+        return csv_stream(columns_as_they_are(batch.groups) | columns, batch.points, "response")
     answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
-    return json_stream(answer, request, columns)
+    return json_stream(answer, request, columns, batch.points)

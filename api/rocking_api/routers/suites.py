@@ -10,6 +10,7 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from rocking_api.http.caching import REVALIDATE
 from rocking_api.http.encoding import MEDIA_TYPES, json_response, negotiated_form, text_response
 from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.params import ListParams
 from rocking_api.models.suites import SuiteCatalogue, SuiteParams, SuiteResponse
 from rocking_api.service import ServiceDep
 
@@ -19,10 +20,12 @@ SuiteName = Annotated[str, Path(description="name of a suite, see /v1/suites", e
 
 
 @router.get("", summary="Catalogue", response_model=SuiteCatalogue)
-async def get_suites(request: Request, service: ServiceDep) -> Response:
-    """All suites in the results folder that can be read; `make reproduce CONFIG=...` makes one."""
-    found = await service.run_io(service.suites.summaries)
-    return json_response(SuiteCatalogue(suites=found), request, {"Cache-Control": REVALIDATE})
+async def get_suites(params: Annotated[ListParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """The suites in the results folder that can be read; `make reproduce CONFIG=...` makes one."""
+    names, cursor = params.part(await service.run_io(service.suites.names))
+    found = await service.run_io(partial(service.suites.summaries, names))
+    catalogue = SuiteCatalogue(query=params, suites=found, next_cursor=cursor)
+    return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
 
 
 @router.get(

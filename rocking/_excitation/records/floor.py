@@ -17,17 +17,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-MAX_SAMPLES = 2_000_000
-"""Most samples of a result [-]."""
-
-PERIODS = 1e-3, 100.0
-"""Shortest and longest period of a mode [s]."""
-
-TAIL_PERIODS = 10.0
-"""Time that is appended to the record, over the longest period [-]."""
-
-SERIES_TERMS = 20
-"""Terms of the series of phi_2 where abs(w) <= 1 [-]: the first one left out is below 1e-21."""
+MAX_SAMPLES = 2_000_000  # most samples of a result [-]
+PERIODS = 1e-3, 100.0  # shortest and longest period of a mode [s]
+TAIL_PERIODS = 10.0  # time that is appended to the record, over the longest period [-]
+SERIES_TERMS = 20  # terms of the series of phi_2 where abs(w) <= 1 [-]: the first one left out is below 1e-21
 
 
 def floor_motion(
@@ -111,7 +104,7 @@ def floor_motion(
                 allowed,
                 f"more: a step of {step:g} s over {record.duration + after:g} s is not fine enough",
             )
-        exact = _floor(_refined(record.acceleration, 2 * parts), step / 2.0, 2 * extra, *modes, stop)
+        exact = _floor(refined(record.acceleration, 2 * parts), step / 2.0, 2 * extra, *modes, stop)
         horizontal = exact[::2]
         errors = np.abs(exact[1::2] - 0.5 * (horizontal[:-1] + horizontal[1:]))
         errors[(record.samples - 1) * parts :][:1] = 0.0  # there the ground stops at once
@@ -119,7 +112,7 @@ def floor_motion(
         if error <= allowed * np.abs(horizontal).max():
             break
         parts *= 2
-    upwards = None if record.vertical is None else _refined(record.vertical, parts)
+    upwards = None if record.vertical is None else refined(record.vertical, parts)
     if upwards is not None:
         upwards = _floor(upwards, step, extra, *modes, stop) if vertical == "filter" else np.pad(upwards, (0, extra))
     what = f"floor motion of periods {', '.join(f'{one:g}' for one in period)} s, step {step:g} s"
@@ -158,30 +151,40 @@ def isolated_motion(
     return floor_motion(record, periods=one, damping=zeta, vertical=vertical, relative_tolerance=relative_tolerance)
 
 
-def _refined(a: Array, parts: int) -> Array:
+def refined(a: Array, parts: int) -> Array:
     """The samples at 1/parts of the step."""
     return np.interp(np.arange((a.size - 1) * parts + 1) / parts, np.arange(a.size), a)
 
 
 def _floor(a: Array, h: float, extra: int, omega: Array, zeta: Array, gamma: Array, stop: StopFlag | None) -> Array:
     """Acceleration of the floor at the samples of `a`, of step h [s], and at `extra` ones of free vibration."""
-    from scipy.signal import lfilter  # noqa: PLC0415  # takes longer to load than the package
-
     found = np.pad((1.0 - gamma.sum()) * a, (0, extra))
     for frequency, ratio, factor in zip(omega, zeta, gamma, strict=True):
         if stop is not None:
             stop.check()
-        damped = frequency * math.sqrt(1.0 - ratio * ratio)
-        root = complex(-ratio * frequency, damped)
-        w = root * h
-        if abs(w) <= 1.0:
-            second = sum(w**k / math.factorial(k + 2) for k in range(SERIES_TERMS))
-        else:
-            second = (np.expm1(w) - w) / w**2
-        # z(h) = e^w z(0) + h ((phi_1 - phi_2) a(0) + phi_2 a(h)), phi_1 = (e^w - 1)/w, phi_2 = (phi_1 - 1)/w
-        start, end = h * (np.expm1(w) / w - second), h * second
-        z, _ = lfilter([end, start], [1.0, -np.exp(w)], a, zi=[-end * a[0]])
-        free = z[-1] * np.exp(w * np.arange(1, extra + 1))
-        residue = (frequency**2 + 2.0 * ratio * frequency * root) / (2j * damped)
+        root = oscillator_root(frequency, ratio)
+        z = oscillator_states(a, h, root)
+        free = z[-1] * np.exp(root * h * np.arange(1, extra + 1))
+        residue = (frequency**2 + 2.0 * ratio * frequency * root) / (2j * root.imag)
         found += factor * 2.0 * (residue * np.concatenate([z, free])).real
     return found
+
+
+def oscillator_root(frequency: float, ratio: float) -> complex:
+    """lambda = -zeta omega + i omega_d [1/s] of an oscillator with omega [rad/s] and zeta [-]."""
+    return complex(-ratio * frequency, frequency * math.sqrt(1.0 - ratio * ratio))
+
+
+def oscillator_states(a: Array, h: float, root: complex) -> NDArray[np.complex128]:
+    """The state z of z' = lambda z + a at the samples of `a`, linear over steps of h [s]; exact."""
+    from scipy.signal import lfilter  # noqa: PLC0415  # takes longer to load than the package
+
+    w = root * h
+    if abs(w) <= 1.0:
+        second = sum(w**k / math.factorial(k + 2) for k in range(SERIES_TERMS))
+    else:
+        second = (np.expm1(w) - w) / w**2
+    # z(h) = e^w z(0) + h ((phi_1 - phi_2) a(0) + phi_2 a(h)), phi_1 = (e^w - 1)/w, phi_2 = (phi_1 - 1)/w
+    start, end = h * (np.expm1(w) / w - second), h * second
+    states: NDArray[np.complex128] = lfilter([end, start], [1.0, -np.exp(w)], a, zi=[-end * a[0]])[0]
+    return states

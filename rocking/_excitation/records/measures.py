@@ -1,7 +1,5 @@
 """Measures of a ground motion that is linear between its samples. Arrays (samples,), SI units."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -11,14 +9,9 @@ from rocking._base.constants import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
-MEAN_PERIOD_BAND = 0.25, 20.0
-"""Frequencies of the mean period [Hz]."""
-
-MEAN_PERIOD_RESOLUTION = 0.05
-"""Largest spacing of the frequencies of the mean period [Hz] (Rathje et al. 2004)."""
-
-MAX_PADDING = 16
-"""Samples with appended zeros over those of the record up to which a whole transform is computed [-]."""
+MEAN_PERIOD_BAND = 0.25, 20.0  # frequencies of the mean period [Hz]
+MEAN_PERIOD_RESOLUTION = 0.05  # largest spacing of the frequencies of the mean period [Hz] (Rathje et al. 2004)
+MAX_PADDING = 16  # samples with appended zeros over those of the record up to which a whole transform is computed [-]
 
 
 def _from_zero(increments: Array) -> Array:

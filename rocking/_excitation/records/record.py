@@ -21,17 +21,10 @@ from rocking._base.units import Scalar
 from rocking._excitation.records import measures
 from rocking._excitation.records.processing import baseline, offset_remark, resample
 
-UNITS = QUANTITIES["m/s2"]
-"""Units of acceleration, each with its value in m/s2."""
-
-MAX_ACCELERATION = 1e6
-"""Largest acceleration of a record [m/s2]; a larger value is a fill value or a wrong unit."""
-
-TIME_STEP = 1e-6, 10.0
-"""Smallest and largest time step of a record [s]: laboratories sample at up to a megahertz."""
-
-MAX_DURATION = 1e5
-"""Longest duration of a record [s], more than a day."""
+UNITS = QUANTITIES["m/s2"]  # units of acceleration, each with its value in m/s2
+MAX_ACCELERATION = 1e6  # largest acceleration of a record [m/s2]; a larger value is a fill value or a wrong unit
+TIME_STEP = 1e-6, 10.0  # smallest and largest time step of a record [s]: laboratories sample at up to a megahertz
+MAX_DURATION = 1e5  # longest duration of a record [s], more than a day
 
 
 @final
@@ -112,7 +105,7 @@ class Record:
             component.flags.writeable = False
         given = {"vertical": None, **components, "time_step": step, **about}
         for key, value in given.items():
-            object.__setattr__(self, key, value)
+            vars(self)[key] = value
 
     def __repr__(self) -> str:
         """Name, length, step and peak accelerations."""
@@ -273,7 +266,7 @@ class Record:
 
 
 def offset_doubts(records: Sequence[Record], most: int = 5) -> list[str]:
-    """What is to be said of records before they are scaled by their PGA or PGV: those whose offset is not small."""
+    """Remarks on the records whose offset is not small, which scaling by PGA or PGV would amplify."""
     found = []
     for record in records:
         text = offset_remark(record.acceleration)

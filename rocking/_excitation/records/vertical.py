@@ -1,7 +1,5 @@
 """Factors of the vertical component of a record: a body on the ground flies where the acceleration reaches -g."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -12,8 +10,7 @@ from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 
-HIGHEST_VERTICAL_SCALE = 1e6
-"""Largest factor of a vertical component [-]."""
+HIGHEST_VERTICAL_SCALE = 1e6  # largest factor of a vertical component [-]
 
 FLIGHT_MARGIN = 1e-9
 """Relative distance of `highest_vertical_scale` from the factor at which the acceleration reaches -g [-]."""
@@ -22,11 +19,8 @@ FLIGHT_MARGIN = 1e-9
 def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> NDArray[np.float64]:
     """The factor of the vertical component as a float64 array of its own shape; 0 for a record that has none.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If a factor is not in [0, 1e6], is neither 1 nor None for a record without a vertical component, or is so large
-        that the acceleration reaches -g.
+    Raises `InvalidArgumentError` if a factor is not in [0, 1e6], is neither 1 nor None for a record without a vertical
+    component, or is so large that the acceleration reaches -g.
     """
     factor = in_range("vertical_scale", 1.0 if vertical_scale is None else vertical_scale, 0.0, HIGHEST_VERTICAL_SCALE)
     if motion.vertical is None:
@@ -47,21 +41,9 @@ def check_one_vertical_scale(motion: Record, vertical_scale: Scalar | None) -> f
 def reject_flight(parameter: str, motion: Record, factor: float, gravity: float = STANDARD_GRAVITY) -> None:
     """Refuse a factor of the vertical component at which the acceleration reaches -g.
 
-    Parameters
-    ----------
-    parameter : str
-        Name of the argument that holds the factor, for the message.
-    motion : Record
-        The record, with or without a vertical component.
-    factor : float
-        The factor [-].
-    gravity : float
-        g [m/s2].
-
-    Raises
-    ------
-    InvalidArgumentError
-        With the first time at which it happens, and the lowest acceleration.
+    `parameter`: name of the argument that holds the factor, for the message; `motion`: the record, with or without a
+    vertical component; `factor`: the factor [-]; `gravity`: g [m/s2]. Raises `InvalidArgumentError` with the first time
+    at which it happens, and the lowest acceleration.
     """
     text = flight_text(motion, factor, gravity)
     if text is not None:

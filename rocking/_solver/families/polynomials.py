@@ -4,8 +4,6 @@ A Taylor step expands the polynomial of the piece in which it starts, exactly, a
 piece. Lanes may be in different pieces.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

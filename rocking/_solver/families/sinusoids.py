@@ -1,7 +1,5 @@
 """Sums of sinusoids, `rocking._excitation.sinusoids`."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -17,11 +15,8 @@ from rocking._numba.simd_sines import sine_and_cosine
 
 SINUSOIDS = int(Family.SINUSOIDS)
 
-SERIES_LENGTH = 17
-"""Length of the series at the start of the slender arcs: degree 16 in z."""
-
-SERIES_RADIUS = 0.68
-"""Largest max(1, Omega) h at which this series is exact to rounding: 0.68^16/16! = 1e-16."""
+SERIES_LENGTH = 17  # length of the series at the start of the slender arcs: degree 16 in z
+SERIES_RADIUS = 0.68  # largest max(1, Omega) h at which this series is exact to rounding: 0.68^16/16! = 1e-16
 
 SINUSOID_FIELDS: Fields = [
     ("terms", np.int64),  # number of sinusoids c cos(w phi + d), 0 for other families

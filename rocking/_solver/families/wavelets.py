@@ -1,7 +1,5 @@
 """Wavelets f = (sum of polynomial[k] phi^k) exp(-phi^2/spread), `rocking._excitation.wavelets`."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -15,13 +13,9 @@ from rocking._numba.simd_exponentials import exponential
 
 WAVELET = int(Family.WAVELET)
 
-WAVELET_SERIES_LENGTH = 23
-"""Length of the series at the start of the slender arcs under wavelets."""
+WAVELET_SERIES_LENGTH = 23  # length of the series at the start of the slender arcs under wavelets
 
-WAVELET_FIELDS: Fields = [
-    ("spread", np.float64),
-    ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
-]
+WAVELET_FIELDS: Fields = [("spread", np.float64), ("polynomial", np.float64, (MAX_POLYNOMIAL,))]
 
 WAVELET_ARC_FIELDS: Fields = [
     ("derivatives", np.float64, (MAX_POLYNOMIAL,)),  # see `WaveletSeries`

@@ -1,7 +1,5 @@
 """Chatter under a pulse: the window on which `rocking._solver.rules.impacts_accumulate` bounds the impacts."""
 
-from __future__ import annotations
-
 from rocking._numba.compilation import Record, kernel
 from rocking._solver.excitation import shape_at
 from rocking._solver.rules import impacts_accumulate, pulls_of

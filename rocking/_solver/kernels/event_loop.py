@@ -5,8 +5,6 @@ impact. The intervals of the pulse (`rocking._solver.kernels.intervals`) decide 
 impact. The first flight does not depend on the restitution: it is stored and reused for each eta.
 """
 
-from __future__ import annotations
-
 from rocking._base.errors import SearchError
 from rocking._numba.compilation import Record, kernel
 from rocking._solver.kernels.chatter import chatter_ends_in_rest
@@ -22,8 +20,7 @@ from rocking._solver.rules import (
 )
 from rocking._solver.state import IMPACT, OVERTURNS
 
-ROUNDING = 1e-15
-"""Excess of |a f| over 1 at the start of the pulse that is within rounding [-]."""
+ROUNDING = 1e-15  # excess of |a f| over 1 at the start of the pulse that is within rounding [-]
 
 
 @kernel
@@ -63,7 +60,7 @@ def on_impact(flight: Record, w: float) -> None:
     """
     phase = flight.phase + flight.omega * flight.length
     flight.next_w = count_impact(flight, flight.length, w)
-    flight.next_phase, flight.next_sign = phase, -flight.sign
+    flight.next_phase, flight.next_sign = phase, flight.turn * flight.sign
     while flight.interval < flight.interval_count - 1 and phase >= flight.interval_phase[flight.interval + 1]:
         flight.interval += 1
     if (

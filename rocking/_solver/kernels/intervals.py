@@ -12,8 +12,6 @@ maximum principle for z'' - z = -q (and for its derivative, w'' - w = -q'), with
 Single sinusoids have closed forms for the interval ends; for other excitations `rocking._solver.crossings` finds them.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import Record, kernel

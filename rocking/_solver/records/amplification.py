@@ -1,7 +1,5 @@
 """Conditioning of responses under records: how much the peak changes with the amplitude of the motion."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

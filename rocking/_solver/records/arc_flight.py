@@ -1,7 +1,5 @@
 """A flight of the slender block under a recorded motion, by the exact solution on each sample interval."""
 
-from __future__ import annotations
-
 from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking._solver.records.event_loop import cut_time, ground_on
 from rocking._solver.records.piece import follow_piece, hyperbolic

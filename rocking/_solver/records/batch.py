@@ -3,8 +3,6 @@
 A SIMD lane takes the next block as soon as its block is finished.
 """
 
-from __future__ import annotations
-
 from rocking._base.errors import SearchError
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
@@ -31,25 +29,12 @@ def end_flight(block: Record, samples: FloatArray, ended: int, k: int, s: float,
 
 @entry
 def solve_slender(samples: FloatArray, cells: Record, block: Record, stop: FloatArray, responses: Record) -> int:
-    """Follow slender blocks from rest to their final outcome, without vertical motion.
+    """Follow slender blocks from rest to their final outcome, without vertical motion; returns the sample intervals
+    followed.
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `sample_rows`.
-    cells : array (cells,) of `BODY_CELL`
-        Blocks with equal edges and alpha = 0.
-    block
-        Solver state, a record `BLOCK_STATE`.
-    stop : uint8 array (1,)
-        Once another thread sets it to 1, the function returns within a flight; responses are missing.
-    responses : array (cells,) of `state.RESPONSE_RECORD`
-        Filled.
-
-    Returns
-    -------
-    int
-        Number of sample intervals followed.
+    `samples` are `sample_rows`, `cells` (cells,) blocks with equal edges and alpha = 0, `block` is a record
+    `BLOCK_STATE`. Once another thread sets `stop` (1,) to 1, the function returns within a flight, and responses are
+    missing.
     """
     stepped = 0
     for cell in range(len(cells)):
@@ -104,22 +89,12 @@ def solve_by_steps(
     responses: Record,
     edges: FloatArray,
 ) -> int:
-    """Follow bodies from rest to their final outcome, by Taylor steps.
+    """Follow bodies from rest to their final outcome by Taylor steps, under any motion; returns the sample intervals
+    followed.
 
-    Parameters
-    ----------
-    samples, cells, stop, responses
-        As for `solve_slender`, for any body and motion.
-    blocks, steps
-        Solver state: an array (LANES,) of records `BLOCK_STATE`, and `step_state`.
-    edges : float array (cells, EDGE_COLUMNS)
-        Filled, see `rocking._solver.state.EDGE_COLUMNS`; of shape (0, EDGE_COLUMNS) if they are not wanted, for blocks
-        with equal edges.
-
-    Returns
-    -------
-    int
-        Number of sample intervals followed.
+    As `solve_slender`, with solver state for each lane: `blocks` (LANES,), and `steps` of `step_state`. `edges` (cells,
+    EDGE_COLUMNS) is filled, see `rocking._solver.state.EDGE_COLUMNS`; without rows where it is not wanted, for equal
+    edges.
     """
     following, busy, stepped = 0, 0, 0
     taken = steps.taken

@@ -5,8 +5,6 @@ The motion is linear between its samples and zero after the last. The restoring 
 expression, so that it has one value wherever it is used.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
@@ -31,8 +29,7 @@ from rocking._solver.rules import (
     set_sign,
 )
 
-ROUNDING = 1e-15
-"""Share of a sample interval in which a flight is within rounding [-]."""
+ROUNDING = 1e-15  # share of a sample interval in which a flight is within rounding [-]
 
 
 @kernel
@@ -112,7 +109,7 @@ def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) ->
     block.w0 = count_impact(block, time, w)
     stuck = k == block.interval and s <= block.s + ROUNDING * h
     block.interval, block.s, block.at_rest = k, s, 0
-    set_sign(block, -block.sign)
+    set_sign(block, block.turn * block.sign)
     f, vertical = ground_at(block, samples, k, s)
     lifted = lifting_sign(block, f, vertical)
     if lifted == 0.0:

@@ -15,14 +15,11 @@ increments that keep their digits on short flights. A piece does not contain a c
   at the ends, two zeros require a minimum (maximum) of w inside, where z'' changes its sign: tanh s = -C/D.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import kernel
 
-MAX_ITERATIONS = 200
-"""Largest number of iterations of a root search; bisection alone needs about 60."""
+MAX_ITERATIONS = 200  # largest number of iterations of a root search; bisection alone needs about 60
 
 
 @kernel
@@ -156,10 +153,8 @@ def follow_piece(
 ) -> tuple[float, float, float, float]:
     """Follow a piece from z >= 0 and w; `known` is a rotation that has been reached before.
 
-    Returns
-    -------
-    Time of the impact, -1 if there is none; z and w there or at the right end; the largest maximum of z inside, if it
-    exceeds `known`, else 0.
+    Returns the time of the impact, -1 if there is none; z and w there or at the right end; the largest maximum of z
+    inside if it exceeds `known`, else 0.
     """
     z1, w1 = piece_state(z, w, q0, r, length)
     impact = -1.0

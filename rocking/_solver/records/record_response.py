@@ -1,21 +1,20 @@
 """`record_response`: responses of blocks under a recorded ground motion."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer
+from rocking._base.quantities import FREQUENCY_PARAMETER
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import check_vertical_scale
 from rocking._excitation.shapes import AbstractPulse
 from rocking._model.checks import check_groups
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of
-from rocking._model.parameters import FREQUENCY_PARAMETER
 from rocking._model.response import Response, dimensions_of
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
@@ -35,8 +34,8 @@ MAX_DIVIDED = 200_000
 """Most intervals into which the samples of a pulse are divided where they are longer than `MAX_INTERVAL`."""
 
 MIN_CHUNK, MAX_CHUNK = 64, 512
-"""Cells given to a thread at a time: about a millisecond of work at least, and full SIMD lanes for most of it. Of a
-motion with fewer samples than an ordinary record, 2,000, so many more."""
+"""Cells given to a thread at a time: at least a millisecond of work, with full SIMD lanes for most of it; more in
+proportion for motions of fewer samples than an ordinary record, 2,000."""
 
 
 def record_response(
@@ -98,10 +97,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
     The factor of the vertical component is 0 for a record without one.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If `motion` is not a record, or a value is out of range.
+    Raises `InvalidArgumentError` if `motion` is not a record, or a value is out of range.
     """
     p, vertical = given.pop("frequency_parameter"), given.pop("vertical_scale")
     return {
@@ -112,13 +108,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
 
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
-    """Smallest and largest frequency parameter p of a block under this record [rad/s].
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `motion` is not a record.
-    """
+    """Smallest and largest frequency parameter p of a block under this record, which is checked to be one [rad/s]."""
     if not isinstance(motion, Record):
         raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
@@ -127,14 +117,8 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
 def solve_pulse(
     pulse: AbstractPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
-    """Response records (size,) of blocks under a sampled pulse; `cells` as for `solve_cells` of `peak_response`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the frequency ratio is so low that the samples had to be divided into more than `MAX_DIVIDED` intervals.
-    StoppedError
-        If `stop` was set.
+    """Response records (size,) of blocks under a sampled pulse; `cells` and errors as for `solve_cells` of
+    `peak_response`.
     """
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
@@ -142,20 +126,26 @@ def solve_pulse(
 
 
 def solve_bodies_under_pulse(
-    pulse: AbstractPulse,
-    cells: NDArray[np.void],
-    threads: int | None,
-    stop: StopFlag | None,
-    each_side: bool = False,
+    pulse: AbstractPulse, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None, each_side: bool = False
 ) -> tuple[NDArray[np.void], Array]:
     """`solve_bodies` under a sampled pulse; `rate` of the cells is the frequency ratio, errors as `solve_pulse`."""
-    parts = interval_parts(pulse, cells["rate"])
-    sampled = cells.copy()
+    parts, sampled = interval_parts(pulse, cells["rate"]), cells.copy()
     sampled["rate"] = 1.0 / cells["rate"]
-    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
-    for division in np.unique(parts):
-        own, rows = parts == division, pulse_samples(pulse, int(division))
-        records[own], of_edges = solve_bodies(rows, sampled[own], threads, stop, each_side)
+
+    def solve(own: NDArray[np.bool_], division: int) -> tuple[NDArray[np.void], Array]:
+        return solve_bodies(pulse_samples(pulse, division), sampled[own], threads, stop, each_side)
+
+    return _each_kind(parts, solve, each_side)
+
+
+def _each_kind(
+    kinds: NDArray[np.int64], solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]], each_side: bool
+) -> tuple[NDArray[np.void], Array]:
+    """The result of `solve_bodies` for cells of several kinds (size,), those of each kind solved together."""
+    records, edges = np.empty(kinds.size, RESPONSE_RECORD), np.empty((kinds.size if each_side else 0, EDGE_COLUMNS))
+    for kind in np.unique(kinds):
+        own = kinds == kind
+        records[own], of_edges = solve(own, int(kind))
         if each_side:
             edges[own] = of_edges
     return records, edges
@@ -169,10 +159,7 @@ def pulse_rows(pulse: AbstractPulse, frequency_ratio: float) -> Array:
 def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.int64]:
     """Parts of each sample interval, at most `MAX_INTERVAL` long, at each frequency ratio: powers of two, or the most.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If that takes more than `MAX_DIVIDED` intervals.
+    Raises `InvalidArgumentError` if that takes more than `MAX_DIVIDED` intervals.
     """
     phases = pulse_samples(pulse)[TIME]
     longest, most = float(np.diff(phases).max()), max(1, MAX_DIVIDED // phases.size)
@@ -188,50 +175,27 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
 
 
 def solve_bodies(
-    samples: Array,
-    cells: NDArray[np.void],
-    threads: int | None,
-    stop: StopFlag | None,
-    each_side: bool = False,
+    samples: Array, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None, each_side: bool = False
 ) -> tuple[NDArray[np.void], Array]:
-    """Response records (size,) of bodies under samples, and what differs from edge to edge.
+    """Response records (size,) of bodies `BODY_CELL` (size,) under `sample_rows`, and what differs from edge to edge.
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `sample_rows`.
-    cells : array (size,) of `BODY_CELL`
-        The bodies.
-    threads, stop
-        As for `rocking._solver.peak_response.solve_cells`, which raises the same errors.
-    each_side : bool
-        Whether the peaks of each edge are wanted, as they must be where the edges differ: float array
-        (size, EDGE_COLUMNS); else the second result has no rows.
+    `each_side`: whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size,
+    EDGE_COLUMNS); else the second result has no rows. Errors are those of `rocking._solver.peak_response.solve_cells`.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
-    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
-    if by_steps.any() and not by_steps.all():
-        for kind in (by_steps, ~by_steps):
-            records[kind] = solve_bodies(samples, cells[kind], threads, stop)[0]
-        return records, edges
-    if cells.size and by_steps[0]:
+    kinds = np.full(cells.size, -1)
+    if by_steps.any():
         # what sets the rounding of a cell is its own, not that of the cells beside it in the array or the thread
-        alike = 2 * taylor_orders(samples, cells) + (cells["vertical"] != 0.0)
-        if (kinds := np.unique(alike)).size > 1:
-            for kind in kinds:
-                own = alike == kind
-                records[own], of_edges = solve_bodies(samples, cells[own], threads, stop, each_side)
-                if each_side:
-                    edges[own] = of_edges
-            return records, edges
+        kinds[by_steps] = 2 * taylor_orders(samples, cells[by_steps]) + (cells["vertical"][by_steps] != 0.0)
+    if cells.size and (kinds != kinds[0]).any():
+        return _each_kind(kinds, lambda own, _: solve_bodies(samples, cells[own], threads, stop, each_side), each_side)
+    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
 
-        def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        if by_steps[0]:
             blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])
             solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], edges[part])
-
-    else:
-
-        def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        else:
             solve_slender(samples, cells[part], body_states(samples, 1)[0], flag, records[part])
 
     cores = int(threads or AVAILABLE_CORES)

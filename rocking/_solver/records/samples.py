@@ -4,8 +4,6 @@ The motion is linear between its samples and zero after the last. Samples of a r
 sampled pulse need not be.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
@@ -20,33 +18,20 @@ from rocking._numba.compilation import FloatArray, Record, kernel
 SHAPE, LATER, BLOCKS, TIME, VERTICAL, LATER_LOW, BLOCKS_LOW = range(7)
 """Rows of the array of a motion, see `sample_rows`."""
 
-BLOCK = 32
-"""Sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold one extreme."""
+BLOCK = 32  # sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold one extreme
 
 
 def sample_rows(
-    shape: NDArray[np.float64],
-    time: NDArray[np.float64] | None = None,
-    vertical: NDArray[np.float64] | None = None,
+    shape: NDArray[np.float64], time: NDArray[np.float64] | None = None, vertical: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """The array (7, samples) of a motion.
 
-    Parameters
-    ----------
-    shape : float array (samples,)
-        f, the horizontal acceleration over its largest absolute value [-].
-    time : float array (samples,), optional
-        Times of the samples in any unit, ascending from 0; 0, 1, 2, ... without it.
-    vertical : float array (samples,), optional
-        Vertical acceleration over g, upwards [-]; 0 without it.
-
-    Returns
-    -------
-    float array (7, samples)
-        Rows `SHAPE`, `TIME` and `VERTICAL` as above. Row `LATER`: the largest |f| from each sample on. Row `BLOCKS`:
-        entry b is the largest |f| on the sample intervals from 32 b to 32 b + 31; entries beyond the last block are 0.
-        Rows `LATER_LOW` and `BLOCKS_LOW`: the same with the smallest vertical acceleration. Not to be changed (kernels
-        take writable arrays only).
+    `shape` (samples,): f, the horizontal acceleration over its largest absolute value [-]. `time` (samples,): times of
+    the samples in any unit, ascending from 0; 0, 1, 2, ... without it. `vertical` (samples,): vertical acceleration
+    over g, upwards [-]; 0 without it. Returns float array (7, samples): rows `SHAPE`, `TIME` and `VERTICAL` as above.
+    Row `LATER`: the largest |f| from each sample on. Row `BLOCKS`: entry b is the largest |f| on the sample intervals
+    from 32 b to 32 b + 31; entries beyond the last block are 0. Rows `LATER_LOW` and `BLOCKS_LOW`: the same with the
+    smallest vertical acceleration. Not to be changed (kernels take writable arrays only).
     """
     rows = np.zeros((7, shape.size))
     rows[SHAPE] = shape
@@ -71,13 +56,7 @@ def motion_samples(motion: RecordedMotion) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=16)
 def pulse_samples(pulse: AbstractPulse, parts: int = 1) -> NDArray[np.float64]:
-    """`sample_rows` of a pulse, whose unit of time is the phase [rad]; each interval is divided into `parts`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the pulse is not given by samples.
-    """
+    """`sample_rows` of a sampled pulse, in time units of the phase [rad]; each interval is divided into `parts`."""
     if pulse.samples is None:
         raise InvalidArgumentError("pulse", pulse.name, "a pulse given by samples")
     phases, values = pulse.samples

@@ -1,7 +1,5 @@
 """State of the solver under samples: a record for each body, a record for the Taylor steps of `LANES`."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -20,8 +18,7 @@ from rocking._solver.state import (
     aligned_record,
 )
 
-MIN_ORDER = 14
-"""Lowest degree [-]: lower ones need more steps where the motion is strong, and take longer in all."""
+MIN_ORDER = 14  # lowest degree [-]: lower ones need more steps where the motion is strong, and take longer in all
 
 BLOCK_STATE = np.dtype(
     [
@@ -87,8 +84,7 @@ def _steps_layout() -> np.dtype[np.void]:
     )
 
 
-STEP_STATE = _steps_layout()
-"""Layout of the record of `LANES` Taylor steps."""
+STEP_STATE = _steps_layout()  # layout of the record of `LANES` Taylor steps
 
 
 def taylor_orders(samples: NDArray[np.float64], cells: NDArray[np.void]) -> NDArray[np.int64]:

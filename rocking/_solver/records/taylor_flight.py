@@ -7,8 +7,6 @@ that V S + F C <= V (S - C) <= 0: z'' >= 0 for all z >= 0 up to |theta| = pi/2, 
 maximum.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._numba.compilation import FloatArray, Record, kernel
@@ -79,9 +77,8 @@ def never_returns(block: Record, samples: FloatArray, z: float, w: float) -> boo
 def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -> tuple[int, float, float, float]:
     """Process the events of the last step of a lane, and prepare the next step if the flight continues.
 
-    Returns
-    -------
-    What ended the flight, or `IN_FLIGHT`; the time since the left end of the interval `block.interval`; z and w.
+    Returns what ended the flight, or `IN_FLIGHT`; the time since the left end of the interval `block.interval`; z and
+    w.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
     if steps.steady[lane] == 0.0:

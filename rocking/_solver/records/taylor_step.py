@@ -4,8 +4,6 @@ The equation and the recurrences are those of `rocking._solver.taylor.step`, wit
 V = V0 + V' tau have two coefficients instead of a series, which removes one of the three convolutions.
 """
 
-from __future__ import annotations
-
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, load, minimum, select, splat, store
 from rocking._solver.taylor.step import choose_step_size, evaluate_step, start_series

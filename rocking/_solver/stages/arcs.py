@@ -9,32 +9,30 @@ A, B of (3.4) would lose all digits on short flights. Of a particular solution p
 `rocking._solver.stages.excitation` gives F, p and their derivatives at the phase of the last `set_angles`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import any_lane, load, select, splat, store
 from rocking._numba.simd_exponentials import cosh_minus_one_and_sinh
 from rocking._solver.families.sinusoids import SERIES_LENGTH
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.excitation import (
     expand_at_start,
     particular_increments,
     restoring_derivatives,
     start_particular_solution,
 )
-from rocking._solver.stages.state import AT_UPLIFT, OMEGA, SLENDERNESS, W0
 
 
 @kernel
 def start_arcs(pulse: Record, group: Record, sign: float) -> None:
     """Set the coefficients of the flights, all with sgn(theta) = `sign`, from the columns of `flight`."""
-    a = 1.0 / load(group.columns, SLENDERNESS)
+    a = 1.0 / load(group.columns, column.SLENDERNESS)
     store(group.a, 0, a)
     group.expanded = 0
-    store(group.reciprocal_omega, 0, 1.0 / load(group.columns, OMEGA))
+    store(group.reciprocal_omega, 0, 1.0 / load(group.columns, column.OMEGA))
     start_particular_solution(pulse, group, sign, a)
-    at_uplift = load(group.columns, AT_UPLIFT) > 0.0
+    at_uplift = load(group.columns, column.AT_UPLIFT) > 0.0
     store(group.q0, 0, select(at_uplift, splat(0.0), load(group.q0, 0)))
 
 
@@ -78,7 +76,7 @@ def expand_start(pulse: Record, group: Record) -> None:
     """Fill `series` with the Taylor coefficients of z about the start: (n + 1)(n + 2) z_{n+2} = z_n - F_n."""
     series, q0 = group.series, load(group.q0, 0)
     store(series, 0, splat(0.0))
-    store(series, 1, load(group.columns, W0))
+    store(series, 1, load(group.columns, column.W0))
     store(series, 2, q0 * -0.5)
     expand_at_start(pulse, group)  # row n + 2 becomes F_n
     for n in range(1, SERIES_LENGTH - 2):

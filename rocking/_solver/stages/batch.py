@@ -6,13 +6,12 @@ depends neither on its lane nor on the other cells. What no stage decides, a sea
 very many impacts, is left to the caller, for Taylor steps: most calls leave no block.
 """
 
-from __future__ import annotations
-
 from rocking._numba.cancellation import is_stopped
 from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.cuts import init_nodes, start_uplifts, uplift_piece
-from rocking._solver.stages.events import end_flights, prefetch_responses, write_responses
+from rocking._solver.stages.events import end_flights, write_responses
 from rocking._solver.stages.flight import follow_flights
 from rocking._solver.stages.lists import (
     GENERAL_LIST,
@@ -24,47 +23,25 @@ from rocking._solver.stages.lists import (
     take_resting_cells,
 )
 from rocking._solver.stages.short_flights import follow_short_flights
-from rocking._solver.stages.state import (
-    AT_UPLIFT,
-    BLOCK_SIZE,
-    ETA,
-    FINISHED,
-    FIRST_IMPACT_TIME,
-    FIRST_IMPACT_VELOCITY,
-    IMPACTS,
-    IMPACTS_BEFORE,
-    LONG,
-    OMEGA,
-    PHASE,
-    PIECE,
-    REPEATED,
-    REST,
-    SHORT,
-    SLENDERNESS,
-    UNDECIDED,
-    UPLIFT_TIME,
-    UPLIFTS,
-    W0,
-)
+from rocking._solver.stages.state import BLOCK_SIZE, FINISHED, LONG, REPEATED, REST, SHORT, UNDECIDED
 
-LEFT = -1
-"""Outcome of a cell that no stage decides: it is left to the caller."""
+LEFT = -1  # outcome of a cell that no stage decides: it is left to the caller
 
 
 @kernel
 def leave_rest(which: int, pulse: Record, group: Record) -> None:
-    """Decide what follows for blocks at rest: another uplift or nothing."""
+    """Decide whether blocks at rest uplift again."""
     columns = group.columns
     for lane in range(LANES):
         if group.next[lane] != float(REST):
             continue
-        piece, sign = uplift_piece(pulse, columns[SLENDERNESS, lane], columns[PHASE, lane])
+        piece, sign = uplift_piece(pulse, columns[column.SLENDERNESS, lane], columns[column.PHASE, lane])
         if sign == 0.0:
             group.next[lane] = float(FINISHED)
             continue
-        columns[W0, lane], columns[AT_UPLIFT, lane], columns[PIECE, lane] = 0.0, 1.0, piece
-        columns[UPLIFTS, lane] += 1.0
-        columns[IMPACTS_BEFORE, lane] = columns[IMPACTS, lane]
+        columns[column.W0, lane], columns[column.AT_UPLIFT, lane], columns[column.PIECE, lane] = 0.0, 1.0, piece
+        columns[column.UPLIFTS, lane] += 1.0
+        columns[column.IMPACTS_BEFORE, lane] = columns[column.IMPACTS, lane]
         group.next[lane] = float(REPEATED if (sign > 0.0) == (which % 2 == 1) else LONG)
 
 
@@ -92,14 +69,7 @@ def distribute(which: int, pulse: Record, group: Record, cells: Record, response
 
 
 @kernel
-def share_flights(
-    which: int,
-    eta: FloatArray,
-    pulse: Record,
-    group: Record,
-    cells: Record,
-    responses: Record,
-) -> None:
+def share_flights(which: int, eta: FloatArray, pulse: Record, group: Record, cells: Record, responses: Record) -> None:
     """End the flights for the other cells that share them; `shared` and `leader` hold the group as it was before."""
     members, most = cells.members, 1
     for lane in range(LANES):
@@ -114,7 +84,7 @@ def share_flights(
             if member < members[leader]:
                 group.place[lane] = leader + member
                 group.used |= 1 << lane
-                group.columns[ETA, lane] = eta[leader + member]
+                group.columns[column.ETA, lane] = eta[leader + member]
         end_flights(pulse, group, 1.0 if which % 2 == 1 else -1.0)
         distribute(which, pulse, group, cells, responses)
 
@@ -186,7 +156,7 @@ def solve_by_arcs(
     init_nodes(pulse, group)
     rows, lists, counts = cells.rows, cells.lists, cells.counts
     unused = rows[BLOCK_SIZE]
-    unused[SLENDERNESS], unused[OMEGA], unused[PIECE] = 0.5, 1.0, -1.0
+    unused[column.SLENDERNESS], unused[column.OMEGA], unused[column.PIECE] = 0.5, 1.0, -1.0
     cells.members[BLOCK_SIZE] = 1
     left = 0
     for first in range(0, len(slenderness), BLOCK_SIZE):
@@ -195,7 +165,6 @@ def solve_by_arcs(
         block = responses[first:last]
         counts[:] = 0
         shared = start_cells(block_s, block_w, pulse, cells, block)
-        ahead = last
         while not is_stopped(stop):
             fullest = 0
             for which in range(1, GENERAL_LIST):
@@ -203,14 +172,12 @@ def solve_by_arcs(
                     fullest = which
             if counts[fullest] == 0:
                 break
-            prefetch_responses(responses, ahead, min(ahead + LANES, last + BLOCK_SIZE))
-            ahead += LANES
             follow_group(fullest, shared, block_s, block_w, block_eta, pulse, group, cells, block)
         for i in range(counts[GENERAL_LIST]):
             place = lists[GENERAL_LIST, i]
             row, response = rows[place], block[place]
-            response.outcome, response.impacts = LEFT, int(row[IMPACTS])
-            response.uplift_time, response.first_impact_time = row[UPLIFT_TIME], row[FIRST_IMPACT_TIME]
-            response.first_impact_velocity = row[FIRST_IMPACT_VELOCITY]
+            response.outcome, response.impacts = LEFT, int(row[column.IMPACTS])
+            response.uplift_time, response.first_impact_time = row[column.UPLIFT_TIME], row[column.FIRST_TIME]
+            response.first_impact_velocity = row[column.FIRST_VELOCITY]
         left += counts[GENERAL_LIST]
     return left

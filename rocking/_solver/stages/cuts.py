@@ -5,8 +5,6 @@ where it is smaller. The cut between both is unique. If there is none it is put 
 destabilised or the restored part is empty and all cells have the same sequence of parts.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -16,21 +14,21 @@ from rocking._numba.simd_exponentials import arccosine
 from rocking._solver.crossings import refine_crossings
 from rocking._solver.excitation import shapes_and_slopes
 from rocking._solver.families.sinusoids import is_unit_sinusoid
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.roots import hermite_roots
-from rocking._solver.stages.state import OMEGA, PHASE, PIECE, SLENDERNESS, UPLIFT_TIME, UPLIFTS
 
 
 @kernel
 def init_cuts(pulse: Record, group: Record) -> None:
     """Set the half-width of |f| > 1/a about an extremum, arccos(1/a), for a single sinusoid."""
     if is_unit_sinusoid(pulse):
-        store(group.half_width, 0, arccosine(minimum(load(group.columns, SLENDERNESS), splat(1.0))))
+        store(group.half_width, 0, arccosine(minimum(load(group.columns, column.SLENDERNESS), splat(1.0))))
 
 
 @kernel
 def cut_phases(pulse: Record, group: Record, piece: int, sign: float) -> Any:
     """Phases of the cuts on a piece of the pulse [rad]."""
-    s = load(group.columns, SLENDERNESS)
+    s = load(group.columns, column.SLENDERNESS)
     left, right = pulse.end_phase[piece], pulse.end_phase[piece + 1]
     g_left, g_right = -sign * pulse.end_shape[piece], -sign * pulse.end_shape[piece + 1]
     rising = g_right >= g_left
@@ -104,37 +102,32 @@ def uplift_piece(pulse: Record, slenderness: float, phase: float) -> tuple[int, 
 
 
 @kernel
-def first_uplifts(pulse: Record, slenderness: SimdVector) -> Any:
-    """Pieces of the pulse with the first uplifts of blocks at rest at its start, and their sgn(theta), 0: no uplift.
+def first_uplift_pieces(pulse: Record, slenderness: SimdVector) -> Any:
+    """Pieces of the pulse with the first uplifts of blocks at rest at its start, as `uplift_piece`.
 
-    The piece is -1 where |f| exceeds 1/a at the start. The vector form of `uplift_piece`.
+    The piece is -1 where |f| exceeds 1/a at the start.
     """
-    pieces, signs = splat(-1.0), splat(0.0)
+    pieces = splat(-1.0)
     for i in range(pulse.pieces):
         piece = pulse.pieces - 1 - i
-        f = pulse.end_shape[piece + 1]
-        reached = slenderness < abs(f)
-        pieces = select(reached, splat(float(piece)), pieces)
-        signs = select(reached, splat(-math.copysign(1.0, f)), signs)
-    f = pulse.end_shape[0]
-    exceeded = slenderness < abs(f)
-    return select(exceeded, splat(-1.0), pieces), select(exceeded, splat(-math.copysign(1.0, f)), signs)
+        pieces = select(slenderness < abs(pulse.end_shape[piece + 1]), splat(float(piece)), pieces)
+    return select(slenderness < abs(pulse.end_shape[0]), splat(-1.0), pieces)
 
 
 @kernel
 def start_uplifts(pulse: Record, group: Record, sign: float) -> None:
     """Set the phase and the time of the uplifts that are given by their piece."""
-    pieces = load(group.columns, PIECE)
+    pieces = load(group.columns, column.PIECE)
     if not any_lane(pieces >= 0.0):
         return
     init_cuts(pulse, group)
-    phase = load(group.columns, PHASE)
+    phase = load(group.columns, column.PHASE)
     for piece in range(pulse.pieces):
         here = pieces == float(piece)
         if any_lane(here):
             phase = select(here, cut_phases(pulse, group, piece, sign), phase)
-    store(group.columns, PHASE, phase)
-    first = (pieces >= 0.0) & (load(group.columns, UPLIFTS) == 1.0)
-    time = (phase - pulse.end_phase[0]) / load(group.columns, OMEGA)
-    store(group.columns, UPLIFT_TIME, select(first, time, load(group.columns, UPLIFT_TIME)))
-    store(group.columns, PIECE, splat(-1.0))
+    store(group.columns, column.PHASE, phase)
+    first = (pieces >= 0.0) & (load(group.columns, column.UPLIFTS) == 1.0)
+    time = (phase - pulse.end_phase[0]) / load(group.columns, column.OMEGA)
+    store(group.columns, column.UPLIFT_TIME, select(first, time, load(group.columns, column.UPLIFT_TIME)))
+    store(group.columns, column.PIECE, splat(-1.0))

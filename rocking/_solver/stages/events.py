@@ -3,39 +3,17 @@
 The vector form of `rocking._solver.rules` for slender blocks.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.memory import prefetch_for_write
-from rocking._numba.records import scatter_records
+from rocking._numba.records import copy_lane
 from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
-from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, MODES_PER_UPLIFT, RECOVERS
+from rocking._solver.free_rocking import slender_energy, slender_top
+from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, RECOVERS, peak_mode, series_fits
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.excitation import excitation_at_angles, set_angles
-from rocking._solver.stages.state import (
-    AT_UPLIFT,
-    CHATTER,
-    ETA,
-    FINISHED,
-    FIRST_IMPACT_TIME,
-    FIRST_IMPACT_VELOCITY,
-    IMPACTS,
-    IMPACTS_BEFORE,
-    LONG,
-    MODE,
-    OMEGA,
-    PEAK,
-    PHASE,
-    REPEATED,
-    REST,
-    SHORT,
-    UNDECIDED,
-    UPLIFT_TIME,
-    UPLIFTS,
-    W0,
-)
+from rocking._solver.stages.state import FINISHED, LONG, REPEATED, REST, SHORT, UNDECIDED
 from rocking._solver.state import IMPACT, PULSE_END
 
 MOST_IMPACTS = 400.0
@@ -52,7 +30,7 @@ def end_flights(pulse: Record, group: Record, sign: float) -> None:
     store(group.outcome, 0, splat(float(RECOVERS)))
     store(group.free_z, 0, splat(0.0))
     store(group.free_w, 0, splat(0.0))
-    update_peaks(group, hits | over, load(group.top, 0), load(group.columns, IMPACTS), splat(0.0))
+    update_peaks(group, hits | over, load(group.top, 0), load(group.columns, column.IMPACTS), 0.0)
     if any_lane(over):
         final_outcomes(group, over)
     if any_lane(hits):
@@ -60,44 +38,35 @@ def end_flights(pulse: Record, group: Record, sign: float) -> None:
 
 
 @kernel
-def update_peaks(group: Record, where: Any, peak: SimdVector, impacts: SimdVector, free: SimdVector) -> None:
+def update_peaks(group: Record, where: Any, peak: SimdVector, impacts: SimdVector, free: float) -> None:
     """Update the largest peak; see `rocking._solver.rules.update_peak`."""
-    before = load(group.columns, PEAK)
-    uplifts, impacts_before = load(group.columns, UPLIFTS), load(group.columns, IMPACTS_BEFORE)
-    mode = float(MODES_PER_UPLIFT) * (uplifts - 1.0) + 2.0 * (impacts - impacts_before) + free
-    store(group.columns, MODE, select(where & (peak > before * (1.0 + 1e-12)), mode, load(group.columns, MODE)))
-    store(group.columns, PEAK, select(where, maximum(peak, before), before))
+    before = load(group.columns, column.PEAK)
+    mode = peak_mode(load(group.columns, column.UPLIFTS), impacts, load(group.columns, column.IMPACTS_BEFORE), free)
+    higher = where & (peak > before * (1.0 + 1e-12))
+    store(group.columns, column.MODE, select(higher, mode, load(group.columns, column.MODE)))
+    store(group.columns, column.PEAK, select(where, maximum(peak, before), before))
 
 
 @kernel
 def final_outcomes(group: Record, over: Any) -> None:
     """Outcome of the cells `over` from the energy at the end of the pulse: `rocking._solver.rules.final_outcome`."""
-    z, w, eta = load(group.end_z, 0), load(group.end_w, 0), load(group.columns, ETA)
-    impacts = load(group.columns, IMPACTS)
-    x = 1.0 - z
-    squared = select(x > 0.0, w * w + z * (2.0 - z), 1.0 - (x - w) * (x + w))
-    escapes = w >= x  # (3.8)
+    z, w, eta = load(group.end_z, 0), load(group.end_w, 0), load(group.columns, column.ETA)
+    impacts = load(group.columns, column.IMPACTS)
+    x, squared = slender_energy(z, w)
     increases = w > 0.0
-    rebound = eta * eta * squared  # (3.16), (3.17)
-    escapes_later = ~escapes & ~increases & (rebound >= 1.0)
-    overturns = escapes | escapes_later
-    # highest rotation (4.12), before or after the next impact
-    energy = select(increases, squared, rebound)
-    gap = select(increases, (x - w) * (x + w), 1.0 - rebound)
-    peak = energy / (1.0 + square_root(maximum(gap, splat(0.0))))
-    later = ~increases & (peak > z)
-    peak = select(increases | later, peak, z)
-    survives = over & ~overturns
-    update_peaks(group, survives, peak, select(later, impacts + 1.0, impacts), splat(1.0))
-    overturned = over & overturns
-    store(group.columns, PEAK, select(overturned, splat(math.nan), load(group.columns, PEAK)))
-    store(group.columns, MODE, select(overturned, splat(-1.0), load(group.columns, MODE)))
+    rebound = eta * eta * squared  # after the next impact, which decides nothing if z increases first
+    escapes = w >= x  # (3.8)
+    escapes_later = ~escapes & ~increases & (rebound >= 1.0)  # (3.16), (3.17)
+    overturned, survives = over & (escapes | escapes_later), over & ~escapes & ~escapes_later
+    top = select(increases, slender_top(squared, square_root((x - w) * (x + w))), z)
+    update_peaks(group, survives, top, impacts, 1.0)
+    update_peaks(group, survives & ~increases, slender_top(rebound, square_root(1.0 - rebound)), impacts + 1.0, 1.0)
+    store(group.columns, column.PEAK, select(overturned, splat(math.nan), load(group.columns, column.PEAK)))
+    store(group.columns, column.MODE, select(overturned, splat(-1.0), load(group.columns, column.MODE)))
     directly = escapes & (impacts == 0.0)
-    outcome = select(
-        overturns, select(directly, splat(float(DIRECTLY)), splat(float(AFTER_IMPACT))), splat(float(RECOVERS))
-    )
-    store(group.outcome, 0, select(over, outcome, load(group.outcome, 0)))
-    store(group.columns, IMPACTS, select(over & escapes_later, impacts + 1.0, impacts))
+    outcome = select(directly, splat(float(DIRECTLY)), splat(float(AFTER_IMPACT)))
+    store(group.outcome, 0, select(overturned, outcome, load(group.outcome, 0)))
+    store(group.columns, column.IMPACTS, select(over & escapes_later, impacts + 1.0, impacts))
     store(group.free_z, 0, select(over, z, splat(0.0)))
     store(group.free_w, 0, select(over, w, splat(0.0)))
     store(group.next, 0, select(over, splat(float(FINISHED)), load(group.next, 0)))
@@ -106,18 +75,14 @@ def final_outcomes(group: Record, over: Any) -> None:
 @kernel
 def on_impacts(pulse: Record, group: Record, sign: float, hits: Any) -> None:
     """Impacts of the cells `hits`: the next flight or rest; see `rocking._solver.kernels.event_loop.on_impact`."""
-    length, w, eta, omega = (
-        load(group.length, 0),
-        load(group.end_w, 0),
-        load(group.columns, ETA),
-        load(group.columns, OMEGA),
-    )
-    impacts = load(group.columns, IMPACTS)
+    length, w = load(group.length, 0), load(group.end_w, 0)
+    eta, omega = load(group.columns, column.ETA), load(group.columns, column.OMEGA)
+    impacts = load(group.columns, column.IMPACTS)
     first = hits & (impacts == 0.0)
-    store(group.columns, FIRST_IMPACT_TIME, select(first, length, load(group.columns, FIRST_IMPACT_TIME)))
-    store(group.columns, FIRST_IMPACT_VELOCITY, select(first, sign * w, load(group.columns, FIRST_IMPACT_VELOCITY)))
-    store(group.columns, IMPACTS, select(hits, impacts + 1.0, impacts))
-    phase = load(group.columns, PHASE) + omega * length
+    store(group.columns, column.FIRST_TIME, select(first, length, load(group.columns, column.FIRST_TIME)))
+    store(group.columns, column.FIRST_VELOCITY, select(first, sign * w, load(group.columns, column.FIRST_VELOCITY)))
+    store(group.columns, column.IMPACTS, select(hits, impacts + 1.0, impacts))
+    phase = load(group.columns, column.PHASE) + omega * length
     w0 = eta * w * -1.0  # (2.3)
     a = load(group.a, 0)
     set_angles(pulse, group, phase)
@@ -135,10 +100,10 @@ def on_impacts(pulse: Record, group: Record, sign: float, hits: Any) -> None:
     following = select(impacts >= MOST_IMPACTS, splat(float(UNDECIDED)), following)
     following = select((still & quiet) | chatters, splat(float(REST)), following)
     store(group.next, 0, select(hits, following, load(group.next, 0)))
-    store(group.columns, PHASE, select(hits, phase, load(group.columns, PHASE)))
-    store(group.columns, W0, select(hits, maximum(w0, splat(0.0)), load(group.columns, W0)))
-    store(group.columns, AT_UPLIFT, select(hits, splat(0.0), load(group.columns, AT_UPLIFT)))
-    store(group.columns, CHATTER, select(hits & chatters, splat(1.0), load(group.columns, CHATTER)))
+    store(group.columns, column.PHASE, select(hits, phase, load(group.columns, column.PHASE)))
+    store(group.columns, column.W0, select(hits, maximum(w0, splat(0.0)), load(group.columns, column.W0)))
+    store(group.columns, column.AT_UPLIFT, select(hits, splat(0.0), load(group.columns, column.AT_UPLIFT)))
+    store(group.columns, column.CHATTER, select(hits & chatters, splat(1.0), load(group.columns, column.CHATTER)))
 
 
 @kernel
@@ -156,7 +121,7 @@ def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVe
 
     |a f| < 1 up to the end of the window since f is monotone on the piece and |a f| < 1 at both ends.
     """
-    eta, omega = load(group.columns, ETA), load(group.columns, OMEGA)
+    eta, omega = load(group.columns, column.ETA), load(group.columns, column.OMEGA)
     window = 8.0 * w / ((1.0 - absolute(u0)) * (1.0 - eta))
     end = phase + omega * window
     possible = end <= piece_ends(pulse, phase)
@@ -167,35 +132,26 @@ def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVe
     least, most = minimum(u0, u1), maximum(u0, u1)
     weakest = 1.0 - maximum(absolute(u0), absolute(u1))
     height = w * w / weakest
-    spread = maximum((1.0 + most + height) / (1.0 + least - height), (1.0 - least + height) / (1.0 - most - height))
-    ratio = eta * square_root(spread)
-    possible = possible & (weakest > 0.0) & (height <= 0.5 * weakest) & (height <= load(group.columns, PEAK))
-    return possible & (ratio < 1.0) & (2.0 * w <= window * (weakest - height) * (1.0 - ratio))
+    fits = series_fits(w, window, eta, weakest, height, (1.0 + least, 1.0 + most), (1.0 - most, 1.0 - least))
+    return possible & fits & (weakest > 0.0) & (height <= 0.5 * weakest) & (height <= load(group.columns, column.PEAK))
 
 
 @kernel
 def write_responses(group: Record, done: int, responses: Record) -> None:
     """Write the responses of the lanes whose bits are set in `done`, each at once."""
     columns, response = group.columns, group.response
-    for lane in range(LANES):
-        group.written[lane] = group.place[lane] if (done >> lane) & 1 else -1
-    peak = load(columns, PEAK)
+    peak = load(columns, column.PEAK)
     store(response.peak_rotation, 0, peak)
     store(response.exceeded_alpha, 0, select(peak <= 1.0, splat(0.0), splat(1.0)))  # also where it is nan
-    store(response.peak_mode, 0, load(columns, MODE))
+    store(response.peak_mode, 0, load(columns, column.MODE))
     store(response.outcome, 0, load(group.outcome, 0))
-    store(response.impacts, 0, load(columns, IMPACTS))
-    store(response.chatter, 0, load(columns, CHATTER))
-    store(response.uplift_time, 0, load(columns, UPLIFT_TIME))
-    store(response.first_impact_time, 0, load(columns, FIRST_IMPACT_TIME))
-    store(response.first_impact_velocity, 0, load(columns, FIRST_IMPACT_VELOCITY))
+    store(response.impacts, 0, load(columns, column.IMPACTS))
+    store(response.chatter, 0, load(columns, column.CHATTER))
+    store(response.uplift_time, 0, load(columns, column.UPLIFT_TIME))
+    store(response.first_impact_time, 0, load(columns, column.FIRST_TIME))
+    store(response.first_impact_velocity, 0, load(columns, column.FIRST_VELOCITY))
     store(response.end_rotation, 0, load(group.free_z, 0))
     store(response.end_velocity, 0, load(group.free_w, 0))
-    scatter_records(response, group.written, responses)
-
-
-@kernel
-def prefetch_responses(responses: Record, first: int, last: int) -> None:
-    """Prefetch the memory of responses of the next block, which is written in the order of the ends of the cells."""
-    for cell in range(first, min(last, len(responses))):
-        prefetch_for_write(responses.ctypes.data + cell * responses.itemsize)
+    for lane in range(LANES):
+        if (done >> lane) & 1:
+            copy_lane(response, lane, responses[group.place[lane]])

@@ -5,8 +5,6 @@ sinusoids, or the phase and the Gaussian of a wavelet (`rocking._solver.stages.w
 either family, because every further kernel takes a tenth of a second to compile.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -15,18 +13,9 @@ from rocking._numba.simd import load, maximum, minimum, select, splat, square_ro
 from rocking._numba.simd_exponentials import exponential
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking._solver.families.sinusoids import SERIES_LENGTH, SERIES_RADIUS, is_unit_sinusoid
-from rocking._solver.families.wavelets import (
-    WAVELET,
-    WAVELET_SERIES_LENGTH,
-    expand_gaussian_product,
-    polynomial_at,
-)
-from rocking._solver.stages.state import AT_UPLIFT, OMEGA, PHASE, SLENDERNESS, W0
-from rocking._solver.stages.wavelets import (
-    MAX_WAVELET_REACH,
-    WAVELET_SERIES_RADIUS,
-    particular_solution,
-)
+from rocking._solver.families.wavelets import WAVELET, WAVELET_SERIES_LENGTH, expand_gaussian_product, polynomial_at
+from rocking._solver.stages import columns as column
+from rocking._solver.stages.wavelets import MAX_WAVELET_REACH, WAVELET_SERIES_RADIUS, particular_solution
 
 
 @kernel
@@ -67,7 +56,11 @@ def excitation_at_angles(pulse: Record, group: Record) -> Any:
 @kernel
 def start_particular_solution(pulse: Record, group: Record, sign: float, a: SimdVector) -> None:
     """Set the coefficients of the flights from z = 0, see `rocking._solver.stages.arcs`."""
-    omega, phase, w0 = load(group.columns, OMEGA), load(group.columns, PHASE), load(group.columns, W0)
+    omega, phase, w0 = (
+        load(group.columns, column.OMEGA),
+        load(group.columns, column.PHASE),
+        load(group.columns, column.W0),
+    )
     if pulse.family == WAVELET:
         strength, inverse = a * sign, 1.0 / omega
         squared, h = inverse * inverse, pulse.derivatives
@@ -85,7 +78,7 @@ def start_particular_solution(pulse: Record, group: Record, sign: float, a: Simd
         q0 = restoring_acceleration(pulse, group)
         x0, y0, offset_z, offset_w = -1.0 - z, w0 - w, z * -1.0, w0 - w
     else:
-        slenderness, at_uplift = load(group.columns, SLENDERNESS), load(group.columns, AT_UPLIFT) > 0.0
+        slenderness, at_uplift = load(group.columns, column.SLENDERNESS), load(group.columns, column.AT_UPLIFT) > 0.0
         unit = is_unit_sinusoid(pulse)
         max_rate, q0 = splat(1.0), splat(1.0)
         x0, y0 = splat(-1.0), w0
@@ -148,7 +141,7 @@ def restoring_acceleration(pulse: Record, group: Record) -> Any:
 def restoring_derivatives(pulse: Record, group: Record) -> Any:
     """q, dq/dtau and its second derivative at the angles."""
     if pulse.family == WAVELET:
-        phase, omega = load(group.phase, 0), load(group.columns, OMEGA)
+        phase, omega = load(group.phase, 0), load(group.columns, column.OMEGA)
         value, first, half_second = polynomial_at(pulse, phase)
         slope = phase * (-2.0 / pulse.spread)  # of log g, and g''/g
         bend = slope * slope - 2.0 / pulse.spread
@@ -174,7 +167,7 @@ def expand_at_start(pulse: Record, group: Record) -> None:
     """Set row n + 2 of `series` to the coefficient F_n of F about the start of the flight, n >= 1."""
     series = group.series
     if pulse.family == WAVELET:
-        phase, omega = load(group.columns, PHASE), load(group.columns, OMEGA)
+        phase, omega = load(group.columns, column.PHASE), load(group.columns, column.OMEGA)
         gaussian, strength, f = load(group.gaussian0, 0), load(group.strength, 0), group.excitation
         expand_gaussian_product(pulse, f, group.gauss, phase, gaussian, omega, strength, WAVELET_SERIES_LENGTH - 3)
         for n in range(1, WAVELET_SERIES_LENGTH - 2):

@@ -19,21 +19,19 @@ w = 0.460 at its left end, which is computed now: one peak, which is kept for la
 2 pi, z < 0 at the right end: one impact, which is located at phi = 5.099 with w = -1.416, and the peak with it.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel, specialised_kernel
 from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.arcs import start_arcs, states_at
 from rocking._solver.stages.cuts import cut_phases, init_cuts
 from rocking._solver.stages.excitation import restoring_acceleration, set_angles, set_end_angles
 from rocking._solver.stages.roots import locate_impacts, locate_peaks, quintic_roots
-from rocking._solver.stages.state import AT_UPLIFT, FAR, OMEGA, PHASE, W0
+from rocking._solver.stages.state import FAR
 from rocking._solver.state import IMPACT, IN_FLIGHT, PULSE_END
 
-MAX_DIP_ARCS = 8
-"""States at which the tangents decide on a minimum of z; nearly all need one or two."""
+MAX_DIP_ARCS = 8  # states at which the tangents decide on a minimum of z; nearly all need one or two
 
 UPLIFT_SLACK = 1e-13
 """A flight from an uplift starts at a cut; parts that end closer to it than this [rad] lie before it. The part that
@@ -54,12 +52,12 @@ def follow_flights(pulse: Record, group: Record, sign: float) -> None:
     store(group.known, 0, one)
     store(group.left_h, 0, zero)
     store(group.left_z, 0, zero)
-    store(group.left_w, 0, load(group.columns, W0))
+    store(group.left_w, 0, load(group.columns, column.W0))
     store(group.left_q, 0, load(group.q0, 0))
     store(group.peak_pending, 0, zero)
     store(group.top, 0, zero)
     store(group.undecided, 0, zero)
-    starts = load(group.columns, PHASE) + load(group.columns, AT_UPLIFT) * UPLIFT_SLACK
+    starts = load(group.columns, column.PHASE) + load(group.columns, column.AT_UPLIFT) * UPLIFT_SLACK
     for piece in range(pulse.pieces):
         right = pulse.end_phase[piece + 1]
         if not any_lane((load(group.followed, 0) > 0.0) & (starts < right)):
@@ -107,10 +105,10 @@ def follow_part(
     """
     zero, one = splat(0.0), splat(1.0)
     # 1. Cells whose flight has a length on this part, and those for which an event is possible on it
-    phase = load(group.columns, PHASE)
+    phase = load(group.columns, column.PHASE)
     followed, known = load(group.followed, 0) > 0.0, load(group.known, 0) > 0.0
     left_h, left_z, left_w = load(group.left_h, 0), load(group.left_z, 0), load(group.left_w, 0)
-    ahead = followed & (right > phase + load(group.columns, AT_UPLIFT) * UPLIFT_SLACK)
+    ahead = followed & (right > phase + load(group.columns, column.AT_UPLIFT) * UPLIFT_SLACK)
     h = (right - phase) * load(group.reciprocal_omega, 0)
     inside = ahead & (h > left_h)
     h = select(inside, h, left_h)
@@ -136,13 +134,13 @@ def follow_part(
         if not last:
             escapes = escapes & before_cut
         hits, undecided, left_z, left_w = restored_events(
-            pulse, group, rising, inside & ~escapes, known, left_h, left_z, left_w, h, z, w, q
+            pulse, group, rising, inside & ~escapes, known, (left_h, left_z, left_w), (h, z, w), q
         )
     else:
         escapes = fill_mask(False)
-        hits, undecided = destabilised_events(pulse, group, falling_back, left_h, left_z, left_w, h, z, w)
+        hits, undecided = destabilised_events(pulse, group, falling_back, (left_h, left_z, left_w), (h, z, w))
     if any_lane(hits):
-        bracket_impacts(group, hits, left_h, left_z, left_w, h, z, w, q)
+        bracket_impacts(group, hits, (left_h, left_z, left_w), (h, z, w), q)
     # 4. How each flight goes on
     ended = select(escapes, splat(float(PULSE_END)), load(group.ended, 0))
     ended = select(hits, splat(float(IMPACT)), ended)
@@ -167,31 +165,22 @@ def follow_part(
 
 @specialised_kernel
 def restored_events(
-    pulse: Record,
-    group: Record,
-    rising: bool,
-    inside: Any,
-    known: Any,
-    left_h: SimdVector,
-    left_z: SimdVector,
-    left_w: SimdVector,
-    h: SimdVector,
-    z: SimdVector,
-    w: SimdVector,
-    q: SimdVector,
+    pulse: Record, group: Record, rising: bool, inside: Any, known: Any, left: Any, right: Any, q: SimdVector
 ) -> Any:
-    """Impacts and peaks on a part with q >= 0, from the states at its ends; `left_*` where it is `known`.
+    """Impacts and peaks on a part with q >= 0, from the times, z and w at its ends; on the left where it is `known`.
 
     Returns the masks of the cells with an impact, which is where z <= 0 at the right end, and of those left undecided;
     then z and w at the left end, computed where it was left open and w < 0 at the right end: without a fall there is
     neither a peak nor an impact, whatever the state at the left end was. The peak of a cell is kept as pending, with
     its bracket and first guess.
     """
+    left_h, left_z, left_w = left
+    h, z, w = right
     one, zero = splat(1.0), splat(0.0)
     left_q = load(group.left_q, 0)
     unknown = inside & ~known & (w < 0.0)
     if any_lane(unknown):
-        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * left_h)
+        set_angles(pulse, group, load(group.columns, column.PHASE) + load(group.columns, column.OMEGA) * left_h)
         at_left_z, at_left_w = states_at(pulse, group, select(unknown, left_h, splat(FAR)))
         left_z, left_w = select(unknown, at_left_z, left_z), select(unknown, at_left_w, left_w)
         left_q = select(unknown, restoring_acceleration(pulse, group), left_q)
@@ -209,9 +198,8 @@ def restored_events(
     high, high_z, high_w, high_slope = h, z, w, slope
     if any_lane(undecided):
         up = 1.0 if rising else -1.0
-        undecided, dips = find_dips(
-            pulse, group, up, undecided, left_h, left_w * up, left_slope * up, h, w * up, slope * up
-        )
+        low_end, high_end = (left_h, left_w * up, left_slope * up), (h, w * up, slope * up)
+        undecided, dips = find_dips(pulse, group, up, undecided, low_end, high_end)
         # two zeros of w: the peak lies before the dip of w if w is positive at the ends, else after it
         peaks = peaks | dips
         dip, dip_z = load(group.impact_high, 0), load(group.impact_high_z, 0)
@@ -227,7 +215,7 @@ def restored_events(
     if any_lane(peaks):
         if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
             flush_peaks(pulse, group, peaks)
-        guess = low + quintic_roots(True, low_z, low_w, low_slope, high_z, high_w, high_slope, high - low)
+        guess = low + quintic_roots(True, (low_z, low_w, low_slope), (high_z, high_w, high_slope), high - low)
         store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
         store(group.peak_low, 0, select(peaks, low, load(group.peak_low, 0)))
         store(group.peak_high, 0, select(peaks, high, load(group.peak_high, 0)))
@@ -237,45 +225,29 @@ def restored_events(
 
 
 @kernel
-def destabilised_events(
-    pulse: Record,
-    group: Record,
-    falling_back: Any,
-    left_h: SimdVector,
-    left_z: SimdVector,
-    left_w: SimdVector,
-    h: SimdVector,
-    z: SimdVector,
-    w: SimdVector,
-) -> Any:
+def destabilised_events(pulse: Record, group: Record, falling_back: Any, left: Any, right: Any) -> Any:
     """Impacts on a part with q <= 0 of the cells with w < 0 at its left end; there is no peak inside.
 
     z is convex while it is positive: z <= 0 at the right end is an impact, and so is z <= 0 at a minimum inside, where
     w changes its sign. Returns the masks of the cells with an impact and of those left undecided.
     """
+    left_h, left_z, left_w = left
+    h, z, w = right
     hits = falling_back & (z <= 0.0)
     turns = falling_back & (z > 0.0) & (w > 0.0)
     undecided = turns & ~are_apart(left_z, left_w, z, w, h - left_h)
     if any_lane(undecided):
-        undecided, dips = find_dips(pulse, group, 0.0, undecided, left_h, left_z, left_w, h, z, w)
+        undecided, dips = find_dips(pulse, group, 0.0, undecided, left, right)
         hits = hits | dips
     store(group.impact_after_peak, 0, select(hits, splat(0.0), load(group.impact_after_peak, 0)))
     return hits, undecided
 
 
 @kernel
-def bracket_impacts(
-    group: Record,
-    hits: Any,
-    left_h: SimdVector,
-    left_z: SimdVector,
-    left_w: SimdVector,
-    h: SimdVector,
-    z: SimdVector,
-    w: SimdVector,
-    q: SimdVector,
-) -> None:
+def bracket_impacts(group: Record, hits: Any, left: Any, right: Any, q: SimdVector) -> None:
     """Set the bracket of the impact: the part, or its left end and the dip that `find_dips` has set."""
+    left_h, left_z, left_w = left
+    h, z, w = right
     store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
     store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
     store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
@@ -288,30 +260,21 @@ def bracket_impacts(
 
 
 @kernel
-def find_dips(
-    pulse: Record,
-    group: Record,
-    of_w: float,
-    wanted: Any,
-    low: SimdVector,
-    v_low: SimdVector,
-    slope_low: SimdVector,
-    high: SimdVector,
-    v_high: SimdVector,
-    slope_high: SimdVector,
-) -> Any:
-    """Whether v has a zero between the times `low` and `high`, with v > 0 at both and slopes < 0 and > 0.
+def find_dips(pulse: Record, group: Record, of_w: float, wanted: Any, low_end: Any, high_end: Any) -> Any:
+    """Whether v has a zero between two ends, each a time, v > 0 and its slope, which are < 0 and > 0.
 
     v is z if `of_w` is 0, otherwise `of_w` w, which are convex where they keep their sign. The state is computed where
     the tangents at both ends meet, which becomes the next end, until the tangents exclude a zero or v <= 0. Returns the
     masks of the cells that remain undecided, and of those with a zero, whose `impact_high` is set to the time with
     v <= 0.
     """
+    low, v_low, slope_low = low_end
+    high, v_high, slope_high = high_end
     todo, dips = wanted, fill_mask(False)
     for _ in range(MAX_DIP_ARCS):
         h = (v_high - v_low + slope_low * low - slope_high * high) / (slope_low - slope_high)
         h = select(todo, h, splat(FAR))
-        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        set_angles(pulse, group, load(group.columns, column.PHASE) + load(group.columns, column.OMEGA) * h)
         z, w = states_at(pulse, group, h)
         second = z - restoring_acceleration(pulse, group)
         v, slope = z, w

@@ -6,15 +6,14 @@ with an error of about 14 r^4 y where r is the largest of |b_2 y| and the rate t
 iteration; a step out of it is replaced by its middle.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, load, maximum, select, splat, store
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.arcs import motions_at
 from rocking._solver.stages.excitation import set_angles
-from rocking._solver.stages.state import FAR, OMEGA, PHASE
+from rocking._solver.stages.state import FAR
 
 
 @kernel
@@ -35,21 +34,13 @@ def hermite_roots(f0: SimdVector, d0: SimdVector, f1: SimdVector, d1: SimdVector
 
 
 @kernel
-def quintic_roots(
-    of_w: bool,
-    z0: SimdVector,
-    w0: SimdVector,
-    slope0: SimdVector,
-    z1: SimdVector,
-    w1: SimdVector,
-    slope1: SimdVector,
-    length: SimdVector,
-) -> Any:
+def quintic_roots(of_w: bool, low: Any, high: Any, length: SimdVector) -> Any:
     """Guess of the zero of z in [0, length], or of w = dz/dtau, from z, w and dw/dtau at both ends.
 
     Two Newton steps on the quintic through these, from the zero of the cubic through the function and its slopes: the
     quintic is more accurate by two orders, and an arc costs as much as ten of these steps.
     """
+    (z0, w0, slope0), (z1, w1, slope1) = low, high
     w0, w1 = w0 * length, w1 * length
     slope0, slope1 = slope0 * (length * length), slope1 * (length * length)
     c2 = 0.5 * slope0
@@ -83,15 +74,12 @@ def locate_peaks(pulse: Record, group: Record) -> None:
     pending = load(group.peak_pending, 0) > 0.0
     low, high, h = load(group.peak_low, 0), load(group.peak_high, 0), load(group.peak_guess, 0)
     max_rate = load(group.max_rate, 0)
-    found_h, found_z, found_slope = (
-        load(group.found_peak_h, 0),
-        load(group.found_peak_z, 0),
-        load(group.found_peak_slope, 0),
-    )
+    found_h, found_z = load(group.found_peak_h, 0), load(group.found_peak_z, 0)
+    found_slope = load(group.found_peak_slope, 0)
     todo = pending
     h = select(todo, h, splat(FAR))
     for _ in range(MAX_ARCS):
-        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        set_angles(pulse, group, load(group.columns, column.PHASE) + load(group.columns, column.OMEGA) * h)
         z, w, second, third, fourth = motions_at(pulse, group, h)
         low, high = select(w > 0.0, h, low), select(w > 0.0, high, h)
         inverse = 1.0 / second
@@ -124,36 +112,26 @@ def locate_peaks(pulse: Record, group: Record) -> None:
 def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
     """Locate the impacts where the mask `wanted` is true: zeros of z, decreasing; set `length` and `end_w`."""
     low, high = load(group.impact_low, 0), load(group.impact_high, 0)
-    z_low, w_low, slope_low = (
-        load(group.impact_low_z, 0),
-        load(group.impact_low_w, 0),
-        load(group.impact_low_slope, 0),
-    )
     after_peak = load(group.impact_after_peak, 0) > 0.0
     low = select(after_peak, load(group.found_peak_h, 0), low)
-    z_low, w_low = select(after_peak, load(group.found_peak_z, 0), z_low), select(after_peak, splat(0.0), w_low)
-    slope_low = select(after_peak, load(group.found_peak_slope, 0), slope_low)
-    z_high, w_high, slope_high = (
-        load(group.impact_high_z, 0),
-        load(group.impact_high_w, 0),
-        load(group.impact_high_slope, 0),
+    at_low = (
+        select(after_peak, load(group.found_peak_z, 0), load(group.impact_low_z, 0)),
+        select(after_peak, splat(0.0), load(group.impact_low_w, 0)),
+        select(after_peak, load(group.found_peak_slope, 0), load(group.impact_low_slope, 0)),
     )
-    h = low + quintic_roots(False, z_low, w_low, slope_low, z_high, w_high, slope_high, high - low)
+    at_high = load(group.impact_high_z, 0), load(group.impact_high_w, 0), load(group.impact_high_slope, 0)
+    h = low + quintic_roots(False, at_low, at_high, high - low)
     max_rate = load(group.max_rate, 0)
     length, end_w = load(group.length, 0), load(group.end_w, 0)
     todo = wanted
     h = select(todo, h, splat(FAR))
     for _ in range(MAX_ARCS):
-        set_angles(pulse, group, load(group.columns, PHASE) + load(group.columns, OMEGA) * h)
+        set_angles(pulse, group, load(group.columns, column.PHASE) + load(group.columns, column.OMEGA) * h)
         z, w, second, third, fourth = motions_at(pulse, group, h)
         low, high = select(z > 0.0, h, low), select(z > 0.0, high, h)
         inverse = 1.0 / w
-        y, b2, b3, b4 = (
-            z * inverse * -1.0,
-            0.5 * second * inverse,
-            third * inverse * (1.0 / 6.0),
-            fourth * inverse * (1.0 / 24.0),
-        )
+        y, b2 = z * inverse * -1.0, 0.5 * second * inverse
+        b3, b4 = third * inverse * (1.0 / 6.0), fourth * inverse * (1.0 / 24.0)
         square = b2 * b2
         step = y * (1.0 - y * (b2 - y * ((2.0 * square - b3) + y * (5.0 * b2 * (b3 - square) - b4))))
         ratio = maximum(absolute(b2 * y), absolute(y) * max_rate)

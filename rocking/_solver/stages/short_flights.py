@@ -1,19 +1,16 @@
 """Short flights of `LANES` blocks by the Taylor series at their start: the impact is the first zero of z/h."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
+from rocking._solver.stages import columns as column
 from rocking._solver.stages.arcs import expand_start, series_states, start_arcs
 from rocking._solver.stages.events import piece_ends
 from rocking._solver.stages.excitation import restoring_acceleration, set_angles
-from rocking._solver.stages.state import OMEGA, PEAK, PHASE, W0
 from rocking._solver.state import IMPACT, IN_FLIGHT
 
-MAX_STEPS = 12
-"""Steps to the impact or the peak; two suffice where the flight is short."""
+MAX_STEPS = 12  # steps to the impact or the peak; two suffice where the flight is short
 
 
 @kernel
@@ -40,7 +37,7 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     """
     start_arcs(pulse, group, sign)
     expand_start(pulse, group)
-    phase, w0 = load(group.columns, PHASE), load(group.columns, W0)
+    phase, w0 = load(group.columns, column.PHASE), load(group.columns, column.W0)
     reach = load(group.reach, 0)
     series = group.series
     h, time = first_guesses(w0, load(series, 2), load(series, 3), load(series, 4))
@@ -56,11 +53,11 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
         if not any_lane(todo):
             break
     z, w = series_states(pulse, group, h)
-    end = phase + load(group.columns, OMEGA) * h
+    end = phase + load(group.columns, column.OMEGA) * h
     set_angles(pulse, group, end)
     done = done & (end <= piece_ends(pulse, phase)) & (restoring_acceleration(pulse, group) > 0.0)
     top = splat(0.0)
-    higher = done & (0.5 * w0 * h > load(group.columns, PEAK))
+    higher = done & (0.5 * w0 * h > load(group.columns, column.PEAK))
     if any_lane(higher):
         todo = higher
         time = select((time > 0.0) & (time < h), time, 0.5 * h)

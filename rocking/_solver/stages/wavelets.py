@@ -14,8 +14,6 @@ For a negative x, g erfcx(x) = 2 exp(c (c - 2 |phi|/sqrt(S))) - g erfcx(-x). For
 a rounding error grows with c^2, for odd wavelets with c^3.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -23,19 +21,23 @@ from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, any_lane, load, select
 from rocking._numba.simd_error_function import scaled_erfc
 from rocking._numba.simd_exponentials import exponential
-from rocking._solver.stages.state import OMEGA
+from rocking._solver.stages import columns as column
 
 WAVELET_SERIES_RADIUS, MAX_WAVELET_REACH = 1.8, 0.9
 """Largest growth_rate omega h and h at which the series at the start is exact to rounding: 1.8^21/23! = 1e-17."""
 
-HALF_ROOT_PI = 0.5 * math.sqrt(math.pi)
-"""sqrt(pi)/2 [-]."""
+HALF_ROOT_PI = 0.5 * math.sqrt(math.pi)  # sqrt(pi)/2 [-]
 
 
 @kernel
 def particular_solution(pulse: Record, group: Record) -> Any:
     """p and dp/dtau at the phase of the last `set_angles`; `arc` and `decay` must be set."""
-    phase, g, omega, c = load(group.phase, 0), load(group.gaussian, 0), load(group.columns, OMEGA), load(group.decay, 0)
+    phase, g, omega, c = (
+        load(group.phase, 0),
+        load(group.gaussian, 0),
+        load(group.columns, column.OMEGA),
+        load(group.decay, 0),
+    )
     inverse = load(group.reciprocal_omega, 0)
     distance = absolute(phase) * (1.0 / math.sqrt(pulse.spread))
     near, far = g * scaled_erfc(c + distance), g * scaled_erfc(absolute(c - distance))

@@ -1,7 +1,5 @@
 """Zeros of the series of one lane of a Taylor step: evaluation, exclusion, refinement."""
 
-from __future__ import annotations
-
 from rocking._base.errors import SearchError
 from rocking._numba.compilation import Series, kernel, specialised_kernel
 

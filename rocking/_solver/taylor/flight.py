@@ -7,8 +7,6 @@ and no maximum. Therefore steps end where a destabilising interval begins, and a
 then no impact is possible until the acceleration is restoring again.
 """
 
-from __future__ import annotations
-
 import math
 
 from rocking._base.errors import SearchError
@@ -130,14 +128,11 @@ def highest_peak(steps: Record, lane: int, start: float, h: float, z1: float, w1
 
 @kernel
 def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, float]:
-    """Process the events of the last step of a lane, and prepare the next step if the flight continues.
+    """Process the events of the last step of a lane, which `locate_events` has located, and prepare the next step if
+    the flight continues.
 
-    `locate_events` must have been called.
-
-    Returns
-    -------
-    what ended the flight, or `IN_FLIGHT`; velocity w and rotation z there. `flight` holds the time since its start and
-    the largest z.
+    Returns what ended the flight, or `IN_FLIGHT`; w and z there. `flight` holds the time since its start and the
+    largest z.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
     destabilised, impact, peak = steps.destabilised[lane] > 0.0, steps.impact[lane], steps.peak[lane]

@@ -4,15 +4,12 @@ What needs a search, a minimum of z while the block is destabilised and peaks th
 out, is left to the scalar functions of `rocking._solver.taylor.flight`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from rocking._numba.compilation import Record, Series, SimdVector, kernel
 from rocking._numba.simd import absolute, any_lane, load, maximum, minimum, select, splat, store
 
-MAX_NEWTON_STEPS = 100
-"""Steps after which the bracketed Newton iteration stops; bisection alone needs 55."""
+MAX_NEWTON_STEPS = 100  # steps after which the bracketed Newton iteration stops; bisection alone needs 55
 
 NO_IMPACT, UNDECIDED = -1.0, -1.0
 """Time of an impact that does not take place in the step; peak that is left to the scalar functions."""

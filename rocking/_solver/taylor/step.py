@@ -11,8 +11,6 @@ z = 0 both are 1, so that the acceleration is exactly zero at uplift through F =
 `ratio`; z is exact near the unstable equilibrium, where S vanishes.
 """
 
-from __future__ import annotations
-
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
 from rocking._numba.simd_sines import sine_and_cosine

@@ -1,7 +1,5 @@
 """ESM ASCII files (Engineering Strong-Motion database, DYNA format): 64 lines `KEY: value`, then one value a line."""
 
-from __future__ import annotations
-
 from rocking._excitation.records.readers.lines import TextFile, agreed_step, agreed_unit, joined, parse_unit
 from rocking._excitation.records.record import Record
 

@@ -49,8 +49,7 @@ SENTENCES = tuple(
 )
 """Sentences with a setting."""
 
-MAX_STATEMENT = 400
-"""Characters at the start of a line in which settings are searched."""
+MAX_STATEMENT = 400  # characters at the start of a line in which settings are searched
 
 _RATES = {"": 1.0, "hz": 1.0, "sps": 1.0, "fps": 1.0, "1/s": 1.0, "samples/s": 1.0, "samples/sec": 1.0, "khz": 1000.0}
 

@@ -4,8 +4,6 @@ The counts include the offset of the instrument, in real files 1.3 to 665 times 
 mean is removed, as in the `Max. Acc.` of the header, and the record says so.
 """
 
-from __future__ import annotations
-
 import math
 import re
 

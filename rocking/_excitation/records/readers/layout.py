@@ -4,8 +4,6 @@
 (`KINDS`, `SAMPLES`); a title is none, whatever separators it holds.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from itertools import chain
@@ -14,19 +12,13 @@ from rocking._base.units import UNITS, unit_name
 from rocking._excitation.records.readers.header import Header, read_header, units_in
 from rocking._excitation.records.readers.lines import NUMBER, TOUCHING, TextFile, to_float
 
-LONGEST_STEP = 0.5
-"""Longest step of a record [s] that is taken from times without a unit."""
-
-MAX_UNIT_PARTS = 8
-"""Most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2."""
-
-MAX_NAME = 60
-"""Most characters of the name of a column; longer ones are sentences."""
+LONGEST_STEP = 0.5  # longest step of a record [s] that is taken from times without a unit
+MAX_UNIT_PARTS = 8  # most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2
+MAX_NAME = 60  # most characters of the name of a column; longer ones are sentences
 
 _COMMENT = "#%!*/\"'"
 
-_DECIMAL_COMMA = (";", "\t")
-"""Separators of columns beside which a comma is the decimal sign."""
+_DECIMAL_COMMA = (";", "\t")  # separators of columns beside which a comma is the decimal sign
 
 _UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:,[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)*+\s*+")
 """A row that may be of numbers with decimal commas only."""
@@ -85,33 +77,16 @@ class Column:
 
 @dataclass(frozen=True)
 class Layout:
-    """How a file holds its numbers.
-
-    Attributes
-    ----------
-    first : int
-        Index of the line of the first sample.
-    separator : str or None
-        Of columns; None for blanks.
-    comma : bool
-        Whether commas are decimal signs.
-    line : int or None
-        Index of the line of the names; None if the columns have none.
-    columns : list of Column
-        From the left.
-    header : Header
-        What the lines above state.
-    counted : (count, step) or None
-        Of a line above the samples with these two numbers, which the number of values has to confirm.
-    """
+    """How a file holds its numbers."""
 
     file: TextFile
-    first: int
-    separator: str | None
-    comma: bool
-    line: int | None
-    columns: list[Column]
-    header: Header
+    first: int  # index of the line of the first sample
+    separator: str | None  # of columns; None for blanks
+    comma: bool  # whether commas are decimal signs
+    line: int | None  # index of the line of the names; None if the columns have none
+    columns: list[Column]  # from the left
+    header: Header  # what the lines above state
+    # (count, step) of a line above the samples with these two numbers, which the number of values has to confirm
     counted: tuple[int, float] | None = None
     skipped: bool = False
 
@@ -129,13 +104,7 @@ RECORDS = "the header of a known format (AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet,
 
 
 def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expected: str = RECORDS) -> Layout:
-    """Decide how a file holds its numbers; `skip` rows of numbers are passed over, None: it may have to be asked for.
-
-    Raises
-    ------
-    RecordFileError
-        If there are no rows of numbers, or two readings.
-    """
+    """Decide how a file holds its numbers; `skip` rows of them are passed over, None: it may have to be asked for."""
     rows = [k for k, line in enumerate(file.head) if is_row(line)]
     if not rows:
         shown = next((line.strip() for line in file.head if line.strip()), "blank lines")
@@ -230,13 +199,7 @@ def is_row(line: str) -> bool:
 def _columns(
     file: TextFile, first: int, separator: str | None, width: int, quantity: str
 ) -> tuple[int | None, list[Column]]:
-    """Line of the names, and the columns: of the nearest line above the rows that names as many; else numbered.
-
-    Raises
-    ------
-    RecordFileError
-        If two lines name as many columns in different units.
-    """
+    """Line of the names, and the columns: of the nearest line above the rows that names as many; else numbered."""
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []
     for k in range(first - 1, -1, -1):

@@ -27,20 +27,11 @@ if TYPE_CHECKING:  # loads the compiler
 NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][+-]?\d+)?", re.ASCII)
 """A number as Fortran and C write it; not nan, inf or 1_000, which Python reads as well."""
 
-MAX_LINE = 8192
-"""Most bytes of a line: several hundred columns. A longer one is no line of a record."""
-
-HEAD_LINES = 200
-"""Largest number of lines that are searched for a header."""
-
-CHUNK = 65536
-"""Bytes of rows that are read at once: some milliseconds, in which no other thread may run."""
-
-MAX_SAMPLES = 10_000_000
-"""Largest number of values that is read from one file [-]."""
-
-MAX_CLOSING = 200
-"""Most bytes of a comment behind the last number, such as *** End data ***."""
+MAX_LINE = 8192  # most bytes of a line: several hundred columns. A longer one is no line of a record
+HEAD_LINES = 200  # largest number of lines that are searched for a header
+CHUNK = 65536  # bytes of rows that are read at once: some milliseconds, in which no other thread may run
+MAX_SAMPLES = 10_000_000  # largest number of values that is read from one file [-]
+MAX_CLOSING = 200  # most bytes of a comment behind the last number, such as *** End data ***
 
 _CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%][^\r\n]*\s*\Z")
 
@@ -67,13 +58,13 @@ class TextFile:
         """Convert UTF-16 to UTF-8, as numbers are read from bytes, and CR CR LF to LF; leave out a last comment."""
         if self.content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             try:
-                object.__setattr__(self, "content", self.content.decode("utf-16").encode())
+                vars(self)["content"] = self.content.decode("utf-16").encode()
             except UnicodeDecodeError as error:
                 raise self.error(None, f"UTF-16 with {error.reason}", "text") from None
         if b"\r\r\n" in self.content:  # a line end written twice by a system that adds a carriage return
-            object.__setattr__(self, "content", self.content.replace(b"\r\r\n", b"\n"))
+            vars(self)["content"] = self.content.replace(b"\r\r\n", b"\n")
         if end := _CLOSING.search(self.content, max(1, len(self.content) - MAX_CLOSING)):
-            object.__setattr__(self, "content", self.content[: end.start()])
+            vars(self)["content"] = self.content[: end.start()]
 
     @cached_property
     def head(self) -> list[str]:
@@ -186,13 +177,7 @@ class TextFile:
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
 
     def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
-        """The remark on a number of values that differs from the stated one; none if it does not.
-
-        Raises
-        ------
-        RecordFileError
-            If the difference is larger than headers are usually off: the file is damaged.
-        """
+        """The remark on a number of values that differs from the stated one, by as much as headers are usually off."""
         difference = abs(values.size - stated)
         if difference > COUNT_DIFFERENCE * stated:
             raise self.error(line, f"{stated} stated, {values.size} values in the file", "equal numbers")
@@ -200,13 +185,7 @@ class TextFile:
 
 
 def to_floats(fields: list[bytes]) -> list[float]:
-    """Numbers that match `NUMBER`, with exponents of E.
-
-    Raises
-    ------
-    ValueError
-        For any other text.
-    """
+    """Numbers that match `NUMBER`, with exponents of E; `ValueError` for any other text."""
     if b" ".join(fields).translate(None, b"0123456789+-.Ee "):
         raise ValueError("not only numbers")
     return [*map(float, fields)]
@@ -220,8 +199,7 @@ def decoded(text: bytes) -> str:
         return text.decode("latin-1")
 
 
-TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")
-"""Where two numbers touch; not after an exponent's letter."""
+TOUCHING = re.compile(r"(?<=[\d.])(?=[+-])")  # where two numbers touch; not after an exponent's letter
 
 
 def to_float(text: str) -> float:
@@ -240,10 +218,7 @@ def parse_unit(text: str) -> str | None:
 def agreed_unit(file: TextFile, line: int | None, stated: str | None, given: str | None) -> str:
     """The unit given as an argument, else the one stated in the file; a remark if they differ.
 
-    Raises
-    ------
-    RecordFileError
-        If there is none.
+    Raises `RecordFileError` if there is none.
     """
     if stated is None and given is None:
         raise file.error(line, "no unit of acceleration", "one in the header, or the argument `unit`")

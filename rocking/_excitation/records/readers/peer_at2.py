@@ -5,8 +5,6 @@ The fourth line has one of the forms `NPTS=  4000, DT= .01000 SEC`, `NPTS=  4000
 fewer lines of text before it.
 """
 
-from __future__ import annotations
-
 import re
 
 from rocking._excitation.records.readers.header import Statement, read_header
@@ -14,8 +12,7 @@ from rocking._excitation.records.readers.layout import names_below
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
 from rocking._excitation.records.record import Record
 
-HEADER_LINES = 12
-"""Largest number of lines before the line with NPTS and DT."""
+HEADER_LINES = 12  # largest number of lines before the line with NPTS and DT
 
 _NAMED = r"\s*+[=:]?\s*+([^\s,;=]+)"
 

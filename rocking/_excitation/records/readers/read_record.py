@@ -17,17 +17,13 @@ from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 if TYPE_CHECKING:  # loads the compiler
     from rocking._numba.cancellation import StopFlag
 
-MAX_BYTES = 200_000_000
-"""Largest file that is read [bytes]."""
-
-MAX_SKIP = 100
-"""Most rows of numbers above the samples [-]."""
+MAX_BYTES = 200_000_000  # largest file that is read [bytes]
+MAX_SKIP = 100  # most rows of numbers above the samples [-]
 
 MAX_SHIFT = 0.02
 """Largest distance in time of the last samples of two components whose steps differ by rounding, in steps [-]."""
 
-MAX_LENGTH_RATIO = 1.1
-"""Largest ratio of the numbers of samples of two components of one record [-]."""
+MAX_LENGTH_RATIO = 1.1  # largest ratio of the numbers of samples of two components of one record [-]
 
 
 def read_record(

@@ -1,7 +1,5 @@
 """SAC and miniSEED files through ObsPy, an optional package."""
 
-from __future__ import annotations
-
 import io
 import struct
 import warnings
@@ -12,8 +10,7 @@ from rocking._base.errors import RecordFileError
 from rocking._excitation.records.readers.lines import overruled
 from rocking._excitation.records.record import Record
 
-SAC_VERSION_PLACE, SAC_VERSIONS = 304, (6, 7)
-"""Byte and values of the header version of a binary SAC file."""
+SAC_VERSION_PLACE, SAC_VERSIONS = 304, (6, 7)  # byte and values of the header version of a binary SAC file
 
 
 def is_seismic(content: bytes) -> bool:

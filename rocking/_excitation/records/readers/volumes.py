@@ -6,8 +6,6 @@ format for CSMIP strong-motion data tapes, OSMS 85-03; GeoNet strong-motion data
 Geological Survey. Other files of this kind are refused by their name.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -31,8 +29,7 @@ from rocking._excitation.records.record import Record
 Array = NDArray[np.float64]
 Lines = Iterator[tuple[int, bytes]]
 
-FIRST_LINES = 5
-"""Lines in which the format is named."""
+FIRST_LINES = 5  # lines in which the format is named
 
 REFUSED = {
     r"^\*? ?vol1ds|\bbhrc\b": "a BHRC Volume 1 file",
@@ -66,13 +63,7 @@ class Channel:
 
 
 def format_of(file: TextFile) -> str | None:
-    """The name of the format; None if it is none of these.
-
-    Raises
-    ------
-    RecordFileError
-        If it is one that is not read.
-    """
+    """The name of the format; None if it is none of these; those that are not read are refused."""
     start = file.head[:FIRST_LINES]
     for line in start:
         if re.match(r"(un)?corrected accelerogram \S+ +(GNS|GeoNet)", line, re.I):

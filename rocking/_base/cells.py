@@ -1,0 +1,197 @@
+"""How the header, the units and the cells of a table are read as declared quantities."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantity import Quantity
+from rocking._base.units import MAX_LENGTH, UNITS, USUAL, unit_name
+
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/:]\s*([^\s,/:]{1,8})\s*$|\bin\s+([^\s,/]{1,12})\s*$")
+_LAST = re.compile(r"[\s_]+([^\s_()\[\]]{1,12})\s*$")
+_PARTS = re.compile(r"[/|,;:()\[\]=]")
+_ROUND = re.compile(r"(?<!\w)[\u00d8\u00f8\u2300\u2205\u03a6\u03c6](?!\w)")
+_SIGNS = re.compile('[%\u2030\u00b0"\u2033$\u20ac\u00a3]')
+_GAP = r"[\s'\u2019]"
+_NUMBER = re.compile(
+    r"\s*([+-]?[0-9][0-9.,'\u2019 \u00a0\u202f]*|[+-]?[.,][0-9]+)((?:(?<=[0-9.,])e[+-]?[0-9]+)?)\s*(.*?)\s*",
+    re.DOTALL | re.IGNORECASE,
+)
+_THOUSANDS = re.compile(rf"[+-]?\d{{1,3}}(?:{_GAP}\d{{3}})+(?:[.,]\d*)?")
+_GROUPS = re.compile(r"[+-]?\d{1,3}(?:[.,]\d{3})+")
+
+
+def rank(one: Quantity, header: str) -> int:
+    """Place of the name in a header among the names of a quantity, the best one first."""
+    names = one.names
+    found = [plain_name(name) for name, _, _ in _splits(header)]
+    return min((names.index(name) for name in found if name in names), default=len(names))
+
+
+def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
+    """The value of a cell in SI units; the text of a column of texts as it stands.
+
+    Parameters
+    ----------
+    one : Quantity
+        What the column holds.
+    cell : str
+        With its unit or without.
+    unit : str
+        Of cells without one, as `unit_name` gives it; "": unknown.
+    decimal : str
+        The decimal sign of the table, which settles "1,234"; "": unknown.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the cell is no number, its decimal sign is not certain, or its unit is unknown.
+    """
+    if not one.unit:
+        return cell
+    text = cell.strip().removeprefix("'")  # of a spreadsheet's text
+    if text.lower().partition("(")[0].rstrip() in one.words:
+        return text.lower()
+    found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
+    if not found:
+        raise InvalidArgumentError(one.name, text[:MAX_LENGTH], "a number, with its unit or with one in the header")
+    number = _number(one.name, found[1].strip(), found[2], text, "" if cell.strip() != text else decimal)
+    written = unit_name(found[3], one.unit) if found[3] else unit or one.assumed
+    if written is None:
+        raise InvalidArgumentError(one.name, text, f"a unit such as {', '.join(UNITS[one.unit])}")
+    if not written and one.unit in USUAL and number:
+        usual = USUAL[one.unit][-1]
+        allowed = f"a unit: write {one.name} [{usual}] in the header, or {text} {usual} in the cell"
+        raise InvalidArgumentError(one.name, text, allowed)
+    if written == "%" and not found[3] and 0.0 < abs(number) <= 1.0:
+        raise InvalidArgumentError(one.name, text, f"a percentage above 1: is it {text} %, or {text}?")
+    value = number * UNITS[one.unit].get(written, 1.0)
+    if value > one.highest:
+        raise InvalidArgumentError(one.name, text, f"at most {one.highest:g}; a percentage has its sign, {text} %")
+    return value
+
+
+def _number(name: str, written: str, exponent: str, text: str, decimal: str) -> float:
+    """The number of digits with signs, and of an exponent."""
+    if re.search(_GAP, written) and not _THOUSANDS.fullmatch(written):
+        raise InvalidArgumentError(name, text, "one number, with blanks between thousands only")
+    digits = re.sub(_GAP, "", written)
+    own = decimal_sign(digits) or ""
+    if own.startswith("?") and not decimal:
+        allowed = "a number whose decimal sign is certain, such as 1.2340 or 1234"
+        raise InvalidArgumentError(name, text, allowed)
+    point = decimal if own.startswith("?") else own or decimal or "."
+    other = "," if point == "." else "."
+    if not re.fullmatch(rf"[+-]?(\d*|\d{{1,3}}(?:{re.escape(other)}\d{{3}})+)(?:{re.escape(point)}\d*)?", digits):
+        raise InvalidArgumentError(name, text, f"a number with the decimal sign {point!r}")
+    return float(digits.replace(other, "").replace(point, ".") + exponent)
+
+
+def decimal_sign(digits: str) -> str:
+    """The decimal sign of a number: "." or ",", with "?" before it if it may separate thousands; "": not shown.
+
+    Parameters
+    ----------
+    digits : str
+        Digits with signs, without blanks.
+    """
+    used = [sign for sign in digits if sign in ".,"]
+    if not used:
+        return ""
+    last = used[-1]
+    before, after = digits.rsplit(last, 1)
+    if len(set(used)) == 2:
+        return last
+    if len(used) > 1:
+        return ("," if last == "." else ".") if _GROUPS.fullmatch(digits) else ""
+    return f"?{last}" if len(after) == 3 and re.fullmatch(r"[+-]?[1-9]\d{0,2}", before) else last
+
+
+def split_number(cell: str) -> tuple[str, str] | None:
+    """The digits of a cell that starts with a number, without blanks, and what follows; None for other cells."""
+    found = _NUMBER.fullmatch(cell) if len(cell) <= MAX_LENGTH else None
+    return (re.sub(_GAP, "", found[1]), found[3]) if found else None
+
+
+def plain_name(text: str) -> str:
+    """A name in small letters, without accents, signs and doubled blanks; the sign of a diameter is its word."""
+    text = _ROUND.sub(" diameter ", text).replace("\u00df", "ss")
+    bare = "".join(one for one in unicodedata.normalize("NFKD", text.lower()) if not unicodedata.combining(one))
+    return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff]+", " ", bare).split())
+
+
+def name_and_unit(text: str) -> tuple[str, str]:
+    """The parts of a header; "" without a unit."""
+    found = _UNIT.search(text)
+    return (text[: found.start()], next(filter(None, found.groups()), "").strip()) if found else (text, "")
+
+
+def _splits(text: str) -> Iterator[tuple[str, str, bool]]:
+    """Ways to divide a header into name and unit, and whether what follows the name must be a unit."""
+    name, written = name_and_unit(text)
+    if written or name != text:
+        yield name, written, True
+    if last := _LAST.search(text):
+        yield text[: last.start()], last[1], False
+    yield text, "", True
+
+
+def named(text: str, names: Mapping[str, Quantity]) -> Quantity | None:
+    """The column of a name, which may be there twice: "Breite / width", "Height (H)"."""
+    plain = plain_name(text)
+    if plain in names:
+        return names[plain]
+    first, _, last = plain.rpartition(" ")
+    for parts in ([part for part in map(plain_name, _PARTS.split(text)) if part], [first, last]):
+        found = [names.get(part) for part in parts]
+        if len(parts) > 1 and found[0] is not None and all(one is found[0] for one in found):
+            return found[0]
+    return None
+
+
+def read_header(text: str, names: Mapping[str, Quantity], argument: str) -> tuple[Quantity, str] | None:
+    """The column that a header names, and its unit, "" for none; None for another column.
+
+    Parameters
+    ----------
+    text : str
+        Such as "width [cm]", "Breite (cm)", "height, m", "depth_mm", "friction %".
+    names : mapping
+        Quantitys by their names and aliases, as `plain_name` gives them.
+    argument : str
+        What an error calls the table.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the unit of a quantity is not understood.
+    """
+    for name, written, must in _splits(text):
+        one = named(name, names)
+        if one is None:
+            continue
+        if one.unit not in UNITS and must:
+            return one, ""
+        if one.unit not in UNITS:  # "room name" is no room
+            continue
+        stated = written or name if _SIGNS.search(name) else written
+        known = unit_name(stated, one.unit) if stated else ""
+        if known is None and named(stated, names) is one:  # its symbol, such as "friction (mu)"
+            known = ""
+        if known is not None:
+            return one, known
+        if must:
+            raise InvalidArgumentError(f"{argument}, header", text, f"a unit such as {', '.join(UNITS[one.unit])}")
+    return None
+
+
+def stated_unit(text: str, unit: str) -> str | None:
+    """The unit that a header states, of any name, if it is one of a quantity, such as "m"."""
+    for _, written, must in _splits(text):
+        known = unit_name(written, unit) if written else None
+        if known and (must or written.lower() not in ("m", "in") or "_" in text):  # "Made in" has no unit
+            return known
+    return None

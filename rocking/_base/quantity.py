@@ -1,0 +1,193 @@
+"""The declaration of a quantity, from which Python, tables, options, HTTP and the pages derive.
+
+It imports nothing heavy: the layer of an interface makes its own object from the declaration, an option of typer in
+`rocking/_cli/options.py`, a field of pydantic in `api/rocking_api/models/quantity.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # they load numpy, which help does without
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rocking._base.units import Values
+
+MAX_LABEL = 25  # characters of a label that xarray writes in one line, with a unit [-]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that people state or that is computed.
+
+    Attributes
+    ----------
+    name : str
+        In Python, in JSON and in tables that are written; the option has dashes.
+    unit : str
+        SI unit, a key of `rocking._base.units.UNITS`, "-" of a number; "" of a text, "bool" of yes or no.
+    meaning : str
+        In one sentence, without a capital or a full stop.
+    symbol : str
+        As in the paper.
+    lower, upper : float
+        Ends of the range; they may be infinite.
+    closed : {"both", "left", "right", "neither"}
+        Which ends belong to the range.
+    default : object
+        Value where none is stated; None: it is needed, or the meaning says what applies.
+    example : str
+        As people write it, with its unit.
+    aliases : str
+        Other names in headers of tables, in small letters without accents, the best ones first, with commas between.
+    stands_for : tuple of str
+        Quantities of which this one is the first that the table has no column for: a length beside a width is a depth.
+    absent_beside : tuple of str
+        Quantities beside which 0 says that this one does not apply.
+    words : tuple of str
+        Texts that are values.
+    highest : float
+        Value in the SI unit above which a cell is refused, because its unit is in doubt.
+    joined : bool
+        Whether the texts of several columns are joined; otherwise the column with the best name counts.
+    assumed : str
+        Unit of cells where none is stated; "": they are refused.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    _: KW_ONLY
+    symbol: str = ""
+    lower: float = -math.inf
+    upper: float = math.inf
+    closed: str = "neither"
+    default: Any = None
+    example: str = ""
+    aliases: str = ""
+    stands_for: tuple[str, ...] = ()
+    absent_beside: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    highest: float = math.inf
+    joined: bool = False
+    assumed: str = ""
+
+    def convert(self, value: Values) -> NDArray[np.float64]:
+        """The value in the SI unit as a float64 array, shape kept.
+
+        Parameters
+        ----------
+        value : array_like, text with a unit, or quantity of a library
+            None of its entries masked.
+
+        Raises
+        ------
+        InvalidArgumentError
+            With the first entry that is not a finite real number in the range.
+        """
+        from rocking._base.errors import in_range  # noqa: PLC0415
+
+        return in_range(self.name, value, self.lower, self.upper, closed=self.closed, unit=self.unit)
+
+    def number(self, value: Values, name: str = "") -> float:
+        """As `convert`, for one number; `name` is that of the error message, where it is another."""
+        if type(value) is float and self.lower < value < self.upper:  # all that is left to do for most
+            return value
+        from rocking._base.errors import number  # noqa: PLC0415
+
+        return number(name or self.name, value, self.lower, self.upper, closed=self.closed, unit=self.unit)
+
+    def read(self, value: Any, *, si: bool = False) -> Any:
+        """What an option, a cell of JSON or a parameter of a query says: one of the words, a text, or a number.
+
+        Parameters
+        ----------
+        value : object
+            A text, such as "40 cm" or "momentum", or a number in the SI unit.
+        si : bool
+            Whether a text without a unit is in the SI unit, as in a query; otherwise it needs one.
+
+        Raises
+        ------
+        InvalidArgumentError
+            As `convert`; the words are among what it allows.
+        """
+        from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
+        from rocking._base.units import USUAL  # noqa: PLC0415
+
+        if not self.unit or (isinstance(value, str) and value.partition("(")[0].strip() in self.words):
+            return value
+        try:
+            if isinstance(value, str) and (si or self.unit not in USUAL):  # a number, or a percentage
+                with suppress(ValueError):
+                    value = float(value)
+            return self.number(value)
+        except InvalidArgumentError as error:
+            if not self.words:
+                raise
+            allowed = f"{' or '.join(self.words)}, or {error.allowed}"
+            raise InvalidArgumentError(self.name, error.value, allowed) from None
+
+    @property
+    def interval(self) -> str:
+        """The range, such as `[0, 1]`."""
+        left = "[" if self.closed in ("both", "left") and math.isfinite(self.lower) else "("
+        right = "]" if self.closed in ("both", "right") and math.isfinite(self.upper) else ")"
+        return f"{left}{self.lower:g}, {self.upper:g}{right}"
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """The range as keywords of JSON schema."""
+        lower = "minimum" if self.closed in ("both", "left") else "exclusiveMinimum"
+        upper = "maximum" if self.closed in ("both", "right") else "exclusiveMaximum"
+        return {name: end for name, end in ((lower, self.lower), (upper, self.upper)) if math.isfinite(end)}
+
+    @property
+    def help(self) -> str:
+        """Meaning, symbol and unit in one line."""
+        unit = f" [{self.unit}]" if self.unit not in ("", "bool") else ""
+        return f"{self.meaning}{', ' if self.symbol else ''}{self.symbol}{unit}"
+
+    @property
+    def label(self) -> str:
+        """Meaning and symbol for the axis of a picture; the symbol alone if both are longer than a label may be."""
+        symbol = self.symbol.partition(" = ")[0]
+        text = f"{self.meaning} {symbol}"
+        return text if len(text) <= MAX_LABEL else symbol
+
+    @property
+    def header(self) -> str:
+        """The name with its unit, in the header of a table that is written."""
+        return self.name if self.unit in ("", "-", "bool") else f"{self.name} [{self.unit}]"
+
+    @property
+    def option(self) -> str:
+        """The name of the option of the command line."""
+        return "--" + self.name.replace("_", "-")
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """What headers of tables may call it, the best names first."""
+        return (self.name.replace("_", " "), *filter(None, self.aliases.split(", ")))
+
+    def restricted(self, lower: float, upper: float) -> Quantity:
+        """The same on a smaller range, closed at its finite ends.
+
+        Raises
+        ------
+        ValueError
+            If the range is not a part of that of the quantity.
+        """
+        if not self.lower <= lower < upper <= self.upper:
+            raise ValueError(f"[{lower:g}, {upper:g}] is not a part of {self.interval}, the range of {self.name}")
+        return replace(self, lower=lower, upper=upper, closed="both" if math.isfinite(upper) else "left")
+
+    def in_degrees(self) -> Quantity:
+        """The same angle in degrees, with the ending `_deg` of its name."""
+        lower, upper = math.degrees(self.lower), math.degrees(self.upper)
+        return replace(self, name=f"{self.name}_deg", unit="deg", lower=lower, upper=upper)

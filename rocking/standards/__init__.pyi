@@ -1,0 +1,16 @@
+from .asce43 import asce43_capacity as asce43_capacity
+from .asce43 import asce43_effective_damping as asce43_effective_damping
+from .asce43 import asce43_effective_frequency as asce43_effective_frequency
+from .asce43 import asce43_rocking_angle as asce43_rocking_angle
+from .asce43 import asce43_sliding_distance as asce43_sliding_distance
+from .circolare2009 import circolare2009_activation as circolare2009_activation
+from .circolare2009 import circolare2009_displacement_capacity as circolare2009_displacement_capacity
+from .circolare2009 import circolare2009_floor_acceleration as circolare2009_floor_acceleration
+from .circolare2009 import circolare2009_floor_displacement as circolare2009_floor_displacement
+from .circolare2009 import circolare2009_linear_check as circolare2009_linear_check
+from .circolare2009 import circolare2009_nonlinear_check as circolare2009_nonlinear_check
+from .circolare2009 import circolare2009_secant_period as circolare2009_secant_period
+from .ishiyama1982 import ishiyama_check as ishiyama_check
+from .ishiyama1982 import ishiyama_velocity as ishiyama_velocity
+from .static import static_check as static_check
+from .static import west_acceleration as west_acceleration

@@ -1,0 +1,131 @@
+"""Clients that two generators make of the OpenAPI document: no numbered copies of a class, and their calls.
+
+The generators are looked for on the path and below `build/clients`, where `make test-all` installs them.
+"""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from rocking_api.http.openapi import _CONSTRAINTS
+
+from tests.api.servers import ROOT, serving
+
+PATH = f"{ROOT / 'build' / 'clients' / 'bin'}{os.pathsep}{os.environ.get('PATH', '')}"
+
+CALLS = """
+import sys
+from client import Client
+from client.api.datasets import get_datasets_v1_datasets_get as datasets
+from client.api.response import get_response_v1_response_get as one, get_block_v1_blocks_response_get as block
+from client.api.response import get_thresholds_v1_thresholds_get as thresholds, post_identify_v1_identify_post as post
+from client.models import Method, PointResponse, Problem, PulseName
+with Client(sys.argv[1], timeout=120.0) as service:
+    groups = dict(pulse=PulseName.SINE, frequency_ratio=6.0, restitution=0.85)
+    found = one.sync(client=service, slenderness=0.6, method=Method.CUBE, **groups)
+    assert isinstance(found, PointResponse) and found.source == "cube" and found.peak_rotation > 0, found
+    assert isinstance(one.sync(client=service, slenderness=-0.6, **groups), Problem)
+    assert thresholds.sync(client=service, **groups).thresholds[0].amplitude > 1.0
+    body = dict(width=0.4, height=1.6, peak_acceleration=4.0, period=0.5)
+    found = block.sync(client=service, pulse="mavroeidis_papageorgiou(cycles=2)", **body)
+    assert found.response.query.pulse == "mavroeidis_papageorgiou(cycles=2)", found
+    names, cursor = [], None
+    while True:
+        part = datasets.sync(client=service, limit=1, cursor=cursor)
+        names += [one.name for one in part.datasets]
+        cursor = part.next_cursor
+        if cursor is None:
+            break
+    assert names == sorted(names) and len(names) == int(sys.argv[2]), names
+"""
+
+PARSED = """
+import json, sys
+import models
+model = models.PointResponse.model_validate(json.loads(sys.argv[1]))
+assert model.query.restitution == 0.85 and model.units.root["query.restitution"] == "1", model
+"""
+
+
+@pytest.fixture(scope="module")
+def document(client, tmp_path_factory):
+    path = tmp_path_factory.mktemp("openapi") / "openapi.json"
+    path.write_text(client.get("/openapi.json").text)
+    return path
+
+
+def test_sets_of_words_and_objects_are_named_and_every_content_has_a_schema(document):
+    """What generators would number: an enumeration, an object or a limited number or null within another schema."""
+    found = json.loads(document.read_text())
+    schemas = found["components"]["schemas"]
+    assert [name for name in schemas if name[-1].isdigit()] == []
+    inline = []
+
+    def visit(part, place):
+        if isinstance(part, list):
+            for one in part:
+                visit(one, place)
+        elif isinstance(part, dict):
+            if (
+                len(place) > 3
+                and place[-1] != "properties"
+                and ("enum" in part or part.get("type") == "object" or "title" in part)
+            ):
+                inline.append(place)
+            if "anyOf" in part and _CONSTRAINTS & part.keys():
+                inline.append(place)
+            for key, one in part.items():
+                if key not in ("example", "examples", "default"):
+                    visit(one, (*place, key))
+
+    visit({"components": {"schemas": schemas}}, ())
+    assert inline == []
+    for path, methods in found["paths"].items():
+        for operation in methods.values():
+            assert all("enum" not in one["schema"] for one in operation.get("parameters", ())), path
+            for answer in (operation.get("requestBody", {}), *operation["responses"].values()):
+                assert all(content["schema"] for content in answer.get("content", {}).values()), path
+
+
+def numbered(folder):
+    """Classes of generated modules, and those of them that are numbered copies."""
+    names = [name for path in folder.rglob("*.py") for name in re.findall(r"^class (\w+)", path.read_text(), re.M)]
+    return len(names), [name for name in names if name[-1].isdigit()]
+
+
+def generated(program, *arguments):
+    """The Python of a generator that has made a client; the test is skipped if it is not installed."""
+    found = shutil.which(program, path=PATH)
+    if found is None:
+        pytest.skip(f"no {program}")
+    subprocess.run([found, *map(str, arguments)], check=True, capture_output=True, env=os.environ | {"PATH": PATH})
+    return Path(found).with_name("python")
+
+
+def test_a_client_of_openapi_python_client_is_called(document, results, tmp_path):
+    client = tmp_path / "client"
+    python = generated(
+        "openapi-python-client", "generate", "--path", document, "--output-path", client, "--meta", "none"
+    )
+    count, copies = numbered(client / "models")
+    assert count > 100
+    assert copies == []
+    with serving(results, tmp_path / "log") as server:
+        files = str(len(list(results.rglob("*.nc"))))
+        subprocess.run([python, "-c", CALLS, server.address, files], cwd=tmp_path, check=True)
+
+
+def test_models_of_datamodel_code_generator_read_an_answer(client, document, tmp_path):
+    options = ("--input-file-type", "openapi", "--output-model-type", "pydantic_v2.BaseModel")
+    generated("datamodel-codegen", "--input", document, "--output", tmp_path / "models.py", *options)
+    count, copies = numbered(tmp_path)
+    assert count > 100
+    assert copies == []
+    point = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+    answer = client.get("/v1/response", params=point).text
+    subprocess.run([sys.executable, "-c", PARSED, answer], cwd=tmp_path, check=True)
