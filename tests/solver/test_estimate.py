@@ -51,7 +51,7 @@ def test_nearly_all_outcomes_are_those_of_the_solver(changed: dict[str, float]) 
     assert (overturned != expected).mean() < 0.01
     assert (reach >= 0.0).all()
     still = records["outcome"] == Outcome.NO_UPLIFT
-    assert (reach[still] == FAR).all()
+    assert (reach[still] > 0.5 * FAR).all()
     again = estimate_outcomes(samples, cells[::-1].copy(), 2)
     np.testing.assert_array_equal(again[0], overturned[::-1])
     np.testing.assert_array_equal(again[1], reach[::-1])

@@ -10,7 +10,8 @@ Each flight carries the derivatives of z and w with respect to the logarithm of 
     z'' = -pull (V S + F C),   dF/d ln g = F,  dV/d ln g = V - 1,  dS/dz = s' C,  dC/dz = c' S
 
 and at an impact with the velocity w at a time that changes by -dz/w. At a peak z of a flight, (1 - z)/|dz/d ln g| is
-about how far away in ln g it reaches the unstable equilibrium; the smallest of all peaks is the reach of the response.
+about how far away in ln g it reaches the unstable equilibrium; the smallest of all peaks, and of the same for z + w at
+the end of the record, is the reach of the response.
 """
 
 from __future__ import annotations
@@ -233,6 +234,10 @@ def take_step(lanes: FloatArray) -> tuple[int, int, int]:
 def write_result(lanes: FloatArray, lane: int, found: FloatArray, cell: int) -> None:
     """Write the result of a lane."""
     over = lanes[S, lane] == -math.inf
+    if not over:  # after the record it overturns from z + w of 1, about, see `rocking._solver.free_rocking`
+        left = max(lanes[RATIO + (0 if lanes[SIGN, lane] > 0.0 else 1), lane] - lanes[Z, lane] - lanes[W, lane], 0.0)
+        size = max(abs(lanes[DZ, lane] + lanes[DW, lane]), 1.0 / FAR)
+        lanes[NEAREST, lane] = min(lanes[NEAREST, lane], left / size)
     found[cell, OVER], found[cell, REACH], found[cell, END_SIGN] = 0.0, lanes[NEAREST, lane], lanes[SIGN, lane]
     found[cell, END_Z], found[cell, END_W] = lanes[Z, lane], lanes[W, lane]
     if over:
