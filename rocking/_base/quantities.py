@@ -41,10 +41,11 @@ RESTITUTION = Quantity(
     upper=1.0,
     closed="both",
     default="momentum",
-    words=("momentum",),
+    words=("momentum", "kalliontzis"),
     aliases="coefficient of restitution, restitution coefficient, eta, stosszahl, restituzione, restitucion",
 )
-"""`momentum`: from the conservation of angular momentum, (2.4) for a block, 0 where that is negative."""
+"""`momentum`: from the conservation of angular momentum, (2.4) for a block, 0 where that is negative;
+`kalliontzis(k=0.8)`: the same with the impact at that share of the half base."""
 
 ALPHA = Quantity(
     "alpha",

@@ -320,8 +320,10 @@ def _positive(options: SizeOptions, name: str) -> float:
 
 
 def _restitution(options: ShapeOptions) -> float | str:
+    from rocking._base.quantities import RESTITUTION
+
     given = options.restitution or "momentum"
-    return given if given == "momentum" else read_eta(given)
+    return given if given.partition("(")[0] in RESTITUTION.words else read_eta(given)
 
 
 def read_eta(text: str | None, allowed: str = "a number, or momentum for a block with units") -> float:

@@ -7,7 +7,7 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -19,15 +19,6 @@ if TYPE_CHECKING:
     from rocking._assessment.tables import ObjectTable
     from rocking._cli.printing import Form
     from rocking._excitation.records.record import Record
-
-SHOWN = (
-    *("object", "direction", "verdict", "factor", "governing"),
-    *("uplift_acceleration", "rotation", "displacement", "friction_needed", "smallest_width"),
-)
-"""Columns that fit a screen; CSV, JSON and files have all of them."""
-
-MOST = 5
-"""Objects that are named beside a warning at most."""
 
 HINTS = {
     "records": "--pair",
@@ -153,10 +144,30 @@ Sensitivity = Annotated[
         metavar="",
     ),
 ]
-Output = Annotated[
-    str | None, typer.Option("--output", "-o", help="CSV file to write, with all columns.", metavar="[FILE]")
+Standards = Annotated[
+    str,
+    typer.Option(
+        help="Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
+        "circolare_nonlinear.",
+        metavar="[NAME,NAME,...]",
+    ),
 ]
-
+Output = Annotated[
+    str | None,
+    typer.Option(
+        "--output", "-o", help="CSV or XLSX file to write: the table as given, and all columns.", metavar="[FILE]"
+    ),
+]
+Directions = Annotated[
+    bool,
+    typer.Option("--directions", help="Each object in both directions; by default in the worse one.", metavar=""),
+]
+Detail = Annotated[
+    Literal["usual", "all"],
+    typer.Option(
+        help="Objects with drawings in the report: those that rock, or are close to it; all.", metavar="[NAME]"
+    ),
+]
 
 Report = Annotated[
     str | None, typer.Option(help="HTML file to write: verdicts, drawings, inputs; prints on A4.", metavar="[FILE]")
@@ -196,11 +207,14 @@ def assess(
     shapes: Shapes = None,
     moving_ground: MovingGround = False,
     sensitivity: Sensitivity = True,
+    standards: Standards = "",
     samples: Samples = 0,
     seed: Seed = 0,
     resolution: Resolution = 0.005,
     output: Output = None,
+    directions: Directions = False,
     report: Report = None,
+    detail: Detail = "usual",
     title: Title = "Assessment of free-standing objects",
     author: Author = "",
     place: Place = "",
@@ -256,19 +270,21 @@ def assess(
                 given,
                 site,
                 sensitivity=sensitivity,
+                standards=standards,
                 samples=samples,
                 seed=seed,
                 resolution=resolution,
                 progress=advance,
             )
         if output is not None:
-            _write("output", output, found.to_csv(bad_rows=table.bad_rows))
+            is_xlsx = Path(output).suffix.lower() == ".xlsx"
+            _write("output", output, (found.to_xlsx if is_xlsx else found.to_csv)(bad_rows=table.bad_rows))
         if report is not None:
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
-            _write("report", report, _html(found, project, table))
-    _print(found, kind, table, bad)
+            _write("report", report, _html(found, project, table, detail == "all"))
+    _print(found, kind, table, bad, directions)
     if kind.kind == "table" and table.reading:
         typer.echo(printing.printable(table.reading))
     if bad:
@@ -311,20 +327,20 @@ def _read(
     return found
 
 
-def _html(found: Assessment, project: Project, table: ObjectTable) -> str:
+def _html(found: Assessment, project: Project, table: ObjectTable, detailed: bool) -> str:
     """The report."""
     from rocking._assessment.report import report_html
     from rocking._base.errors import InvalidArgumentError
 
     try:
-        return report_html(found, project, table.bad_rows, table.reading)
+        return report_html(found, project, table.bad_rows, table.reading, detailed=detailed)
     except ModuleNotFoundError as error:
         raise InvalidArgumentError(
             "report", error.name, "with the extra `report`: pip install 'rocking[report]'"
         ) from None
 
 
-def _write(option: str, path: str, text: str) -> None:
+def _write(option: str, path: str, content: str | bytes) -> None:
     """Write a file.
 
     Raises
@@ -335,19 +351,18 @@ def _write(option: str, path: str, text: str) -> None:
     from rocking._base.errors import InvalidArgumentError
 
     try:
-        Path(path).write_text(text, encoding="utf-8", newline="")
+        Path(path).write_bytes(content.encode() if isinstance(content, str) else content)
     except OSError as error:
         raise InvalidArgumentError(option, path, f"a file that can be written ({error.strerror})") from None
 
 
-def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) -> None:
-    """Print the table, and below it the objects to which each warning applies."""
+def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], directions: bool) -> None:
+    """Print a line for each object, and below them each kind of warning with the objects to which it applies."""
     from rocking._assessment.columns import OUTPUTS
+    from rocking._assessment.summary import names_in_short, rows_in_units, table_of, warnings_of
     from rocking._cli import printing
 
-    rows = found.rows
-    columns = {one.name: [row[one.name] for row in rows] for one in OUTPUTS}
-    units = {one.name: one.unit for one in OUTPUTS if one.header != one.name}
+    columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
     if form.kind == "json":
         about = {"details": found.details, "columns": table.columns, "skipped": table.skipped}
         printing.print_json(
@@ -355,15 +370,14 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) ->
         )
         return
     if form.kind == "csv":
+        units = {one.name: one.unit for one in OUTPUTS if one.header != one.name}
         printing.print_csv(found.with_details(columns), form, units)
         return
-    printing.print_table({name: columns[name] for name in SHOWN}, units)
+    printing.print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
     if found.resolution:
         typer.echo(f"factors on records: at most {100.0 * found.resolution:g} % apart were tried")
-    concerned: dict[str, list[str]] = {}
-    for row in rows:
-        for text in filter(None, row["warnings"].split("; ")):
-            concerned.setdefault(text, []).append(f"{row['object']} ({row['direction']})")
-    for text, names in concerned.items():
-        more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-        typer.echo(f"warning: {text}: {printing.printable(', '.join(names[:MOST]))}{more}")
+    for text, names in warnings_of(found):
+        count = f"{len(names)} object{'s' if len(names) > 1 else ''}"
+        typer.echo(f"warning: {count}: {printing.printable(f'{text}: {names_in_short(names)}')}")
+    if not (directions or form.all) and len({*map(id, found.objects)}) < len(found.objects):
+        typer.echo("each object in its worse direction; --directions shows both, --all every value")

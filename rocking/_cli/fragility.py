@@ -59,7 +59,7 @@ FileOption = Annotated[
     typer.Option(
         "--output",
         "-o",
-        help="File to write in place of printing: .csv, .json, or .xml (NRML of OpenQuake).",
+        help="File to write in place of printing: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.",
         metavar="[FILE]",
     ),
 ]

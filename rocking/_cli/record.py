@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -94,7 +94,7 @@ def with_options_named(message: str) -> str:
     )
 
 
-def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | Literal["momentum"]]:
+def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | str]:
     """The record in a file, the block, and its restitution.
 
     Raises
@@ -108,9 +108,10 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
     from rocking._excitation.records.readers.read_record import read_record
 
     block = read_block(options)
-    eta: float | Literal["momentum"] = (
-        "momentum" if options.restitution == "momentum" else read_eta(options.restitution, "a number, or momentum")
-    )
+    from rocking._base.quantities import RESTITUTION
+
+    named = options.restitution.partition("(")[0] in RESTITUTION.words
+    eta: float | str = options.restitution if named else read_eta(options.restitution, "a number, or momentum")
     motion = read_record(
         file,
         unit=options.unit,

@@ -128,7 +128,8 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     frequency_parameter : array_like
         p = sqrt(3 g/(4 R)) of the block [rad/s], [1e-6, 1e6], at most 50 over the time step; of a record.
     restitution : array_like
-        Coefficient of restitution eta [-], [0, 1]; or "momentum": (2.4) of `alpha`, 0 where that is negative.
+        Coefficient of restitution eta [-], [0, 1]; or "momentum": (2.4) of `alpha`, 0 where that is negative;
+        or "kalliontzis(k=...)", the impact at the share k of the half base, (0, 1].
     alpha : array_like, optional
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
     vertical_scale : array_like, optional

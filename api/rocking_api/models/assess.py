@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
+from rocking._assessment.standards import checked_clauses
 from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._base.quantities import PGA
 from rocking._base.quantity import Quantity
@@ -82,12 +83,17 @@ class AssessParams(Params):
         *RESOLUTIONS, "largest relative distance of the factors on a record that are tried [-]", default=RESOLUTION
     )
     sensitivity: bool = said("find the factors of changed objects, and sizes not overturned", True)
+    standards: str = said(
+        "checks by standards to state beside the outcome, separated by commas, or all", "", examples=["static,asce43"]
+    )
     format: TableFormat = None
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
         super().check_field(name, value)
-        if name.startswith("floor_") and value is not None:
+        if name == "standards":
+            checked_clauses(value)
+        elif name.startswith("floor_") and value is not None:
             modes_of(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
             for shape in _parts(name, value, MAX_SHAPES, "shapes"):
@@ -207,7 +213,9 @@ class AssessResponse(Answer):
         "largest relative distance of the factors on records that were tried, 0 without records [-]"
     )
     bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
-    details: dict[str, list[str]] = said("other texts of the object of each row, by their headers in the table", {})
+    details: dict[str, list[str]] = said(
+        "cells of the object of each row as they stand, by the headers of the table", {}
+    )
     columns: dict[str, str] = said("what columns of the table were read as, by their headers")
     skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
     source: str = BY_SOLVER

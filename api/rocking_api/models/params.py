@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
 from rocking._base.quantities import RESTITUTION
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse
+from rocking._model.checks import impact_share
 from rocking_api.models import quantity as q
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
@@ -169,7 +170,7 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": as_pulse,
     "slenderness": q.SLENDERNESS.convert,
     "frequency_ratio": q.FREQUENCY_RATIO.convert,
-    "restitution": lambda value: (isinstance(value, str) and value == "momentum") or RESTITUTION.convert(value),
+    "restitution": lambda value: impact_share(value) is not None or RESTITUTION.convert(value),
     "alpha_deg": alpha_of,
 }
 """Checks of parameters whose range is not all of what is allowed, or which may be arrays."""

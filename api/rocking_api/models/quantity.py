@@ -89,7 +89,7 @@ def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
     try:
         return read(value)
     except ValidationError:
-        raise PydanticCustomError("restitution", "momentum, or a number in [0, 1] [-]") from None
+        raise PydanticCustomError("restitution", "momentum, kalliontzis(k=0.8), or a number in [0, 1] [-]") from None
 
 
 def _format(*forms: str, default: str) -> Any:
@@ -125,10 +125,12 @@ Gravity = _in_range(q.GRAVITY, 1e-3, 1e3)
 PeakAcceleration = _in_range(q.PEAK_ACCELERATION, 1e-6, 1e6, examples=[4.0])
 Period = _in_range(q.PERIOD, 1e-4, 1e4, examples=[0.5])
 Scale = Annotated[float, described(q.SCALE.restricted(SMALLEST_SCALE, q.HIGHEST_SCALE))]
+Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
+"""An impact at a share k of the half base."""
 BodyRestitution = Annotated[
-    Literal["momentum"] | float,
+    Literal["momentum"] | Spread | float,
     WrapValidator(_momentum_or_number),
-    Field(description="eta [-], or momentum: (2.4), 0 where that is negative"),
+    said("eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b"),
 ]
 
 # files of records

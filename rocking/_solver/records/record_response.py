@@ -75,6 +75,22 @@ def record_response(
     return Response(**found, pulse=motion.name, groups=named, dims=dims, index=index, motion=motion, body=body)
 
 
+def record_cells(
+    record: Record,
+    *,
+    frequency_parameter: Array | float,
+    slenderness: Array,
+    restitution: float,
+    alpha: float | None,
+    vertical_scale: Array | None,
+) -> NDArray[np.void]:
+    """Cells `BODY_CELL` (size,) of blocks under a record, from groups that have been checked."""
+    vertical = 0.0 if record.vertical is None or vertical_scale is None else vertical_scale
+    one = np.ones(slenderness.size)
+    rate = frequency_parameter * record.time_step * one
+    return block_cells(rate, slenderness, restitution * one, (alpha or 0.0) * one, vertical)
+
+
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
     """The groups of a response under a record by name, as `check_groups`, beside it frequency parameter and factor.
 

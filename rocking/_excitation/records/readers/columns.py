@@ -162,6 +162,8 @@ def read_rotations(
             raise file.error(layout.first, "one column", expected)
         (rotation,) = _table(layout, chosen, most)
         step = _agreed_step(layout, rotation.size, None, time_step)
+        if layout.file.overruled:
+            raise layout.file.error(None, layout.file.overruled[0], "one time step")
         return step * np.arange(rotation.size, dtype=np.float64), rotation * UNITS["rad"][unit or given or "rad"]
     time, rotation = _table(layout, [times[0], chosen[0]], most)
     return time * _time_factor(layout, layout.columns[times[0]]), rotation * UNITS["rad"][unit or given or "rad"]
