@@ -51,13 +51,7 @@ class Points:
 
     @classmethod
     def of(cls, *groups: ArrayLike | None) -> tuple[Points, tuple[int, ...]]:
-        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is out of range, or the shapes do not broadcast.
-        """
+        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape."""
         given = dict(zip(cls.__dataclass_fields__, groups, strict=True))
         s, w, eta, alpha = check_groups(**given).values()
         if not (s.ndim or w.ndim or eta.ndim or alpha.ndim):  # one block, in a fraction of the time

@@ -66,16 +66,6 @@ def test_http_responses_have_the_declared_columns():
         assert model.model_fields["peak_rotation"].description == fields.PEAK_ROTATION.description()
 
 
-def test_notation_page_contains_the_table():
-    rows = ["| field | type | unit | equation | meaning |", "|---|---|---|---|---|"]
-    for field in dict.fromkeys((*RESPONSE_FIELDS, *COLUMN_FIELDS)):
-        kind = {"?": "bool", "U": "text", "i1": "int8", "i4": "int32", "f8": "float64"}[field.dtype]
-        unit = "-" if field.unit == "1" else field.unit
-        meaning = field.description("nan").replace(" [-]", "").replace("|theta|", "abs(theta)")
-        rows.append(f"| `{field.name}` | {kind} | {unit} | ({field.equation}) | {meaning} |")
-    assert "\n".join(rows) in NOTATION.read_text()
-
-
 def test_equation_numbers_are_in_the_ledger():
     ledger = (NOTATION.parent / "equations.md").read_text()
     for field in {*RESPONSE_FIELDS, *COLUMN_FIELDS}:

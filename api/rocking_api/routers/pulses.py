@@ -104,11 +104,11 @@ def _parameters(name: str) -> list[PulseParameter]:
     return [
         PulseParameter(
             name=key,
-            symbol=one.declared.symbol,
-            unit=one.declared.unit,
-            range=one.declared.interval,
+            symbol=one.symbol,
+            unit=one.unit,
+            range=one.interval,
             default=one.default,
-            description=one.declared.meaning,
+            description=one.meaning,
         )
         for key, one in pulses.pulse_parameters(name).items()
     ]
