@@ -5,7 +5,8 @@ import io
 import math
 
 import pytest
-from rocking_api.models import blocks
+from rocking_api.models import blocks as models
+from rocking_api.routers import blocks
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
@@ -435,7 +436,7 @@ def test_bodies_with_invalid_blocks_are_explained(client, body, kind, name):
 def test_blocks_are_counted_as_rows_are_read(client, monkeypatch):
     url, headers = "/v1/blocks/response?pulse=sine", {"content-type": "text/csv"}
     for most, status in ((3, 200), (2, 413)):
-        monkeypatch.setattr(blocks, "MAX_BLOCKS", most)
+        monkeypatch.setattr(models, "MAX_BLOCKS", most)
         assert client.post(url, json={"blocks": ROWS}).status_code == status
         for end in ("\n", "\r\n", "\r"):
             response = client.post(url, content=TABLE.replace("\n", end) + end, headers=headers)

@@ -100,7 +100,7 @@ def test_a_busy_service_is_a_page_that_says_what_to_do(client, monkeypatch):
     def busy(*_):
         raise BusyError
 
-    monkeypatch.setattr(client.app.state.service.summaries, "summary", busy)
+    monkeypatch.setattr(client.app.state.service.cubes.catalogue, "dataset", busy)
     found = client.get("/v1/datasets/spectra/sine/eta-0.85", headers={"accept": "text/html"})
     assert (found.status_code, found.headers["retry-after"]) == (503, "2")
     assert 'href="/v1/datasets/spectra/sine/eta-0.85"' in found.text

@@ -49,7 +49,9 @@ class BlocksParams(Params):
     """What many blocks in a body have in common."""
 
     pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
-    restitution: q.BodyRestitution = q.said("of the blocks that state none: eta [-] or momentum", "momentum")
+    restitution: q.BodyRestitution = q.said(
+        "eta [-] of the blocks that state none, momentum or kalliontzis(k=0.8)", "momentum"
+    )
     format: q.TableFormat = None
 
 

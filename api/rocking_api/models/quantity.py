@@ -125,12 +125,12 @@ Gravity = _in_range(q.GRAVITY, 1e-3, 1e3)
 PeakAcceleration = _in_range(q.PEAK_ACCELERATION, 1e-6, 1e6, examples=[4.0])
 Period = _in_range(q.PERIOD, 1e-4, 1e4, examples=[0.5])
 Scale = Annotated[float, described(q.SCALE.restricted(SMALLEST_SCALE, q.HIGHEST_SCALE))]
+Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
+"""An impact at a share k of the half base."""
 BodyRestitution = Annotated[
-    Literal["momentum"] | Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")] | float,
+    Literal["momentum"] | Spread | float,
     WrapValidator(_momentum_or_number),
-    Field(
-        description="eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b"
-    ),
+    said("eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b"),
 ]
 
 # files of records
