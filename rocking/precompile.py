@@ -18,7 +18,9 @@ from rocking._lookup.cube import Cube
 from rocking._lookup.cube_slice import slice_of
 from rocking._numba.kernel_cache import COMPLETE, NOT_KEPT, cache_folder
 from rocking._solver.peak_response import peak_response
-from rocking._solver.records.record_response import record_response
+from rocking._solver.records.estimate import estimate_outcomes
+from rocking._solver.records.record_response import record_cells, record_response
+from rocking._solver.records.samples import motion_samples
 from rocking._spectra.cubes import spectra
 
 
@@ -38,6 +40,8 @@ def load_kernels() -> None:
     peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
     motion = Record([0.0, 1.0, -1.0, 0.0], 0.1, unit="m/s2")
     record_response(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85, alpha=[0.0, 0.3])
+    groups: dict[str, Any] = {"frequency_parameter": 3.0, "slenderness": np.array([0.8]), "restitution": 0.85}
+    estimate_outcomes(motion_samples(motion), record_cells(motion, **groups, alpha=0.3, vertical_scale=None))
     time_history(motion, frequency_parameter=3.0, slenderness=0.8, restitution=0.85)
     time_history("sine", **block, samples=2)
     time_history("sine", **block, alpha=0.3, samples=2)

@@ -16,9 +16,10 @@ import rocking
 from benchmarks.accuracy.record_sampling import FILES
 from benchmarks.figures.standards import draw
 from benchmarks.measure import arguments, progress
+from rocking._assessment.columns import CLAUSES
 from rocking._assessment.objects import Bodies
 from rocking._assessment.search import responses_of
-from rocking._assessment.standards import CLAUSES, demand_over_capacity
+from rocking._assessment.standards import demand_over_capacity
 
 SLENDERNESS = np.linspace(0.06, 0.4, 15)
 """b/h [-]."""

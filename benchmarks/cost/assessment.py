@@ -3,8 +3,9 @@
 The lowest factors of made-up objects in two directions, under seven pulse shapes at 0.3 g and 0.3 m/s and under a suite
 of made-up records at 0.3 g; both use all cores. Kernels are compiled before.
 
-With `--scan 2000` it compares the lowest factors under three suites with scans of so many factors from uplift up to
-them, in equal ratios, and prints in how many pairs of an object and a record the body overturns at a lower one.
+With `--scan 2000` it compares the lowest factors under three suites with scans of so many factors: in equal ratios or
+steps from uplift up to them, in equal ratios up to ten times that of uplift, in equal steps up to the highest. It
+prints in how many pairs of an object and a record the body overturns at a lower one.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import rocking
 from benchmarks.cost.made_up_records import made_up_record
 from benchmarks.measure import arguments
 from rocking._assessment.objects import Bodies
-from rocking._assessment.search import factors_of, overturned_by
+from rocking._assessment.search import HIGHEST_FACTOR, factors_of, overturned_by
 from rocking._boundary.scan import RESOLUTION
 
 SAMPLES, STEP = 3_000, 0.01
@@ -57,20 +58,29 @@ def compare(name: str, suite: Sequence[rocking.Record], objects: int, count: int
     processor = time.process_time()
     found = factors_of(body, site.motions, resolution=resolution)
     processor = time.process_time() - processor
-    uplift = np.asarray(body.uplift_acceleration)[:, None]
-    lower = []
-    for motion, factor in zip(site.motions, np.nan_to_num(found.T, nan=10.0), strict=True):
-        start = np.minimum(uplift[:, 0] / motion.peak_acceleration, factor)[:, None]
-        tried = start * (factor[:, None] / start) ** ((np.arange(count) + 0.5) / count)
-        hits = overturned_by(body.column, motion, None, tried * motion.peak_acceleration)
-        first = np.where(hits.any(axis=1), tried[np.arange(factor.size), hits.argmax(axis=1)], factor)
-        lower.append(1.0 - first / factor)
-    share = np.array(lower).ravel()
-    print(
-        f"{name}: {share.size} pairs, lower in {np.sum(share > 2e-6)}, by more than 1 % in {np.sum(share > 0.01)}, "
-        f"at most {100 * share.max():.2g} %; {1e3 * processor / share.size:.1f} ms of processor time a pair",
-        flush=True,
-    )
+    print(f"{name}: {found.size} pairs, {1e3 * processor / found.size:.1f} ms of processor time a pair", flush=True)
+    share = (np.arange(count) + 0.5) / count
+    for scan in ("equal ratios", "equal steps", "ratios to 10 times uplift", "steps to the highest"):
+        lower = []
+        for motion, factor in zip(site.motions, np.nan_to_num(found.T, nan=HIGHEST_FACTOR), strict=True):
+            start = np.asarray(body.uplift_acceleration) / motion.peak_acceleration
+            start, end = np.minimum(start, factor)[:, None], factor[:, None]
+            if scan == "steps to the highest":
+                tried = np.broadcast_to(HIGHEST_FACTOR * share, (factor.size, count))
+            elif scan == "equal steps":
+                tried = start + (end - start) * share
+            else:
+                tried = start * (end / start if scan == "equal ratios" else 10.0) ** share
+            tried = np.where(tried < end, tried, 0.5 * start)  # without uplift
+            hits = overturned_by(body.column, motion, None, tried * motion.peak_acceleration)
+            first = np.where(hits.any(axis=1), tried[np.arange(factor.size), hits.argmax(axis=1)], factor)
+            lower.append(1.0 - first / factor)
+        all_of = np.array(lower)
+        print(
+            f"    {scan}: lower in {np.sum(all_of > 2e-6)}, by more than 1 % in {np.sum(all_of > 0.01)}, at most "
+            f"{100 * all_of.max():.2g} %",
+            flush=True,
+        )
 
 
 def main() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.columns import CLOSE, OUTPUTS, VERDICTS
 from rocking._assessment.motions import first_exceedances
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.result import Assessment
@@ -25,6 +25,7 @@ from rocking._assessment.search import (
 from rocking._assessment.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
 from rocking._assessment.site import Motion, Site, record_doubts
 from rocking._assessment.sliding import sliding_displacement
+from rocking._assessment.standards import checked_clauses, demand_over_capacity
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._base.units import Scalar
@@ -37,7 +38,6 @@ from rocking.suites.hazard import curve_rates, outcome_rates
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-CLOSE = 0.2  # margin below which a warning is given [-]: a ground motion is not known better
 WIDE = 0.1  # relative distance of the bounds of an annual rate above which a warning is given [-]
 
 CONFIDENCE = 0.95
@@ -53,6 +53,7 @@ def assess(
     samples: Scalar = 0,
     seed: Scalar = 0,
     resolution: Scalar = RESOLUTION,
+    standards: str | Iterable[str] = (),
     stop: StopFlag | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
@@ -74,6 +75,9 @@ def assess(
         Of these variants, 0 to 2^53.
     resolution : float
         Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1].
+    standards : str or iterable of str
+        Checks by standards of which the demand over capacity is stated beside the exact outcome: "static", "ishiyama",
+        "asce43", "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
     stop : StopFlag, optional
         Cancels the work.
     progress : callable, optional
@@ -106,6 +110,7 @@ def assess(
     variants = integer("samples", samples, 0, MAX_SAMPLES)
     chosen_seed = integer("seed", seed, 0, 2**53)
     share_apart = checked_resolution(resolution)
+    clauses = checked_clauses(standards)
     parts = 1 + (5 if sensitivity else 0)
 
     def advance(share: float) -> None:
@@ -148,6 +153,8 @@ def assess(
         "friction_needed": uplift / STANDARD_GRAVITY,
     }
     columns |= _sliding(given, body, motions, sensitivity, stop)
+    ratios = demand_over_capacity(body, motions, clauses, stop)
+    columns |= {f"{name}_ratio": -least(-each) for name, each in ratios.items()}
     columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
         columns |= changed_objects(
@@ -235,7 +242,8 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
     for k, one in enumerate(given):
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
-            texts.append(f"the lowest factor {factor:.3g} lies within {100 * CLOSE:g} % of the motions of the site")
+            side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
+            texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
         if math.isfinite(columns["slides_at"][k]):
             when = f"friction {one.friction:.3g}, more is needed from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"

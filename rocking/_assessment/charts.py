@@ -11,8 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-WIDTH, HEIGHT = 440.0, 170.0  # of the area between the axes [pixels]
-MOST_POINTS = 2000  # points of a line beyond which it is thinned, largest and smallest values kept [-]
+WIDTH, HEIGHT = 220.0, 95.0  # of the area between the axes [pixels]
+MOST_POINTS = 320  # points of a line beyond which it is thinned, largest and smallest values kept [-]
+
+FLAT = 0.15
+"""Departure of a line from its points that is not seen [pixels]."""
 
 STYLES = tuple(
     (colour, dash)
@@ -40,7 +43,7 @@ class Axis:
         return np.asarray(self.size * (x - low) / (high - low))
 
     @property
-    def ticks(self) -> list[tuple[float, str]]:
+    def ticks(self) -> list[tuple[str, str]]:
         """Positions [pixels] and labels."""
         if self.logarithmic:
             decades = range(math.floor(math.log10(self.low)), math.ceil(math.log10(self.high)) + 1)
@@ -51,7 +54,7 @@ class Axis:
             step = unit * min((m for m in (1, 2, 5, 10) if m * unit >= rough), default=10)
             values = [k * step for k in range(math.ceil(self.low / step), math.floor(self.high / step) + 1)]
         slack = 1e-9 * (self.high - self.low)
-        return [(float(self.at(v)), f"{v:.4g}") for v in values if self.low - slack <= v <= self.high + slack]
+        return [(f"{self.at(v):.4g}", f"{v + 0.0:.4g}") for v in values if self.low - slack <= v <= self.high + slack]
 
 
 @dataclass(frozen=True)
@@ -81,10 +84,24 @@ def line_of(name: str, axes: tuple[Axis, Axis], x: Array, y: Array, style: int =
     inside = np.isfinite(y) & (y >= up.low) & (y <= up.high) & (x >= across.low) & (x <= across.high)
     breaks = np.flatnonzero(np.diff(inside.astype(int))) + 1
     runs = [run for run in np.split(np.arange(x.size), breaks) if run.size and inside[run[0]]]
-    points = [
-        " ".join(f"{a:.1f},{-b:.1f}" for a, b in zip(across.at(x[run]), up.at(y[run]), strict=True)) for run in runs
-    ]
-    return Line(name, points, *STYLES[style % len(STYLES)])
+    drawn = [np.stack([across.at(x[run]), -up.at(y[run])], axis=1) for run in runs]
+    parts = [" ".join(f"{a:.1f},{b:.1f}" for a, b in one[_bends(one)].tolist()) for one in drawn]
+    return Line(name, parts, *STYLES[style % len(STYLES)])
+
+
+def _bends(points: Array) -> list[int]:
+    """Points of a line (points, 2) without which it departs by more than `FLAT` (Douglas and Peucker 1973)."""
+    kept, open_ends = {0, len(points) - 1}, [(0, len(points) - 1)]
+    while open_ends:
+        first, last = open_ends.pop()
+        chord, own = points[last] - points[first], points[first + 1 : last] - points[first]
+        if last - first > 1:
+            away = np.abs(chord[0] * own[:, 1] - chord[1] * own[:, 0]) / max(math.hypot(*chord), 1e-9)
+            k = first + 1 + int(away.argmax())
+            if away.max() > FLAT:
+                kept.add(k)
+                open_ends += [(first, k), (k, last)]
+    return sorted(kept)
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:

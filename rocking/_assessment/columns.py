@@ -64,6 +64,16 @@ REQUIRED = (
 )
 """Columns that the header of a table has, one of each group."""
 
+CLAUSES = {
+    "static": "static check: PGA over g b/h",
+    "ishiyama": "Ishiyama (1982): the smaller one of PGA and PGV over their lower bounds",
+    "asce43": "ASCE 43-05 A.2, best estimate: spectral demand over capacity at alpha, at most PGA over g b/h",
+    "circolare_linear": "Circolare 2009 C8A.4.2.3, linear kinematic check with q = 2: PGA/q over g b/h",
+    "circolare_nonlinear": "Circolare 2009 C8A.4.2.3, nonlinear kinematic check: S_De(T_s) over 0.4 b",
+}
+"""Checks by standards and their demand over capacity; a body passes below 1. Spectra are of the motion, which on a
+floor is that of the floor."""
+
 OUTPUTS = (
     Quantity("object", "", "name of the object"),
     Quantity("direction", "",
@@ -103,7 +113,9 @@ OUTPUTS = (
     Quantity("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
     Quantity("sampled_share", "-",
         "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1"),
+    *(Quantity(f"{name}_ratio", "-", f"{meaning}; the largest of the motions") for name, meaning in CLAUSES.items()),
     Quantity("warnings", "", "what is in doubt"),
 )  # fmt: skip
 
 VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")  # from the best to the worst
+CLOSE = 0.2  # distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better

@@ -51,26 +51,27 @@ def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     return max(found, key=lambda each: float(np.abs(each["rotation"]).max()))
 
 
-def friction_of(one: Object, direction: str, motions: Sequence[Motion]) -> xr.Dataset:
-    """The friction that an object needs under each motion, see `Assessment.friction`."""
-    import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+def frictions_of(
+    given: Sequence[tuple[Object, str]], motions: Sequence[Motion], stop: StopFlag | None = None
+) -> tuple[Array, Array]:
+    """Friction that objects in a direction need under each motion, and when their own is first exceeded [s].
 
-    body = bodies_of([(one, direction)])
-    needed = [
-        max(contact_extremes(each.body_motion()).largest_friction_demand for each in problems_of(body, motion))
-        for motion in motions
-    ]
-    given: Any = math.nan if one.friction is None else one.friction  # a number, see `Object`
-    exceeded = first_exceedances(body, np.array([given]), motions)[0]
-    variables = {
-        "friction_needed": ("motion", needed, {"units": "1", "long_name": "largest coefficient of friction needed"}),
-        "exceeded_at": (
-            "motion",
-            exceeded,
-            {"units": "s", "long_name": "time at which that of the object is exceeded"},
-        ),
-    }
-    return xr.Dataset(variables, {"motion": [motion.name for motion in motions]})
+    Arrays (objects, motions), as the variables of `Assessment.friction`.
+    """
+    body = bodies_of(given)
+    sides, uplift = body.rigid.parameters, np.asarray(body.uplift_acceleration)
+    mirrored = np.asarray(sides["left"] != sides["right"])
+    needed = np.empty((len(given), len(motions)))
+    for k, motion in enumerate(motions):
+        static = static_acceleration(motion)
+        needed[:, k] = static / STANDARD_GRAVITY  # of bodies that do not uplift
+        problems = problems_of(body, motion)
+        for row in np.flatnonzero(static > uplift).tolist():
+            both = problems if mirrored[row] else problems[:1]
+            found = (contact_extremes(one.body_motion(stop=stop, index=row)) for one in both)
+            needed[row, k] = max(one.largest_friction_demand for one in found)
+    own: list[Any] = [math.nan if one.friction is None else one.friction for one, _ in given]
+    return needed, first_exceedances(body, np.array(own, dtype=np.float64), motions, stop)
 
 
 def first_exceedances(

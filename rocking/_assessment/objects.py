@@ -21,12 +21,21 @@ from rocking._dimensional.body_kinds import body as describe
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import RectangularBlock
 from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices
+from rocking._model.checks import impact_share
 
 Array = NDArray[np.float64]
 
 LENGTHS = 1e-4, 1e3  # smallest and largest dimension of an object [m]
 STEP = 15  # between the directions around an object [degrees]
 CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]
+
+
+class RowDetails(dict[str, str]):
+    """Other texts of a row of a table, with the whole row as it stands."""
+
+    def __init__(self, others: Mapping[str, str], row: Mapping[str, str]) -> None:
+        super().__init__(others)
+        self.row = row
 
 
 @dataclass(frozen=True)
@@ -51,7 +60,7 @@ class Object:
         Mass [kg], > 0; the outcome does not depend on it.
     friction : float, optional
         Coefficient of friction at the base [-], > 0.
-    restitution : float or "momentum"
+    restitution : float, "momentum" or "kalliontzis(k=...)"
         eta of every impact [-], [0, 1], or from conservation of angular momentum.
     tolerance : float
         How far each dimension is uncertain [m], >= 0 and less than half of the smallest.
@@ -141,7 +150,11 @@ class Object:
         for name, unit in (("mass", "kg"), ("friction", "-")):
             if getattr(self, name) is not None:
                 checked[name] = positive(name, getattr(self, name), unit)
-        if not (isinstance(self.restitution, str) and self.restitution == "momentum"):
+        share = impact_share(self.restitution)
+        if share is not None and share < 1.0 and any(plane.offset for plane in self.planes.values()):
+            allowed = "momentum or a number for an object whose centre of mass is not in the middle"
+            raise InvalidArgumentError("restitution", self.restitution, allowed)
+        if share is None:
             checked["restitution"] = RESTITUTION.number(self.restitution)
         half = 0.5 * min(size for plane in self.planes.values() for size in (plane.base, plane.height))
         checked["tolerance"] = number("tolerance", self.tolerance, 0.0, half, closed="left", unit="m")
@@ -217,6 +230,11 @@ class Object:
         """
         made = body if isinstance(body, RespondingBody) else describe(body)
         return DescribedObject(name, described=made, **others)
+
+    @property
+    def cells(self) -> Mapping[str, str]:
+        """The row of the table that it was read from as it stands, by its headers; of other objects empty."""
+        return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
     def planes(self) -> dict[str, Plane]:
@@ -418,7 +436,7 @@ class Bodies:
     @classmethod
     def of_planes(cls, planes: Iterable[tuple[Plane, Scalar]]) -> Bodies:
         """The bodies of some planes and their restitutions."""
-        rows = [(*astuple(plane), np.nan if eta == "momentum" else eta) for plane, eta in planes]
+        rows = [(*astuple(plane), eta if (share := impact_share(eta)) is None else -share) for plane, eta in planes]
         return cls(*np.array(rows, dtype=np.float64).reshape(-1, 7).T)
 
     def take(self, rows: NDArray[np.intp]) -> Bodies:
@@ -438,19 +456,24 @@ class BodyArray(AbstractBody):
     """Rigid bodies of which some have a coefficient of restitution of their own."""
 
     rigid: RigidBody  # the bodies, arrays (bodies,) or (bodies, 1)
-    own: Array  # restitution of each; nan: from the angular momentum, of each edge [-]
+    own: (
+        Array  # restitution of each; -k: angular momentum of an impact at the share k of the half base of each edge [-]
+    )
     change: Array  # added to the restitution, which stays in [0, 1] [-]
 
     @cached_property
     def right(self) -> Edge:
-        return self._changed(self.rigid.right)
+        return self._changed(self.rigid.right, "right", "left")
 
     @cached_property
     def left(self) -> Edge:
-        return self._changed(self.rigid.left)
+        return self._changed(self.rigid.left, "left", "right")
 
-    def _changed(self, edge: Edge) -> Edge:
-        eta = np.where(np.isnan(self.own), np.maximum(edge.restitution, 0.0), self.own) + self.change
+    def _changed(self, edge: Edge, own: str, other: str) -> Edge:
+        given, share = self.rigid.parameters, np.square(np.minimum(self.own, 0.0))  # k^2
+        square = given["gyration"] ** 2 + given["height"] ** 2
+        spread = (square - share * given[own] * given[other]) / (square + share * given[other] ** 2)  # (2.4) for k = 1
+        eta = np.where(self.own < 0.0, np.maximum(spread, 0.0), self.own) + self.change
         return replace(edge, restitution=np.clip(eta, 0.0, 1.0))
 
     @property

@@ -1,4 +1,4 @@
-"""The report of an assessment: one HTML file without requests to others, which prints on A4."""
+"""The report of an assessment: one HTML file without requests to others, which prints on A4 with page numbers."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._assessment.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
-from rocking._assessment.columns import INPUTS, OUTPUTS, VERDICTS
-from rocking._assessment.motions import envelope_of
+from rocking._assessment.columns import CLAUSES, VERDICTS
+from rocking._assessment.motions import envelope_of, frictions_of
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
+from rocking._assessment.summary import Line, lines_of, names_in_short, number_header, number_of, text_of, warnings_of
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.version import __version__
 from rocking._dimensional.table_reader import BadRow
+from rocking._excitation.records.record import Record
 
 Array = NDArray[np.float64]
 
@@ -27,10 +30,21 @@ TEMPLATE = "report.html"
 COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
 """Of the verdicts; people who are colour-blind tell them apart (Okabe and Ito 2008)."""
 
-DRAWING = 150.0  # larger dimension of an object in its drawing [pixels]
+WORST = 5  # objects that are drawn on the first page [-]
+LARGEST = 120.0, 165.0  # largest width and height of a drawing on the first page [pixels]; all have one scale
+DRAWING = 105.0  # height of an object in its drawings, and width of these together, at most [pixels]
 
 MOST_DETAILED = 60
-"""Rows, from the worst one on, that have pictures and the friction needed [-]: each takes 0.1 s or so."""
+"""Objects, from the worst one on, that have drawings and charts at most [-]."""
+
+MOST_MOTIONS = 8
+"""Motions that are listed beside an object, the worst first [-]; with every detail all are."""
+
+PAGE, HEAD, NOTE, LINE, GAP = 259.0, 28.0, 13.0, 3.6, 1.0
+"""Heights [mm]: of a page, of the title and head of the table, of the text below it, of a line, between two rows."""
+
+NAME, VERDICT, MOTION, STEP = 22, 14, 11, 17
+"""Characters in a line of these columns of the table [-], on the safe side."""
 
 STRONGEST = 3.0  # height of the axis of an envelope over the peak acceleration of the site [-]
 
@@ -46,75 +60,159 @@ class Project:
     command: str
 
 
-def report_html(found: Assessment, project: Project, bad_rows: Sequence[BadRow] = (), reading: str = "") -> str:
-    """The report as text; `reading` says what the columns of the table of objects were read as."""
+def report_html(
+    found: Assessment,
+    project: Project,
+    bad_rows: Sequence[BadRow] = (),
+    reading: str = "",
+    *,
+    detailed: bool = False,
+) -> str:
+    """The report as text; `reading` says what the columns of the table of objects were read as.
+
+    Objects that rock, overturn or are within 20 % of overturning have half a page each, in their worse direction. With
+    `detailed` every object has a page for each direction.
+    """
     from jinja2 import Environment, StrictUndefined  # noqa: PLC0415  (an extra)
 
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters |= {"css": css_text, "shown": text_of, "rounded": number_of}
     template = environment.from_string(resources.files("rocking._assessment").joinpath(TEMPLATE).read_text("utf-8"))
-    sections: dict[int, tuple[Object, list[dict[str, Any]]]] = {}  # names may be equal
-    envelopes = _envelopes(found)
-    for k, (row, one) in enumerate(zip(found.rows[:MOST_DETAILED], found.objects, strict=False)):
-        own = {
-            "drawing": _drawing(one, row["direction"]),
-            "motions": _motions(found, k),
-            "charts": [*envelopes[k : k + 1], *_histories(found, k)],
-            "plane": one.planes[row["direction"]],
-            "worst": found.worst_motion(k),
-            "strength": found.strength(k),
-        }
-        sections.setdefault(id(one), (one, []))[1].append(row | own)
+    lines = lines_of(found)
+    concerned = [one for one in lines if detailed or one.concerns][:MOST_DETAILED]
+    chosen = [
+        one for line in concerned for one in (lines_of(found, directions=True, only=line) if detailed else [line])
+    ]
+    number = number_header(found)
+    tables = _pages_of_table(lines, number)
+    first = 2 + len(tables)  # page of the first object
+    last = first + (len(chosen) if detailed else math.ceil(len(chosen) / 2))
+    pages: dict[int, int] = {}
+    for k, one in enumerate(chosen):
+        pages.setdefault(one.rows[0], first + (k if detailed else k // 2))
     return template.render(
         project=project,
         site=found.site,
         found=found,
-        sections=list(sections.values()),
-        most_detailed=MOST_DETAILED,
-        inputs=INPUTS,
-        units={one.name: one.unit for one in OUTPUTS},
+        lines=lines,
+        clauses=CLAUSES,
+        counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
+        worst=_worst(lines),
+        tables=tables,
+        number=number,
+        blocks=_blocks(found, chosen, detailed),
+        all_concerned=sum(one.concerns for one in lines),
+        detailed=detailed,
+        pages=pages,
+        first=first,
+        last=last,
+        warnings=[(text, len(names), names_in_short(names)) for text, names in warnings_of(found)],
         colours=dict(zip(VERDICTS, COLOURS, strict=True)),
         bad_rows=bad_rows,
         reading=reading,
         versions={"rocking": __version__, "Python": platform.python_version()}
         | {name: metadata.version(name) for name in ("numpy", "numba", "scipy")},
-        chart_size=(WIDTH, HEIGHT),
     )
 
 
-def _motions(found: Assessment, k: int) -> list[dict[str, Any]]:
-    """What the report states of a row under each motion."""
-    friction = found.friction(k)
-    columns = zip(
-        *(found.motions, found.site.motions, found.factors[k].tolist(), found.rotations[k].tolist()),
-        *(friction["friction_needed"].values.tolist(), friction["exceeded_at"].values.tolist()),
-        strict=True,
-    )
-    names = "name", "motion", "factor", "rotation", "friction", "exceeded_at"
-    return [dict(zip(names, one, strict=True)) for one in columns]
+def css_text(text: str) -> str:
+    """A text between the quotes of a style sheet."""
+    return "".join(one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
 
 
-def _envelopes(found: Assessment) -> list[Chart]:
-    """Thresholds over shapes and periods, of the detailed rows; none for records."""
-    rows = found.rows[:MOST_DETAILED]
-    given = [(one, str(row["direction"])) for one, row in zip(found.objects, rows, strict=False)]
+def _pages_of_table(lines: Sequence[Line], number: str) -> list[list[Line]]:
+    """The lines of each page of the table."""
+    pages: list[list[Line]] = [[]]
+    room = PAGE - HEAD
+    for line in lines:
+        name = line.object.cells.get(number, "") + line.object.name
+        verdict, motion = line.values["verdict"], line.values["governing"]
+        texts = (name, NAME), (verdict, VERDICT), (motion, MOTION), (line.first_step, STEP)
+        height = GAP + LINE * max(math.ceil((len(text) + 1) / size) for text, size in texts)
+        if height + (NOTE if line is lines[-1] else 0.0) > room and pages[-1]:
+            pages.append([])
+            room = PAGE - HEAD
+        pages[-1].append(line)
+        room -= height
+    return pages
+
+
+def _worst(lines: Sequence[Line]) -> list[dict[str, Any]]:
+    """The worst objects with their drawings, which have one scale."""
+    chosen = lines[:WORST]
+    outlines = [one.object.outline(one.values["direction"]) for one in chosen]
+    sizes = [(2.0 * np.abs(outline[:, 0]).max(), outline[:, 1].max()) for outline in outlines]
+    scale = min(room / max(size) for room, size in zip(LARGEST, zip(*sizes, strict=True), strict=True))
+    return [{"line": one, "drawing": _drawing(one.object, one.values["direction"], scale)} for one in chosen]
+
+
+def _blocks(found: Assessment, chosen: Sequence[Line], detailed: bool) -> list[dict[str, Any]]:
+    """What the report states of each of some rows."""
+    given = [(one.object, str(one.values["direction"])) for one in chosen]
+    if not given:
+        return []
+    needed, exceeded = frictions_of(given, found.site.motions)
+    envelopes = _envelopes(found, given)
+    blocks = []
+    for k, (line, (one, direction)) in enumerate(zip(chosen, given, strict=True)):
+        row = line.row
+        names = "name", "ground", "period", "factor", "rotation", "friction", "exceeded_at"
+        motions = [
+            dict(zip(names, (motion.name, motion.ground, motion.period, *values), strict=True))
+            | {"is_record": isinstance(motion.motion, Record)}
+            for motion, *values in zip(
+                *(found.site.motions, found.factors[row].tolist(), found.rotations[row].tolist()),
+                *(needed[k].tolist(), exceeded[k].tolist()),
+                strict=True,
+            )
+        ]
+        order = np.lexsort((-np.nan_to_num(found.rotations[row]), np.nan_to_num(found.factors[row], nan=np.inf)))
+        largest = max((each for each in one.planes), key=lambda each: one.planes[each].base)
+        drawn = [direction] if len(one.planes) > 2 or direction == largest else [direction, largest]
+        outlines = [one.outline(each) for each in drawn]
+        wide = sum(2.0 * float(np.abs(outline[:, 0]).max()) for outline in outlines)
+        scale = DRAWING / max(wide, *(float(outline[:, 1].max()) for outline in outlines))
+        histories = _histories(found, row)
+        blocks.append(
+            {
+                "line": line,
+                "plane": one.planes[direction],
+                "drawings": [(each, _drawing(one, each, scale)) for each in drawn],
+                "motions": [motions[m] for m in order[: None if detailed else MOST_MOTIONS]],
+                "friction": float(np.max(needed[k])),
+                "others": [] if detailed else lines_of(found, directions=True, only=line)[1:],
+                "charts": [*(histories if detailed else histories[1:]), *envelopes[k : k + 1]],
+                "worst": found.worst_motion(row),
+                "strength": found.strength(row),
+            }
+        )
+    return blocks
+
+
+def _envelopes(found: Assessment, given: Sequence[tuple[Object, str]]) -> list[Chart]:
+    """Thresholds over shapes and periods, of objects and directions; none for records."""
     motions = found.site.motions
     top = STRONGEST * max(motion.peak_acceleration for motion in motions)
     periods, lowest = envelope_of(given, motions, top)
+    top, lowest = top / STANDARD_GRAVITY, {name: values / STANDARD_GRAVITY for name, values in lowest.items()}
     charts = []
     for k in range(len(given) if lowest else 0):
         axes = (
             Axis("period of the pulse [s]", float(periods[0]), float(periods[-1]), WIDTH, logarithmic=True),
-            Axis("peak acceleration [m/s²]", 0.0, top, HEIGHT),
+            Axis("peak acceleration [g]", 0.0, top, HEIGHT),
         )
         lines = [line_of(name, axes, periods, values[k], style) for style, (name, values) in enumerate(lowest.items())]
         colours: dict[tuple[float, float], str] = {}
         for motion in motions:
-            place, own = (motion.period, motion.peak_acceleration), lines[list(lowest).index(motion.motion.name)].colour
+            place, own = (
+                (motion.period, motion.peak_acceleration / STANDARD_GRAVITY),
+                lines[list(lowest).index(motion.motion.name)].colour,
+            )
             colours[place] = "black" if colours.get(place, own) != own else own  # of several shapes
         marked = [(float(axes[0].at(t)), -float(axes[1].at(a)), colour) for (t, a), colour in colours.items()]
         charts.append(
             Chart(
-                "Lowest peak acceleration that overturns it, for each shape; rings: the motions of the site",
+                "Lowest peak acceleration that overturns it; rings: the site",
                 *axes,
                 lines,
                 marked,
@@ -133,31 +231,31 @@ def _histories(found: Assessment, k: int) -> list[Chart]:
     fallen = np.flatnonzero(np.abs(rotation) >= 2.0 * max(limits))
     if fallen.size:
         end = float(time[fallen[0]])
+    strength = f", {found.strength(k):.3g} times the site" if found.strength(k) < 1.0 else ""
     charts = []
     for title, values, label in (
-        ("Ground acceleration", history["ground_acceleration"].values, "acceleration [m/s²]"),
-        ("Rotation; dashed where it is balanced on an edge", rotation, "rotation [degrees]"),
+        ("Ground acceleration", history["ground_acceleration"].values / STANDARD_GRAVITY, "acceleration [g]"),
+        (f"Rotation under {found.worst_motion(k).name.replace('_', ' ')}{strength}", rotation, "rotation [deg]"),
     ):
         shown = values[time <= end]
         half = 1.1 * max(float(np.abs(shown).max()), 1e-9)
         edges = [limits[0], -limits[1]] if values is rotation else []
         half = max([half, *(1.1 * abs(edge) for edge in edges)])
-        axes = Axis("time [s]", 0.0, end, WIDTH), Axis(label, -half, half, 0.55 * HEIGHT)
+        axes = Axis("time [s]", 0.0, end, WIDTH), Axis(label, -half, half, HEIGHT)
         lines = [line_of("", axes, *thinned(time[time <= end], shown))]
         lines += [line_of("", axes, np.array([0.0, end]), np.full(2, edge), 11) for edge in edges]
         charts.append(Chart(title, *axes, lines, []))
     return charts
 
 
-def _drawing(one: Object, direction: str) -> dict[str, Any]:
-    """Sizes of the drawing of an object from the side [pixels], and of its scale bar."""
+def _drawing(one: Object, direction: str, scale: float) -> dict[str, Any]:
+    """Sizes of the drawing of an object from the side [pixels] at a scale [pixels/m], and of its scale bar."""
     plane, outline = one.planes[direction], one.outline(direction)
     width = 2.0 * float(max(np.abs(outline[:, 0]).max(), 0.5 * plane.base))
-    largest = max(width, plane.height, plane.mass_height)
-    scale = DRAWING / largest
-    unit = 10.0 ** math.floor(math.log10(0.5 * largest))
-    bar = unit * max(m for m in (1, 2, 5) if m * unit <= 0.5 * largest)
-    sizes = {"base": plane.base, "width": width, "height": plane.height, "centre": plane.mass_height}
+    largest = 35.0 / scale
+    unit = 10.0 ** math.floor(math.log10(largest))
+    bar = unit * max(m for m in (1, 2, 5) if m * unit <= largest)
+    sizes = {"base": plane.base, "width": width, "height": float(outline[:, 1].max()), "centre": plane.mass_height}
     sizes |= {"offset": plane.offset, "bar": bar}
     points = " ".join(f"{x:.1f},{-y:.1f}" for x, y in (scale * outline).tolist())
     return {name: size * scale for name, size in sizes.items()} | {"bar_length": bar, "outline": points}

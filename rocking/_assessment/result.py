@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 
 from rocking._assessment.columns import OUTPUTS, VERDICTS
 from rocking._assessment.directions import factors_by_direction
-from rocking._assessment.motions import friction_of, history_of
+from rocking._assessment.motions import frictions_of, history_of
 from rocking._assessment.objects import Object
 from rocking._assessment.site import Motion, Site
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
 from rocking._boundary.scan import RESOLUTION
 from rocking._datasets.csv_text import csv_text
-from rocking._dimensional.table_reader import BadRow
+from rocking._datasets.xlsx import xlsx_bytes
+from rocking._dimensional.table_reader import BadRow, numbers_of
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -70,19 +71,28 @@ class Assessment(EqualByValue):
 
     @property
     def details(self) -> dict[str, list[str]]:
-        """Other texts of the object of each row, such as an inventory number, by their headers."""
-        labels = dict.fromkeys(label for one in self.objects for label in one.details)
-        taken = {name for one in OUTPUTS for name in (one.name, one.header)}
-        return {
-            f"{label} (given)" if label in taken else label: [one.details.get(label, "") for one in self.objects]
-            for label in labels
-        }
+        """What the table of objects has of the object of each row, by its headers and in their order.
 
-    def with_details(self, columns: Mapping[str, Any]) -> dict[str, Any]:
-        """Columns of the table, the names of the objects first, with the details of the objects behind these."""
+        Of objects that were not read from a table their `details`.
+        """
+        rows = [one.cells or one.details for one in self.objects]
+        names, taken = [one.name for one in self.objects], {name for one in OUTPUTS for name in (one.name, one.header)}
+        found = {}
+        for label in dict.fromkeys(label for row in rows for label in row):
+            cells = [row.get(label, "") for row in rows]
+            same = label == "object" and cells == names
+            found[f"{label} (given)" if label in taken and not same else label] = cells
+        return found
+
+    def with_details(self, columns: Mapping[str, Any], added: Sequence[Mapping[str, str]] = ()) -> dict[str, Any]:
+        """Columns of the table behind the `details` of its rows, and of rows that are added at the end."""
         (name, names), *others = columns.items()
-        details = {label: [*texts, *[""] * (len(names) - len(texts))] for label, texts in self.details.items()}
-        return {name: names} | details | dict(others)
+        given = self.details
+        in_place = name in given or any(one.cells for one in self.objects)
+        details = {label: [*texts, *(row.get(label, "") for row in added)] for label, texts in given.items()}
+        if name in details:
+            details[name] = names
+        return (details | {name: names} if in_place else {name: names} | details) | dict(others)
 
     def worst_motion(self, row: int) -> Motion:
         """The motion that overturns a row from the lowest factor on, or under which it rotates most."""
@@ -113,8 +123,17 @@ class Assessment(EqualByValue):
             Over `motion`: `friction_needed`, the largest one [-], infinite where it lifts off; `exceeded_at`, the time
             at which the coefficient of the object is first exceeded [s], nan where it is not, or not given.
         """
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
         row = integer("row", row, 0, len(self.objects) - 1)
-        return friction_of(self.objects[row], str(self.columns["direction"][row]), self.site.motions)
+        given = self.objects[row], str(self.columns["direction"][row])
+        (needed,), (exceeded,) = frictions_of([given], self.site.motions)
+        about = "largest coefficient of friction needed", "time at which that of the object is exceeded"
+        variables = {
+            "friction_needed": ("motion", needed, {"units": "1", "long_name": about[0]}),
+            "exceeded_at": ("motion", exceeded, {"units": "s", "long_name": about[1]}),
+        }
+        return xr.Dataset(variables, {"motion": [*self.motions]})
 
     def directions(self, row: int = 0, *, stop: StopFlag | None = None) -> xr.Dataset:
         """Factors on the motions that overturn the object of a row, over the horizontal direction of the motion.
@@ -165,16 +184,28 @@ class Assessment(EqualByValue):
     def to_csv(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> str:
         """The table as CSV with units in its header, written to a file if a path is given.
 
-        The `details` of the objects follow their names. Rows of the table of objects that were not read follow at the
-        end, with the verdict "not read" and the reason among the warnings. Text that a spreadsheet would take for a
-        formula has a leading apostrophe.
+        The columns of the table of objects come first, as they stand. Rows of it that were not read follow at the end,
+        with the verdict "not read" and the reason among the warnings. Text that a spreadsheet would take for a formula
+        has a leading apostrophe.
         """
-        added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
-        rows: list[dict[str, Any]] = [*self.rows, *added]
-        text = csv_text(self.with_details({one.header: [row.get(one.name) for row in rows] for one in OUTPUTS}))
+        text = csv_text(self._columns_with(bad_rows))
         if path is not None:
             Path(path).write_text(text, encoding="utf-8", newline="")
         return text
+
+    def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
+        """The same table as an .xlsx workbook; columns of numbers in the table of objects are numbers."""
+        columns = self._columns_with(bad_rows)
+        raw = xlsx_bytes(columns | {label: numbers_of(columns[label]) for label in self.details if label in columns})
+        if path is not None:
+            Path(path).write_bytes(raw)
+        return raw
+
+    def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:
+        added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
+        rows: list[dict[str, Any]] = [*self.rows, *added]
+        columns = {one.header: [row.get(one.name) for row in rows] for one in OUTPUTS}
+        return self.with_details(columns, [one.cells for one in bad_rows])
 
     def __repr__(self) -> str:
         """How many rows have each verdict, and the worst."""

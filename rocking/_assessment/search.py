@@ -41,13 +41,19 @@ def factors_of(
     *,
     resolution: float = RESOLUTION,
     highest: float = HIGHEST_FACTOR,
+    enough: float = 0.0,
 ) -> Array:
-    """Lowest factor on each motion that overturns each body, nan where none up to the highest; (bodies, motions)."""
+    """Lowest factor on each motion that overturns each body, nan where none up to the highest; (bodies, motions).
+
+    `enough`: one up to it suffices under a record, see `rocking._boundary.scan.lowest_overturning`.
+    """
     columns = []
     for k, motion in enumerate(motions):
         if progress is not None:
             progress(k / len(motions))
-        found = [factor_from_one_side(one, motion, stop, resolution, highest) for one in problems_of(body, motion)]
+        found = [
+            factor_from_one_side(one, motion, stop, resolution, highest, enough) for one in problems_of(body, motion)
+        ]
         columns.append(least(np.stack(found, axis=1)))
     return np.stack(columns, axis=1)
 
@@ -58,17 +64,18 @@ def factor_from_one_side(
     stop: StopFlag | None = None,
     resolution: float = RESOLUTION,
     highest: float = HIGHEST_FACTOR,
+    enough: float = 0.0,
 ) -> Array:
     """Lowest factor on the motion of a problem that overturns each body, nan where none does; (bodies,)."""
     peak = motion.peak_acceleration
-    return lowest_thresholds(problem, highest * peak, stop, resolution=resolution) / peak
+    return lowest_thresholds(problem, highest * peak, stop, resolution=resolution, enough=enough * peak) / peak
 
 
 def lowest_factor(
     body: BodyArray, motion: Motion, stop: StopFlag | None, resolution: float, highest: float = HIGHEST_FACTOR
 ) -> Array:
-    """Lowest factor as a verdict has it: 1 where the search finds none but the motion itself overturns; inf if none."""
-    found = factors_of(body, [motion], stop, resolution=resolution, highest=highest)[:, 0]
+    """A factor up to 1 that overturns, or the lowest above; 1 where the search finds none but the motion does; inf."""
+    found = factors_of(body, [motion], stop, resolution=resolution, highest=highest, enough=1.0)[:, 0]
     known = np.fmin(found, np.where(overturned_by(body, motion, stop), 1.0, np.nan))
     return np.asarray(np.nan_to_num(known, nan=np.inf))
 

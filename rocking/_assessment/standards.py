@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking import standards
+from rocking._assessment.columns import CLAUSES
 from rocking._assessment.objects import BodyArray
 from rocking._assessment.site import Motion, sampled
 from rocking._base.errors import InvalidArgumentError
@@ -19,23 +20,14 @@ from rocking._numba.cancellation import StopFlag
 
 Array = NDArray[np.float64]
 
-CLAUSES = {
-    "static": "static check: PGA over g b/h",
-    "ishiyama": "Ishiyama (1982): the smaller one of PGA and PGV over their lower bounds",
-    "asce43": "ASCE 43-05 A.2, best estimate: spectral demand over capacity at alpha, at most PGA over g b/h",
-    "circolare_linear": "Circolare 2009 C8A.4.2.3, linear kinematic check with q = 2",
-    "circolare_nonlinear": "Circolare 2009 C8A.4.2.3, nonlinear kinematic check, S_De(T_s) over 0.4 b",
-}
-"""What each number is; a body passes below 1. Spectra are those of the motion, on a floor of the floor."""
 
-
-def checked_clauses(names: str | Iterable[str]) -> tuple[str, ...]:
-    """Names of clauses in the order of `CLAUSES`; "all" is all of them, nothing none."""
-    given = set(names.split(",") if isinstance(names, str) and names else names)
-    given = set(CLAUSES) if given == {"all"} else {name.strip() for name in given}
-    if not given <= set(CLAUSES):
-        raise InvalidArgumentError("standards", names, f"all, or some of {', '.join(CLAUSES)}")
-    return tuple(name for name in CLAUSES if name in given)
+def checked_clauses(names: object) -> tuple[str, ...]:
+    """Names of clauses, in one text or several, in the order of `CLAUSES`; "all" is all of them, nothing none."""
+    given = names.split(",") if isinstance(names, str) and names else names
+    chosen = {str(one).strip() for one in given} if isinstance(given, Iterable) else {""}
+    if chosen <= {"all", *CLAUSES}:
+        return tuple(name for name in CLAUSES if name in chosen or "all" in chosen)
+    raise InvalidArgumentError("standards", names, f"all, or some of {', '.join(CLAUSES)}")
 
 
 def demand_over_capacity(

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking._assessment.columns import INPUTS, REQUIRED, SHAPES, STAND_INS
-from rocking._assessment.objects import Object
+from rocking._assessment.objects import Object, RowDetails
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import (
@@ -125,6 +125,9 @@ def objects_of_csv(text: str, most: int | None = None, stop: StopFlag | None = N
 
 def _objects(table: Table[Object]) -> ObjectTable:
     skipped = [label for label in table.cells if label not in table.columns]
+    for one, row in zip(table.items, zip(*table.cells.values(), strict=True), strict=True):
+        details = RowDetails(one.details, dict(zip(table.cells, row, strict=True)))
+        object.__setattr__(one, "details", details)  # a frozen dataclass
     return ObjectTable(table.items, table.bad_rows, skipped, table.columns)
 
 

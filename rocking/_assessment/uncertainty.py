@@ -19,6 +19,7 @@ from rocking._base.errors import InvalidArgumentError, integer, number
 from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.problem import checked_restitution
+from rocking._model.checks import impact_share
 from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 
@@ -104,7 +105,7 @@ def overturning_probability(
     width, height, mass_height, offset : float or scipy.stats distribution
         As of `rocking.Object`, in one direction [m]; a frozen distribution such as `scipy.stats.norm(0.4, 0.01)`.
         Without a height of the centre of mass it is half the height.
-    restitution : "momentum", float or distribution
+    restitution : "momentum", "kalliontzis(k=...)", float or distribution
         eta [-]; values of a distribution are limited to [0, 1].
     samples : int
         Bodies, rounded up to 8 times a power of two, 64 to 4,194,304; the Sobol indices need as many again for each
@@ -127,8 +128,7 @@ def overturning_probability(
     uncertain = {name: value for name, value in given.items() if hasattr(value, "ppf")}
     for name, value in given.items():
         if name == "restitution" and name not in uncertain:
-            eta = checked_restitution(value, RESTITUTION.number)
-            given[name] = "momentum" if eta is None else eta
+            given[name] = value if impact_share(value) is not None else checked_restitution(value, RESTITUTION.number)
         elif name not in uncertain and value is not None:
             low = -math.inf if name == "offset" else 0.0
             given[name] = number(name, value, low, math.inf, closed="neither", unit="m")
@@ -176,8 +176,8 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
         )
     eta = values["restitution"]
     own = (
-        np.full(size, np.nan)
-        if isinstance(eta, str)
+        np.full(size, -share)
+        if (share := impact_share(eta)) is not None
         else np.clip(np.broadcast_to(np.asarray(eta, float), size), 0.0, 1.0)
     )
     one = np.ones(size)

@@ -53,7 +53,7 @@ def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
     if not one.unit:
         return cell
     text = cell.strip().removeprefix("'")  # of a spreadsheet's text
-    if text.lower() in one.words:
+    if text.lower().partition("(")[0].rstrip() in one.words:
         return text.lower()
     found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if not found:

@@ -26,9 +26,10 @@ FREQUENCY_PARAMETER = Quantity("frequency_parameter", "rad/s", "frequency parame
 """Of a block under a recorded motion, whose time is in seconds."""
 
 RESTITUTION = Quantity("restitution", "-", "coefficient of restitution", symbol="eta", lower=0.0, upper=1.0,
-    closed="both", default="momentum", words=("momentum",),
+    closed="both", default="momentum", words=("momentum", "kalliontzis"),
     aliases="coefficient of restitution, restitution coefficient, eta, stosszahl, restituzione, restitucion")
-"""`momentum`: from the conservation of angular momentum, (2.4) for a block, 0 where that is negative."""
+"""`momentum`: from the conservation of angular momentum, (2.4) for a block, 0 where that is negative;
+`kalliontzis(k=0.8)`: the same with the impact at that share of the half base."""
 
 ALPHA = Quantity("alpha", "rad", "slenderness angle (slender limit without)", symbol="alpha", lower=0.0, upper=1.57,
     closed="both", example="20 deg")

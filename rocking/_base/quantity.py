@@ -120,7 +120,7 @@ class Quantity:
         from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
         from rocking._base.units import USUAL  # noqa: PLC0415
 
-        if not self.unit or value in self.words:
+        if not self.unit or (isinstance(value, str) and value.partition("(")[0].strip() in self.words):
             return value
         try:
             if isinstance(value, str) and (si or self.unit not in USUAL):  # a number, or a percentage

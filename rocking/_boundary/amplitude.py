@@ -15,7 +15,7 @@ from rocking._base.errors import needed, number, reject_given
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION
 from rocking._base.units import Scalar
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
-from rocking._boundary.scan import Index, checked_resolution, outcome_changes
+from rocking._boundary.scan import Index, Lines, checked_resolution, outcome_changes
 from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
@@ -28,9 +28,10 @@ from rocking._model.checks import check_one_alpha, known_restitution
 from rocking._model.fields import IMPACTS, OUTCOME
 from rocking._model.labelled import variable
 from rocking._model.outcome_code import SURVIVES, decode_outcomes
-from rocking._model.response import Outcome, Response
+from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import frequency_parameter_range, record_response
+from rocking._solver.records.record_response import frequency_parameter_range, record_cells, record_response
+from rocking._solver.records.samples import motion_samples
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -166,21 +167,14 @@ def _record_changes(
         excess = np.abs(record.acceleration) / record.peak_acceleration - upwards
         lowest = float(1.0 / excess.max())
 
-    def solve(amplitudes: Floats, threads: int | None = None) -> Response:
-        scaled = None if record.vertical is None else factor * amplitudes
-        slenderness = 1.0 / amplitudes
-        return record_response(
-            record, slenderness=slenderness, vertical_scale=scaled, **groups, threads=threads, stop=stop
-        )
+    def cells(_line: Index, amplitudes: Floats) -> NDArray[np.void]:
+        return record_cells(record, slenderness=1.0 / amplitudes, vertical_scale=factor * amplitudes, **groups)
 
-    def lines(_line: Index, amplitudes: Floats, threads: int | None) -> tuple[Floats, NDArray[np.bool_]]:
-        there = solve(amplitudes, threads)
-        return there.peak_rotation, there.overturned
-
-    found, above = outcome_changes(lines, lowest, max(highest, lowest), limit, resolution=resolution, stop=stop)
-    there = solve(found) if found.size else None
-    outcome = np.empty(0, np.int8) if there is None else there.outcome
-    return Thresholds(found, above, outcome, np.empty(0, np.int32) if there is None else there.impacts)
+    lines = Lines(motion_samples(record), cells, stop=stop)
+    found, above = outcome_changes(lines, lowest, max(highest, lowest), limit, resolution=resolution)
+    vertical = None if record.vertical is None else factor * found
+    there = record_response(record, slenderness=1.0 / found, vertical_scale=vertical, **groups, stop=stop)
+    return Thresholds(found, above, there.outcome, there.impacts)
 
 
 def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float) -> Thresholds:

@@ -1,30 +1,37 @@
 """Strengths of a motion that overturn bodies: the lowest of each body, and every change of outcome of one body.
 
 Under a record the outcome is not monotone in the strength, and the lowest range of strengths that overturn a body is
-often narrow: of 208 pairs of objects and records half of these ranges are narrower than 0.1 %, since the body strikes
-10 to 200 times. `lowest_overturning` therefore looks closely where the response comes near to overturning, and says how
-closely it looks elsewhere.
+often narrow: of 140 pairs of objects and records half of these ranges are narrower than 0.1 %, since the body strikes
+10 to 200 times. `lowest_overturning` tries strengths from that of uplift on, `resolution` apart. Each response has a
+reach: how far away in strength one of its peaks comes to the unstable equilibrium, by the derivative of the peak
+(`rocking._solver.records.estimate`). An interval is halved while it is wider than half the reach at one of its ends,
+down to a 512th of the resolution; then while it is wider than an 8th and a 32nd of it, as long as the body has
+had fewer than `BUDGET` responses in a `WINDOW`; and close below the lowest that overturns the intervals are as narrow
+as a 64th of their distance from it. All of these are estimates; each that is the lowest so far is confirmed by the
+solver, and the change of outcome below the lowest is bisected with it. A narrower range can be missed.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Protocol, Self, TypeVar
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import number
 from rocking._base.units import Scalar
+from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
+from rocking._solver.records.estimate import estimate_outcomes
+from rocking._solver.records.record_response import solve_bodies
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Index = NDArray[np.intp]
-N = TypeVar("N", bound="Nodes")
 
 RESOLUTION = 0.005
 """Largest relative distance of the strengths of a record that are tried in search of the lowest [-].
@@ -35,25 +42,18 @@ RESOLUTION = 0.005
 RESOLUTIONS = 1e-4, 0.1
 """Finest and coarsest that can be asked for [-]."""
 
-PARTS = 64
+PARTS = 512
 """Parts of the resolution, a power of two, into which it is divided where the body may overturn."""
 
-CLOSE_PARTS = 32
-"""Parts into which it is divided in the last interval below the first strength that overturns."""
+CLOSE, CLOSE_RATIO = PARTS, 64
+"""Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
-QUIET = 0.02
-"""Peak |theta|/alpha up to which the resolution is not divided [-]: 40 to 55 % of the strengths below the lowest."""
+MULTIPLES = 2.0, 8.0, 32.0
+"""An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other."""
 
-SLOPE, REACH = 2, 16
-"""An interval is halved if its larger peak with so many times its change there, and so many times the distance of a
-peak from the line between those beside it, reaches 1 [-].
-"""
-
-WINDOW = 8
-"""Intervals of the resolution that are refined together, from the weakest on, before stronger ones are tried."""
-
-BALANCED = 1.0
-"""|theta|/alpha of a body that is balanced on an edge, and of one that overturns [-]."""
+WINDOW, BUDGET = 16, 1000
+"""Intervals of the resolution that are searched together, from the weakest on; responses of a body in them with which
+the larger multiples are not used."""
 
 FEWEST, SHARES = 64, 4
 """Bodies in a part of an array at least, below which the overhead counts, and parts for each core."""
@@ -64,76 +64,73 @@ SCAN_RATIO = 1.002
 RELATIVE_ERROR = 1e-6
 """Relative width to which a change of outcome is bisected [-]."""
 
+NONE = np.iinfo(np.intp).max
+"""Place of the lowest that overturns where none is known."""
+
 _PARTS = 16
 """Values between the two ends of an interval that is bisected, solved by one call."""
 
 
-class SolveLines(Protocol):
-    """Responses of bodies, each a line of strengths."""
-
-    def __call__(self, line: Index, strength: Array, threads: int | None, /) -> tuple[Array, Bools]:
-        """Peak |theta|/alpha [-] and whether the body overturns, for bodies by number and strengths (nodes,)."""
-
-
-@dataclass(eq=False)
-class Nodes:
-    """Solved strengths of several bodies in order of body, then strength; arrays (nodes,).
+@dataclass(frozen=True)
+class Lines:
+    """Bodies under samples, each a line of strengths.
 
     Attributes
     ----------
-    line : int array
-        Number of the body.
-    place : int array
-        Number of the strength, ascending with it.
-    peak : float array
-        Peak |theta|/alpha, `BALANCED` of a body that overturns [-].
-    overturned : bool array
-        Whether the body does.
+    samples : float array (7, samples)
+        Of `rocking._solver.records.samples.sample_rows`.
+    cells : callable
+        The bodies `BODY_CELL` from their numbers and strengths.
+    each_side : bool
+        As for `solve_bodies`.
+    threads : int, optional
+        For a few bodies; many are distributed over all cores.
+    stop : StopFlag, optional
+        Cancels the work.
+    """
+
+    samples: Array
+    cells: Callable[[Index, Array], NDArray[np.void]]
+    each_side: bool = False
+    threads: int | None = None
+    stop: StopFlag | None = None
+
+    def overturned(self, line: Index, strength: Array) -> Bools:
+        """Whether the bodies overturn."""
+        records, _ = solve_bodies(self.samples, self.cells(line, strength), self.threads, self.stop, self.each_side)
+        return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
+
+    def estimated(self, line: Index, strength: Array) -> tuple[Bools, Array]:
+        """Whether they do by an estimate, and the reach of the responses in the logarithm of the strength."""
+        return estimate_outcomes(self.samples, self.cells(line, strength), self.threads, self.stop)
+
+    def from_line(self, first: int) -> Lines:
+        """Those from a number on."""
+        return replace(self, cells=lambda line, strength: self.cells(line + first, strength))
+
+
+@dataclass(eq=False)
+class Intervals:
+    """Intervals of strengths, in order of line, then place, as arrays (intervals,): line, places and reach of the ends.
+
+    The reach is 0 where a body overturns.
     """
 
     line: Index
-    place: Index
-    peak: Array
-    overturned: Bools
+    low: Index
+    high: Index
+    low_reach: Array
+    high_reach: Array
 
     def take(self, index: Index | Bools) -> Self:
         """Some of them."""
         return type(self)(*(column[index] for column in vars(self).values()))
 
-    def joined(self, other: Self) -> Self:
-        """Those of both up to the first of each body that overturns, in order."""
-        both = type(self)(*map(np.concatenate, zip(vars(self).values(), vars(other).values(), strict=True)))
-        beyond = both.place.max(initial=0) + 1
-        order = np.argsort(both.line * beyond + both.place, kind="stable")  # of two sorted runs: one merge
-        return both.take(order[both.place[order] <= both.first_overturned(beyond)[both.line[order]]])
-
-    def first_overturned(self, none: int) -> Index:
-        """Place of the first node of each body that overturns, `none` where there is none."""
-        first = np.full(self.line.max(initial=-1) + 1, none)
-        np.minimum.at(first, self.line[self.overturned], self.place[self.overturned])
-        return first
-
-
-def refined(nodes: N, solved: Callable[[Index, Index], N], halved: Callable[[N], Bools]) -> N:
-    """The nodes with those between them, until no interval is to be halved.
-
-    Parameters
-    ----------
-    nodes : Nodes
-        To begin with.
-    solved : callable
-        Nodes from lines and places.
-    halved : callable
-        Whether each interval between consecutive nodes is, bool array (nodes - 1,).
-    """
-    while (first := np.flatnonzero(halved(nodes))).size:
-        nodes = nodes.joined(solved(nodes.line[first], (nodes.place[first] + nodes.place[first + 1]) // 2))
-    return nodes
-
-
-def beside(values: Array) -> Array:
-    """The largest of each value and the two beside it; arrays (values,)."""
-    return np.asarray(np.maximum(values, np.maximum(np.append(0.0, values)[:-1], np.append(values, 0.0)[1:])))
+    def with_others(self, *others: Self) -> Self:
+        """All of them, in order."""
+        columns = zip(*(vars(one).values() for one in (self, *others)), strict=True)
+        joined = type(self)(*map(np.concatenate, columns))
+        return joined.take(np.lexsort((joined.low, joined.line)))
 
 
 def checked_resolution(resolution: Scalar) -> float:
@@ -148,24 +145,20 @@ def checked_resolution(resolution: Scalar) -> float:
 
 
 def lowest_overturning(
-    solve: SolveLines,
+    lines: Lines,
     start: Array,
     highest: Array | float,
     limit: Array | float = math.inf,
     *,
     resolution: float = RESOLUTION,
-    stop: StopFlag | None = None,
+    enough: Array | float = 0.0,
 ) -> Array:
     """Lowest strength at which each body overturns, of those tried; nan where none up to the highest was found.
 
-    Strengths are tried from the weakest on, `resolution` apart. Where the peak rotation, or its variation from one
-    strength to the next, comes near to overturning, and just below the first strength that overturns, intervals are
-    halved to 1/64 of it at the narrowest. The change of outcome below the first that overturns is bisected.
-
     Parameters
     ----------
-    solve : SolveLines
-        The solver.
+    lines : Lines
+        The bodies.
     start : float array (bodies,)
         Strength up to which a body does not move, or the lowest of interest, > 0.
     highest : float array (bodies,)
@@ -173,98 +166,135 @@ def lowest_overturning(
     limit : float array (bodies,)
         Strength beyond which there is no response.
     resolution : float
-        Largest relative distance of two strengths [-].
-    stop : StopFlag, optional
-        Cancels the work.
+        Largest relative distance of two strengths [-]. Above `RESOLUTION` the budget of responses is smaller.
+    enough : float array (bodies,)
+        The search of a body ends with a strength up to this one that overturns it, which need not be the lowest.
 
     Returns
     -------
     float array (bodies,)
         A strength that overturns the body; one lower by 1e-6, or the weakest, does not or is the start.
     """
-    start, highest, limit = np.broadcast_arrays(start, highest, limit)
+    start, highest, limit, enough = np.broadcast_arrays(start, highest, limit, enough)
     found = np.full(start.shape, math.nan)
+    size = max(FEWEST, math.ceil(start.size / (SHARES * AVAILABLE_CORES)))
+    if start.size > size:
+        lines = replace(lines, threads=1)
 
     def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
-        first = part.start
+        own = lines.from_line(part.start)
+        found[part] = _Search(own, start[part], limit[part], resolution, enough[part]).lowest(highest[part])
 
-        def own(line: Index, strength: Array) -> tuple[Array, Bools]:
-            return solve(line + first, strength, None if parts == 1 else 1)
-
-        found[part] = _lowest(own, start[part], np.minimum(highest[part], limit[part]), limit[part], resolution)
-
-    size = max(FEWEST, math.ceil(start.size / (SHARES * AVAILABLE_CORES)))
-    parts = math.ceil(start.size / size)
-    fill_chunks(fill, start.size, size, AVAILABLE_CORES, stop)
+    fill_chunks(fill, start.size, size, AVAILABLE_CORES, lines.stop)
     return np.where(found > highest, math.nan, found)
 
 
-def _lowest(
-    solve: Callable[[Index, Array], tuple[Array, Bools]], start: Array, highest: Array, limit: Array, resolution: float
-) -> Array:
-    unit = math.log1p(resolution) / PARTS
+class _Search:
+    """One search for the lowest strengths of bodies; places number the strengths that can be tried, from the start."""
 
-    def strength(line: Index, place: Index) -> Array:
-        return np.asarray(np.minimum(start[line] * np.exp(unit * place), limit[line]))
+    def __init__(self, lines: Lines, start: Array, limit: Array, resolution: float, enough: Array) -> None:
+        self.lines, self.start, self.limit = lines, start, limit
+        self.unit, self.budget = math.log1p(resolution) / PARTS, BUDGET * min(RESOLUTION / resolution, 1.0)
+        with np.errstate(divide="ignore"):
+            self.enough = np.log(enough / start) / self.unit  # place
+        self.first = np.full(start.size, NONE)  # place of the lowest that overturns
+        self.tried = np.zeros(start.size)  # responses in the window
 
-    def solved(line: Index, place: Index) -> Nodes:
-        peak, overturned = solve(line, strength(line, place))
-        return Nodes(line, place, np.where(overturned, BALANCED, np.minimum(peak, BALANCED)), overturned)
+    def strength(self, line: Index, place: Index) -> Array:
+        """The strength at a place."""
+        return np.asarray(np.minimum(self.start[line] * np.exp(self.unit * place), self.limit[line]))
 
-    with np.errstate(divide="ignore"):
-        end, last = (np.log(each / start) / unit for each in (highest, limit))
-    last = np.ceil(np.minimum(last, end + WINDOW * PARTS)).astype(np.intp)  # place of the limit, where it is near
-    bracket = np.full((start.size, 2), -1)  # places of the first that overturns and of the one before
-    none = np.empty(0, dtype=np.intp)
-    kept, lines = solved(none, none), np.flatnonzero(highest >= start)
-    first = 0
-    while lines.size:
-        line, place = np.broadcast_arrays(lines[:, None], first + PARTS * np.arange(WINDOW))
-        inside = place < last[line] + PARTS
-        nodes = refined(kept.joined(solved(line[inside], np.minimum(place, last[line])[inside])), solved, _halved)
-        above = np.flatnonzero(nodes.overturned)
-        before = np.where(above > 0, nodes.line[above - 1] == nodes.line[above], False)
-        bracket[nodes.line[above], 0] = nodes.place[above]
-        bracket[nodes.line[above], 1] = np.where(before, nodes.place[above - 1], nodes.place[above])
-        first += WINDOW * PARTS
-        solved_to = first - PARTS
-        lines = lines[(bracket[lines, 0] < 0) & (solved_to < end[lines]) & (solved_to < last[lines])]
-        left = np.zeros(start.size, dtype=np.bool_)
-        left[lines] = True
-        kept = nodes.take(left[nodes.line] & (nodes.place >= solved_to - PARTS))
-    found = np.full(start.size, math.nan)
-    known = np.flatnonzero(bracket[:, 0] >= 0)
-    high, low = (strength(known, bracket[known, k]) for k in (0, 1))
-    while (wide := np.flatnonzero(high / low - 1.0 > RELATIVE_ERROR)).size:
-        middle = np.sqrt(low[wide] * high[wide])
-        _, overturned = solve(known[wide], middle)
-        low[wide], high[wide] = np.where(overturned, low[wide], middle), np.where(overturned, middle, high[wide])
-    found[known] = high
-    return found
+    def reach(self, line: Index, place: Index) -> Array:
+        """Reach of the responses, 0 where a body overturns, in parts; confirms the lowest that overturn."""
+        strength = self.strength(line, place)
+        overturned, reach = self.lines.estimated(line, strength)
+        self.tried += np.bincount(line, minlength=self.tried.size)
+        left = overturned.copy()
+        while (left := left & (place < self.first[line])).any():
+            hits = np.flatnonzero(left)
+            lowest = hits[np.unique(line[hits], return_index=True)[1]]
+            left[lowest] = False
+            for shift in (0, -1, 1):  # the estimate may be that of a place beside it
+                at = np.maximum(place[lowest] + shift, 0)
+                confirmed = self.lines.overturned(line[lowest], self.strength(line[lowest], at))
+                own, at = line[lowest[confirmed]], at[confirmed]
+                self.first[own] = np.minimum(self.first[own], at)
+                lowest = lowest[~confirmed]
+                if not lowest.size:
+                    break
+        return np.where(overturned, 0.0, reach / self.unit)
 
+    def settled(self) -> Bools:
+        """Whether a strength is known that is low enough."""
+        return np.asarray(self.first <= self.enough)
 
-def _halved(nodes: Nodes) -> Bools:
-    """Whether each interval between two nodes is halved."""
-    same = np.diff(nodes.line) == 0
-    gap = np.where(same, np.diff(nodes.place), 0)
-    below, above = nodes.peak[:-1], nodes.peak[1:]
-    largest = np.where(same, np.maximum(below, above), 0.0)
-    first = nodes.first_overturned(np.iinfo(np.intp).max)[nodes.line[1:]]
-    close = (first - nodes.place[1:] < PARTS) & (gap > PARTS // CLOSE_PARTS)
-    apart = _from_chord(nodes, same)
-    bound = largest + SLOPE * np.abs(above - below) + REACH * np.maximum(apart[:-1], apart[1:])
-    around = beside(largest)
-    return np.asarray((gap > 1) & (around > QUIET) & ((gap > PARTS // 2) | close | (bound >= BALANCED)))
+    def lowest(self, highest: Array) -> Array:
+        """The lowest strength of each body, nan where none up to the highest or a little above it was found."""
+        with np.errstate(divide="ignore"):
+            end, last = (np.log(each / self.start) / self.unit for each in (highest, self.limit))
+        last = np.ceil(np.minimum(last, end + 2 * WINDOW * PARTS)).astype(np.intp)  # of the limit, where it is near
+        lines, solved_to, intervals = np.flatnonzero(highest >= self.start), 0, None
+        while lines.size:
+            line, place = np.broadcast_arrays(lines[:, None], solved_to + PARTS * np.arange(WINDOW + 1))
+            place = np.minimum(place, last[line])
+            self.tried[:] = 0.0
+            reach = self.reach(line.ravel(), place.ravel()).reshape(place.shape)
+            ends = line[:, 1:], place[:, :-1], place[:, 1:], reach[:, :-1], reach[:, 1:]
+            window = Intervals(*(column.ravel() for column in ends))
+            intervals = window if intervals is None else intervals.with_others(window)
+            for multiple in MULTIPLES:
+                intervals = self.refined(intervals, multiple)
+            before: Index | None = None
+            while before is None or (self.first < before).any():  # what is close below the lowest
+                before = self.first.copy()
+                intervals = self.refined(intervals, MULTIPLES[-1])
+            solved_to += WINDOW * PARTS
+            # those close below a later one are looked at again
+            lines = lines[(self.first[lines] == NONE) & (solved_to - CLOSE < end[lines]) & (solved_to < last[lines])]
+            left = np.zeros(self.start.size, dtype=np.bool_)
+            left[lines] = True
+            intervals = intervals.take(left[intervals.line] & (intervals.high > solved_to - CLOSE))
+        return self.bisected(np.flatnonzero(self.first < NONE))
 
+    def refined(self, intervals: Intervals, multiple: float) -> Intervals:
+        """The intervals, and those into which they are divided as long as one is to be halved."""
+        done = [intervals.take(np.empty(0, dtype=np.intp))]
+        while True:
+            intervals = intervals.take((intervals.low < self.first[intervals.line]) & ~self.settled()[intervals.line])
+            gap = intervals.high - intervals.low
+            used = np.where(self.tried[intervals.line] < self.budget, multiple, MULTIPLES[0])
+            below = self.first[intervals.line] - intervals.low
+            close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
+            near = gap * used > np.minimum(intervals.low_reach, intervals.high_reach)
+            halved = (gap > 1) & (near | close)
+            done.append(intervals.take(~halved))
+            if not halved.any():
+                return done[0].with_others(*done[1:])
+            whole = intervals.take(halved)
+            middle = (whole.low + whole.high) // 2
+            reach = self.reach(whole.line, middle)
+            pairs = (whole.low, middle), (middle, whole.high), (whole.low_reach, reach), (reach, whole.high_reach)
+            intervals = Intervals(np.repeat(whole.line, 2), *(np.stack(pair, axis=1).ravel() for pair in pairs))
 
-def _from_chord(nodes: Nodes, same: Bools) -> Array:
-    """Distance of the peak at each node from the straight line between those beside it; 0 at the ends of a line."""
-    place, peak = nodes.place, nodes.peak
-    found = np.zeros(peak.size)
-    inner = np.flatnonzero(same[1:] & same[:-1]) + 1
-    share = (place[inner] - place[inner - 1]) / (place[inner + 1] - place[inner - 1])
-    found[inner] = np.abs(peak[inner] - (1.0 - share) * peak[inner - 1] - share * peak[inner + 1])
-    return found
+    def bisected(self, known: Index) -> Array:
+        """The lowest strengths of bodies for which one is known, with the change of outcome below it."""
+        place = self.first[known]
+        low = np.where(self.settled()[known], place, np.maximum(place - 1, 0))
+        found = np.full(self.start.size, math.nan)
+        over = np.ones(known.size, dtype=np.bool_)
+        while (down := np.flatnonzero(over & (low < place))).size:
+            over[down] = self.lines.overturned(known[down], self.strength(known[down], low[down]))
+            down = down[over[down]]
+            place[down] = low[down]
+            low[down] = np.maximum(low[down] - 1, 0)
+        high, under = (self.strength(known, each) for each in (place, low))
+        while (wide := np.flatnonzero(high / under - 1.0 > RELATIVE_ERROR)).size:
+            middle = np.sqrt(under[wide] * high[wide])
+            overturned = self.lines.overturned(known[wide], middle)
+            under[wide] = np.where(overturned, under[wide], middle)
+            high[wide] = np.where(overturned, middle, high[wide])
+        found[known] = high
+        return found
 
 
 def scanned(lowest: float, highest: float) -> Array:
@@ -274,24 +304,23 @@ def scanned(lowest: float, highest: float) -> Array:
 
 
 def outcome_changes(
-    solve: SolveLines,
+    lines: Lines,
     lowest: float,
     highest: float,
     limit: float = math.inf,
     *,
     resolution: float = RESOLUTION,
-    stop: StopFlag | None = None,
 ) -> tuple[Array, Bools]:
     """Every change of outcome of one body, bisected, and whether it overturns above; arrays (changes,).
 
     The first is that of `lowest_overturning`; above it the values of `scanned` are tried.
     """
-    first = lowest_overturning(solve, np.array([lowest]), highest, limit, resolution=resolution, stop=stop)
+    first = lowest_overturning(lines, np.array([lowest]), highest, limit, resolution=resolution)
     if np.isnan(first[0]):
         return np.empty(0), np.empty(0, dtype=np.bool_)
 
     def overturns(values: Array) -> Bools:
-        return solve(np.zeros(values.size, dtype=np.intp), values, None)[1]
+        return lines.overturned(np.zeros(values.size, dtype=np.intp), values)
 
     values = scanned(float(first[0]), highest)
     overturned = np.append(True, overturns(values[1:]))

@@ -7,7 +7,7 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -21,14 +21,6 @@ if TYPE_CHECKING:
     from rocking._assessment.tables import ObjectTable
     from rocking._cli.printing import Form
     from rocking._excitation.records.record import Record
-
-SHOWN = (
-    *("object", "direction", "verdict", "factor", "governing"),
-    *("uplift_acceleration", "rotation", "displacement", "friction_needed", "smallest_width"),
-)
-"""Columns that fit a screen; CSV, JSON and files have all of them."""
-
-MOST = 5  # objects that are named beside a warning at most
 
 HINTS = {
     "records": "--pair",
@@ -119,6 +111,14 @@ def assess(
             "--sensitivity/--no-sensitivity",
         ),
     ] = True,
+    standards: Annotated[
+        str,
+        said(
+            "Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
+            "circolare_nonlinear.",
+            "NAME,NAME,...",
+        ),
+    ] = "",
     samples: Annotated[
         int, said("Variants of each object within its tolerance that are tried, such as 10000.", "NUMBER")
     ] = 0,
@@ -126,8 +126,17 @@ def assess(
     resolution: Annotated[
         float, said("Largest relative distance of the factors on a record that are tried, 0.0001 to 0.1.", "-")
     ] = 0.005,
-    output: Annotated[str | None, said("CSV file to write, with all columns.", "FILE", "--output", "-o")] = None,
+    output: Annotated[
+        str | None, said("CSV or XLSX file to write: the table as given, and all columns.", "FILE", "--output", "-o")
+    ] = None,
+    directions: Annotated[
+        bool, said("Each object in both directions; by default in the worse one.", "", "--directions")
+    ] = False,
     report: Annotated[str | None, said("HTML file to write: verdicts, drawings, inputs; prints on A4.", "FILE")] = None,
+    detail: Annotated[
+        Literal["usual", "all"],
+        said("Objects with drawings in the report: those that rock, or are close to it; all.", "NAME"),
+    ] = "usual",
     title: Annotated[str, said("Title of the report.", "TEXT")] = "Assessment of free-standing objects",
     author: Annotated[str, said("Author of the report.", "TEXT")] = "",
     place: Annotated[str, said("Name of the site in the report.", "TEXT", "--site")] = "",
@@ -183,19 +192,21 @@ def assess(
                 given,
                 site,
                 sensitivity=sensitivity,
+                standards=standards,
                 samples=samples,
                 seed=seed,
                 resolution=resolution,
                 progress=advance,
             )
         if output is not None:
-            _write("output", output, found.to_csv(bad_rows=table.bad_rows))
+            is_xlsx = Path(output).suffix.lower() == ".xlsx"
+            _write("output", output, (found.to_xlsx if is_xlsx else found.to_csv)(bad_rows=table.bad_rows))
         if report is not None:
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
-            _write("report", report, _html(found, project, table))
-    _print(found, kind, table, bad)
+            _write("report", report, _html(found, project, table, detail == "all"))
+    _print(found, kind, table, bad, directions)
     if kind.kind == "table" and table.reading:
         typer.echo(printing.printable(table.reading))
     if bad:
@@ -238,37 +249,36 @@ def _read(
     return found
 
 
-def _html(found: Assessment, project: Project, table: ObjectTable) -> str:
+def _html(found: Assessment, project: Project, table: ObjectTable, detailed: bool) -> str:
     """The report."""
     from rocking._assessment.report import report_html
     from rocking._base.errors import InvalidArgumentError
 
     try:
-        return report_html(found, project, table.bad_rows, table.reading)
+        return report_html(found, project, table.bad_rows, table.reading, detailed=detailed)
     except ModuleNotFoundError as error:
         raise InvalidArgumentError(
             "report", error.name, "with the extra `report`: pip install 'rocking[report]'"
         ) from None
 
 
-def _write(option: str, path: str, text: str) -> None:
+def _write(option: str, path: str, content: str | bytes) -> None:
     """Write a file."""
     from rocking._base.errors import InvalidArgumentError
 
     try:
-        Path(path).write_text(text, encoding="utf-8", newline="")
+        Path(path).write_bytes(content.encode() if isinstance(content, str) else content)
     except OSError as error:
         raise InvalidArgumentError(option, path, f"a file that can be written ({error.strerror})") from None
 
 
-def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) -> None:
-    """Print the table, and below it the objects to which each warning applies."""
+def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], directions: bool) -> None:
+    """Print a line for each object, and below them each kind of warning with the objects to which it applies."""
     from rocking._assessment.columns import OUTPUTS
+    from rocking._assessment.summary import names_in_short, rows_in_units, table_of, warnings_of
     from rocking._cli import printing
 
-    rows = found.rows
-    columns = {one.name: [row[one.name] for row in rows] for one in OUTPUTS}
-    units = {one.name: one.unit for one in OUTPUTS if one.header != one.name}
+    columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
     if form.kind == "json":
         about = {"details": found.details, "columns": table.columns, "skipped": table.skipped}
         printing.print_json(
@@ -276,15 +286,14 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str]) ->
         )
         return
     if form.kind == "csv":
+        units = {one.name: one.unit for one in OUTPUTS if one.header != one.name}
         printing.print_csv(found.with_details(columns), form, units)
         return
-    printing.print_table({name: columns[name] for name in SHOWN}, units)
+    printing.print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
     if found.resolution:
         typer.echo(f"factors on records: at most {100.0 * found.resolution:g} % apart were tried")
-    concerned: dict[str, list[str]] = {}
-    for row in rows:
-        for text in filter(None, row["warnings"].split("; ")):
-            concerned.setdefault(text, []).append(f"{row['object']} ({row['direction']})")
-    for text, names in concerned.items():
-        more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-        typer.echo(f"warning: {text}: {printing.printable(', '.join(names[:MOST]))}{more}")
+    for text, names in warnings_of(found):
+        count = f"{len(names)} object{'s' if len(names) > 1 else ''}"
+        typer.echo(f"warning: {count}: {printing.printable(f'{text}: {names_in_short(names)}')}")
+    if not (directions or form.all) and len({*map(id, found.objects)}) < len(found.objects):
+        typer.echo("each object in its worse direction; --directions shows both, --all every value")

@@ -1,12 +1,14 @@
 """Columns as CSV text (RFC 4180), for the command line, the service and the workflow."""
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from types import SimpleNamespace
 from typing import Any
 
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # text that begins so is a formula for a spreadsheet
+_NEGATIVE = re.compile("-[0-9]+(?:[.,][0-9]+)?")
 
 
 def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
@@ -40,4 +42,5 @@ def _cell(value: Any) -> Any:
         return value if isfinite(value) else None
     if isinstance(value, bool):
         return "true" if value else "false"
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA_STARTS) else value
+    is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _NEGATIVE.fullmatch(value)
+    return f"'{value}" if is_formula else value

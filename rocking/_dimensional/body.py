@@ -17,7 +17,14 @@ from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
 from rocking._dimensional.curves import boundary, history, over_axis, spectrum
 from rocking._dimensional.fields import FIELDS
-from rocking._dimensional.problem import STRENGTHS, Motion, Problem, are_numbers, checked_restitution
+from rocking._dimensional.problem import (
+    STRENGTHS,
+    Motion,
+    Problem,
+    are_numbers,
+    checked_restitution,
+    spread_restitution,
+)
 from rocking._dimensional.response import BodyResponse, respond
 from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, thresholds_of
 from rocking._excitation.pulses import AbstractPulse
@@ -86,7 +93,7 @@ class RespondingBody(AbstractBody):
             T_p = 2 pi/omega_g [s], > 0; of a pulse.
         scale : array_like
             Factor of a record, of both its components [-], (0, 1e6]; 1 by default.
-        restitution : array_like or "momentum"
+        restitution : array_like, "momentum" or "kalliontzis(k=...)"
             eta [-], [0, 1], of every impact; or from conservation of angular momentum, (2.4) for a block, 0 where that
             is negative.
         thresholds : bool
@@ -248,7 +255,7 @@ class RespondingBody(AbstractBody):
         ----------
         motion : str or AbstractPulse
             The pulse; of a record there is one strength for each body, see `thresholds`.
-        restitution : float or "momentum"
+        restitution : float, "momentum" or "kalliontzis(k=...)"
             As for `response`.
         period : (float, float), optional
             Window of T_p [s], 0 < low < high; by default the frequency ratios to the right edge from 0.2 to 15.
@@ -343,8 +350,9 @@ class RespondingBody(AbstractBody):
         """Refuse an array of bodies, and arrays as arguments that are one number."""
         if self.shape:
             raise InvalidArgumentError(name, f"bodies of shape {self.shape}", "one body")
-        if checked_restitution(restitution) is not None:
-            RESTITUTION.number(restitution)
+        eta = spread_restitution(self, restitution)
+        if checked_restitution(eta) is not None:
+            RESTITUTION.number(eta)
         for key, value in numbers.items():
             if value is not None:
                 STRENGTHS[key].number(value)

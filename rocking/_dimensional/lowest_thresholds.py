@@ -11,16 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.quantities import HIGHEST_SCALE
-from rocking._boundary.scan import (
-    BALANCED,
-    FEWEST,
-    SHARES,
-    Nodes,
-    SolveLines,
-    beside,
-    lowest_overturning,
-    refined,
-)
+from rocking._boundary.scan import FEWEST, SHARES, Lines, lowest_overturning
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.search import RESOLUTION, refine_brackets
 from rocking._dimensional.problem import Problem
@@ -32,6 +23,7 @@ from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bodies import outcome_margin_of, solve_motion
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
+from rocking._solver.records.samples import motion_samples
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -74,16 +66,58 @@ Layers of outcomes lie close together there, the more of them the more flights t
 AT_ONCE = 4  # coarse nodes solved at a time, before the bodies that have overturned are left out
 
 
-@dataclass(eq=False)
-class _Nodes(Nodes):
-    """With the margin of the outcome and the number of impacts."""
+BALANCED = 1.0
+"""|theta|/alpha of a body that is balanced on an edge, and of one that overturns [-]."""
 
+
+@dataclass(eq=False)
+class _Nodes:
+    """Solved amplitudes of several bodies in order of body, then amplitude; arrays (nodes,).
+
+    Attributes
+    ----------
+    line, place : int array
+        Number of the body; number of the amplitude, ascending with it.
+    peak : float array
+        Peak |theta|/alpha, `BALANCED` of a body that overturns [-].
+    overturned : bool array
+        Whether the body does.
+    margin : float array
+        Of the outcome.
+    impacts : int array
+        Their number.
+    """
+
+    line: Index
+    place: Index
+    peak: Array
+    overturned: NDArray[np.bool_]
     margin: Array
     impacts: NDArray[np.int32]
 
+    def joined(self, other: _Nodes) -> _Nodes:
+        """Those of both up to the first of each body that overturns, in order."""
+        both = [np.concatenate(pair) for pair in zip(vars(self).values(), vars(other).values(), strict=True)]
+        line, place = both[:2]
+        beyond = place.max(initial=0) + 1
+        order = np.argsort(line * beyond + place, kind="stable")  # of two sorted runs: one merge
+        order = order[place[order] <= _Nodes(*both).first_overturned(beyond)[line[order]]]
+        return _Nodes(*(column[order] for column in both))
+
+    def first_overturned(self, none: int) -> Index:
+        """Place of the first node of each body that overturns, `none` where there is none."""
+        first = np.full(self.line.max(initial=-1) + 1, none)
+        np.minimum.at(first, self.line[self.overturned], self.place[self.overturned])
+        return first
+
 
 def lowest_thresholds(
-    problem: Problem, highest: Array | float, stop: StopFlag | None = None, *, resolution: float = SCAN_RESOLUTION
+    problem: Problem,
+    highest: Array | float,
+    stop: StopFlag | None = None,
+    *,
+    resolution: float = SCAN_RESOLUTION,
+    enough: float = 0.0,
 ) -> Array:
     """The lowest peak acceleration [m/s2] that overturns each body of a problem, whose own one is not read; else nan.
 
@@ -91,7 +125,8 @@ def lowest_thresholds(
     searched from uplift on: every 128th one up to the first that overturns, then those between them where the body
     could overturn, see `COARSE`. The change of outcome is bracketed to `RESOLUTION` in 1/a, and both ends of the
     bracket have been solved. `highest` [m/s2] broadcasts with the problem; under a pulse at most `HIGHEST` times that
-    of uplift is searched, under a record up to where the vertical acceleration reaches -g.
+    of uplift is searched, under a record up to where the vertical acceleration reaches -g; `enough`: as of
+    `lowest_overturning` [m/s2].
     """
     motion = problem.motion
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
@@ -100,7 +135,8 @@ def lowest_thresholds(
         lines = replace(problem, peak_acceleration=np.full(shape, peak))
         start, limit = record_range(lines)
         factor = np.broadcast_to(highest, shape).ravel() / peak
-        found = lowest_overturning(record_lines(lines, stop), start, factor, limit, resolution=resolution, stop=stop)
+        given = record_lines(lines, stop)
+        found = lowest_overturning(given, start, factor, limit, resolution=resolution, enough=enough / peak)
         return found.reshape(shape) * peak
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
     cells = replace(problem, peak_acceleration=np.asarray(uplift)).cells
@@ -116,18 +152,18 @@ def lowest_thresholds(
     return found.reshape(shape) * uplift
 
 
-def record_lines(problem: Problem, stop: StopFlag | None = None) -> SolveLines:
+def record_lines(problem: Problem, stop: StopFlag | None = None) -> Lines:
     """The bodies of a problem under its record at the factor 1, as lines of other factors."""
-    cells = problem.cells
+    record: Any = problem.motion
+    at_one = problem.cells
 
-    def solve(line: Index, factor: Array, threads: int | None) -> tuple[Array, NDArray[np.bool_]]:
-        chosen = cells[line]
+    def cells(line: Index, factor: Array) -> NDArray[np.void]:
+        chosen = at_one[line]
         chosen["slenderness"] /= factor[:, None]
         chosen["vertical"] *= factor
-        records, _ = solve_motion(problem.motion, chosen, threads, stop)
-        return records["peak_rotation"], records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
+        return chosen
 
-    return solve
+    return Lines(motion_samples(record), cells, each_side=True, stop=stop)
 
 
 def record_range(problem: Problem) -> tuple[Array, Array]:
@@ -203,7 +239,9 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
         nodes = nodes.joined(solved(line[inside], np.minimum(place, count[left, None] - 1)[inside]))
         first += AT_ONCE * COARSE
         end[nodes.line[nodes.overturned]] = 0
-    return refined(nodes, solved, _halved)
+    while (halved := np.flatnonzero(_halved(nodes))).size:
+        nodes = nodes.joined(solved(nodes.line[halved], (nodes.place[halved] + nodes.place[halved + 1]) // 2))
+    return nodes
 
 
 def _halved(nodes: _Nodes) -> NDArray[np.bool_]:
@@ -236,4 +274,5 @@ def _certain_survival(pulse: AbstractPulse, cells: NDArray[np.void]) -> Array:
 def _reach(values: Array, same: NDArray[np.bool_], multiple: NDArray[np.integer]) -> Array:
     """The larger of two consecutive values of a body plus a multiple of the variation there; arrays (values - 1,)."""
     step = np.where(same, np.abs(np.diff(values)), 0.0)
-    return np.asarray(np.maximum(values[:-1], values[1:]) + multiple * beside(step))
+    beside = np.maximum(step, np.maximum(np.append(0.0, step)[:-1], np.append(step, 0.0)[1:]))
+    return np.asarray(np.maximum(values[:-1], values[1:]) + multiple * beside)

@@ -46,6 +46,7 @@ from rocking._history.motion import (
 )
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody
+from rocking._model.checks import impact_share, spread_impact
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import Index, index_of
 from rocking._model.response import Response
@@ -98,6 +99,8 @@ class Problem(EqualByValue):
 
         `flies`: the strength is not read, its vertical acceleration may reach -g.
         """
+        if isinstance(restitution, str) and restitution != "momentum":
+            restitution = spread_restitution(body, restitution)
         given: dict[str, Any]
         if isinstance(motion, Record):
             reject_given("a record: state `scale`", peak_acceleration=peak_acceleration, period=period)
@@ -355,9 +358,22 @@ def checked_restitution(restitution: Values, checked: Callable[..., Any] = RESTI
         raise InvalidArgumentError("restitution", error.value, f"momentum, or {error.allowed}") from None
 
 
+def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
+    """The restitution as it is; of "kalliontzis(k=...)" the numbers of a body with two equal edges."""
+    share = impact_share(restitution) if isinstance(restitution, str) and restitution != "momentum" else None
+    if share is None:
+        return restitution
+    right, left = body.right, body.left
+    if right.blocked or left.blocked or not np.all(right.restitution == left.restitution):
+        raise InvalidArgumentError(
+            "restitution", restitution, "momentum or a number for a body with two different edges"
+        )
+    return spread_impact(right.restitution, share)
+
+
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
     """The coefficient of restitution [-]: the number, or that of the geometry for "momentum"; `checked_restitution`."""
-    eta = checked_restitution(restitution, RESTITUTION.number)
+    eta = checked_restitution(spread_restitution(block, restitution), RESTITUTION.number)
     return float(block.inelastic_restitution if eta is None else eta)
 
 

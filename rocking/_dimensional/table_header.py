@@ -149,11 +149,10 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
 
 def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
     """The header among the first rows."""
-    line = next((line for line in header_lines(rows, schema) if line.complete), None)
+    lines = list(header_lines(rows, schema))
+    line = next((line for line in lines if line.complete), None)
     if line is None:
-        shown = "; ".join(rows[0])[:MAX_NAME] if rows else "nothing"
-        needed = ", ".join(" or ".join(group) for group in schema.required)
-        raise InvalidArgumentError(f"{schema.argument}, header", shown, f"columns {needed}, of at most {MAX_COLUMNS}")
+        raise _without_header(lines, schema)
     if line.error is not None:
         raise line.error
     for name in schema.renamed.keys() - set(map(str.strip, line.labels)):
@@ -167,6 +166,20 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
     units = _unit_columns(line.texts, columns)
     lengths = dict.fromkeys(sorted(_beside(line, columns, units)), False) | lengths
     return Header(after, line.labels, line.texts, columns, units, lengths)
+
+
+def _without_header(lines: Sequence[HeaderLine], schema: Schema[Any]) -> InvalidArgumentError:
+    """What the line that is nearest to a header lacks, and the column of it that may be that."""
+    best = max(lines, key=lambda line: len(line.columns), default=None)
+    texts, columns = (best.texts, best.columns) if best else ([], {})
+    names = {one.name for one, _ in columns.values()}
+    needed = {" or ".join(group): names.isdisjoint(group) for group in schema.required}
+    missing = ", ".join(group for group, lacks in needed.items() if lacks)
+    rest = (text for place, text in enumerate(texts) if place not in columns and is_used(text))
+    near = [text for text in rest if stated_unit(text, "m") or LENGTH_WORD.search(plain_name(text))]
+    allowed = f"columns {', '.join(needed)}, of at most {MAX_COLUMNS}; missing: {missing}"
+    allowed += f"; if that is {near[0][:MAX_NAME]!r}, name the column so" if near and columns else ""
+    return InvalidArgumentError(f"{schema.argument}, header", "; ".join(texts)[:MAX_NAME] or "nothing", allowed)
 
 
 def is_used(text: str) -> bool:

@@ -64,6 +64,7 @@ _TOTAL = re.compile(
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
 
 MARK = "\ufeff"  # what some programs put before a text of UTF-8
+_PLAIN = re.compile(r"-?(?:0|[1-9][0-9]{0,14})(?:[.,][0-9]{1,15})?")
 
 
 class TooManyRowsError(InvalidArgumentError):
@@ -77,6 +78,7 @@ class BadRow:
     row: int  # its number in the table, from 1
     column: str  # name of the column, "" for the whole row
     reason: str  # what was found and what is allowed
+    cells: dict[str, str] = field(default_factory=dict)  # the row as it stands, by the headers of the table
 
     def __str__(self) -> str:
         return f"row {self.row}{f', {self.column}' if self.column else ''}: {self.reason}"
@@ -96,13 +98,18 @@ class Table(Generic[Item]):
     units: dict[str, str] = field(default_factory=dict)
     # number of each row that was not read, and why; the parameter is the column, "row" the whole row
     errors: list[tuple[int, InvalidArgumentError]] = field(default_factory=list)
+    unread: list[dict[str, str]] = field(default_factory=list)
 
     @property
     def bad_rows(self) -> list[BadRow]:
         """The rows that were not read, in words."""
         return [
-            BadRow(row, *("", f"{one.value}; {one.allowed}") if one.parameter == "row" else (one.parameter, str(one)))
-            for row, one in self.errors
+            BadRow(
+                row,
+                *("", f"{one.value}; {one.allowed}") if one.parameter == "row" else (one.parameter, str(one)),
+                cells,
+            )
+            for (row, one), cells in zip(self.errors, self.unread, strict=True)
         ]
 
 
@@ -226,7 +233,7 @@ def csv_of_sheet(raw: bytes, schema: Schema[Any]) -> str:
     with suppress(InvalidArgumentError):
         header = find_header(rows[: HEADER_ROWS + 1], schema)
         numeric, last = [place for place, (one, _) in header.columns.items() if one.unit], header.last
-    decimal = _decimal_sign((row[place] for row in rows[last + 1 :] for place in numeric), "")
+    decimal = _decimal_sign((row[place] for row in rows[last + 1 :] if _is_item(row) for place in numeric), "")
 
     def certain(cell: str) -> str:
         digits, _ = split_number(cell) or ("", "")
@@ -253,12 +260,26 @@ class _Exact(str):
     __slots__ = ()
 
 
+def numbers_of(cells: Sequence[str]) -> Sequence[str | float | None]:
+    """A column of a table with its numbers as numbers, where all of its cells are plain ones or all are of a sheet.
+
+    Digits that begin with 0, such as 0012, and numbers whose decimal sign is in doubt remain texts.
+    """
+    texts = [cell for cell in cells if cell.strip()]
+    if not any(isinstance(cell, _Exact) for cell in texts):
+        signs = {decimal_sign(cell.strip().lstrip("-")) for cell in texts}
+        if len(signs - {""}) > 1 or not all(_PLAIN.fullmatch(cell.strip()) for cell in texts) or signs & {"?.", "?,"}:
+            return cells
+        return [float(cell.strip().replace(",", ".")) if cell.strip() else None for cell in cells]
+    return [float(cell) if isinstance(cell, _Exact) else cell for cell in cells]
+
+
 def _cell_text(value: object) -> str:
     """A cell of a sheet as text."""
     if value is None or value != value:
         return ""
     if not isinstance(value, float):
-        return str(value)
+        return str(value).removesuffix(" 00:00:00")  # a date
     return _Exact(int(value) if value.is_integer() and abs(value) < 1e15 else f"{value:.15g}")
 
 
@@ -290,6 +311,7 @@ def read_rows(
     items: list[Item] = []
     kept: list[Sequence[str]] = []
     errors: list[tuple[int, InvalidArgumentError]] = []
+    unread: list[dict[str, str]] = []
     for number, row in body:
         try:
             values = _values(row, header, decimal, schema)
@@ -302,6 +324,7 @@ def read_rows(
             kept.append(row)
         except InvalidArgumentError as error:
             errors.append((number, _of_cell(error, row, header)))
+            unread.append(dict(zip(labels, row, strict=False)))
     size = len(header.texts)
     padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
     columns = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
@@ -312,7 +335,7 @@ def read_rows(
         one.name: unit or next((written for row in padded if (written := _written_unit(row[place], one))), "")
         for place, (one, unit) in header.columns.items()
     }
-    return Table(items, columns, read, units, errors)
+    return Table(items, columns, read, units, errors, unread)
 
 
 def _is_item(row: Sequence[str]) -> bool:

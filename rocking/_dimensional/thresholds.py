@@ -15,16 +15,7 @@ from rocking._base.errors import InvalidArgumentError, number
 from rocking._base.quantities import HIGHEST_SCALE
 from rocking._base.units import Scalar
 from rocking._boundary.amplitude import amplitude_changes, thresholds
-from rocking._boundary.scan import (
-    RESOLUTION,
-    SolveLines,
-    checked_resolution,
-    lowest_overturning,
-    outcome_changes,
-)
-from rocking._boundary.scan import (
-    Index as Lines,
-)
+from rocking._boundary.scan import RESOLUTION, Lines, checked_resolution, lowest_overturning, outcome_changes
 from rocking._dimensional.lowest_thresholds import record_lines, record_range
 from rocking._dimensional.problem import (
     Problem,
@@ -39,7 +30,8 @@ from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.block import AbstractBlock
 from rocking._model.labelled import Index, with_index
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import record_response
+from rocking._solver.records.record_response import record_cells
+from rocking._solver.records.samples import motion_samples
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -190,11 +182,7 @@ def thresholds_of(
             return np.empty(0), np.empty(0, dtype=np.bool_)
         if lines is None:
             return _pulse_changes(problem, k, uplift[k], searched[k], stop)
-
-        def solve(line: Lines, scale: Array, threads: int | None) -> tuple[Array, Flags]:
-            return lines(line + k, scale, threads)
-
-        return outcome_changes(solve, uplift[k], top[k], limit[k], resolution=resolution, stop=stop)
+        return outcome_changes(lines.from_line(k), uplift[k], top[k], limit[k], resolution=resolution)
 
     found = [changes(k) for k in range(uplift.size)]
     most = max((values.size for values, _ in found), default=0)
@@ -263,10 +251,10 @@ def scale_thresholds(
     """
     share, given = checked_resolution(resolution), _checked_highest(highest)
     uplift, top, flies = search_range(record, block, given)
-    solve = block_lines(record, block, restitution_of(block, restitution), stop=stop)
+    lines = block_lines(record, block, restitution_of(block, restitution), stop=stop)
     none = np.empty(0), np.empty(0, np.bool_)
     limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
-    found = outcome_changes(solve, uplift, top, limit, resolution=share, stop=stop) if top > uplift else none
+    found = outcome_changes(lines, uplift, top, limit, resolution=share) if top > uplift else none
     searched = np.array([uplift, max(uplift, top)])
     return BodyThresholds(found[0], found[1], searched, "scale", flies, resolution=share)
 
@@ -286,9 +274,9 @@ def overturning_scale(
     """
     share, given = checked_resolution(resolution), _checked_highest(highest)
     uplift, top, _ = search_range(record, block, given)
-    solve = block_lines(record, block, restitution_of(block, restitution), stop=stop)
+    lines = block_lines(record, block, restitution_of(block, restitution), stop=stop)
     limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
-    return float(lowest_overturning(solve, np.array([uplift]), top, limit, resolution=share, stop=stop)[0])
+    return float(lowest_overturning(lines, np.array([uplift]), top, limit, resolution=share)[0])
 
 
 def _checked_highest(highest: Scalar | None) -> float | None:
@@ -296,15 +284,20 @@ def _checked_highest(highest: Scalar | None) -> float | None:
 
 
 def block_lines(
-    record: Record, block: AbstractBlock, eta: float, *, scales_size: bool = False, stop: StopFlag | None = None
-) -> SolveLines:
+    record: Record,
+    block: AbstractBlock,
+    eta: float,
+    *,
+    scales_size: bool = False,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> Lines:
     """A block under a record, as one line of scales of the record; or of factors of its p, if these are scaled."""
 
-    def solve(_line: Lines, scale: Array, threads: int | None) -> tuple[Array, Flags]:
+    def cells(_line: NDArray[np.intp], scale: Array) -> NDArray[np.void]:
         groups = record_groups(record, block, np.ones(scale.size) if scales_size else scale, eta)
         if scales_size:
             groups["frequency_parameter"] = block.frequency_parameter * scale
-        found = record_response(record, **groups, threads=threads, stop=stop)
-        return found.peak_rotation, found.overturned
+        return record_cells(record, **groups)
 
-    return solve
+    return Lines(motion_samples(record), cells, threads=threads, stop=stop)

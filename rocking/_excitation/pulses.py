@@ -194,10 +194,7 @@ def pulse_number(name: str) -> int:
 
 
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
-    """The pulse itself, or the one of that name.
-
-    Raises `InvalidArgumentError` for anything else.
-    """
+    """The pulse itself, or the one of that name; anything else is refused."""
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 
 

@@ -71,11 +71,7 @@ class SampledPulse(AbstractPulse):
     values: NDArray[np.float64]
 
     def __init__(
-        self,
-        acceleration: ArrayLike,
-        time: ArrayLike | None = None,
-        period: float | None = None,
-        name: str = "sampled",
+        self, acceleration: ArrayLike, time: ArrayLike | None = None, period: float | None = None, name: str = "sampled"
     ) -> None:
         samples = in_range(
             "acceleration", getattr(acceleration, "magnitude", acceleration), -np.inf, np.inf, closed="neither"

@@ -41,13 +41,8 @@ class Layers:
     """The nodes of a cube, read angle by angle when they are first needed.
 
     Of the ten angles of an atlas, 12 MB each, a response needs one or up to four: memory of the others is not touched.
-
-    Parameters
-    ----------
-    shape : (int, int, int)
-        Of the nodes: angles, n, m.
-    read : callable
-        Returns the nodes (n, m) of an angle by its index; the file then is the one that was checked.
+    `shape`: angles, n, m. `read` returns the nodes (n, m) of an angle by its index; the file then is the one that was
+    checked.
     """
 
     def __init__(self, shape: tuple[int, ...], read: Callable[[int], Nodes]) -> None:
@@ -71,13 +66,7 @@ class Layers:
         return not self._missing
 
     def at(self, angles: Collection[int]) -> Nodes:
-        """The nodes (angles, n, m), of which those of some angles are read; the others are undefined.
-
-        Raises
-        ------
-        DatasetError
-            If the file was replaced or removed.
-        """
+        """The nodes (angles, n, m), of which those of some angles are read; `DatasetError` if the file was replaced."""
         if self._missing.isdisjoint(angles):
             return self._nodes
         with self._lock:
@@ -95,34 +84,17 @@ class Layers:
 
 @dataclass(frozen=True, eq=False)
 class CubeSlice:
-    """The cube of one restitution.
+    """The cube of one restitution."""
 
-    Attributes
-    ----------
-    pulse : str or SampledPulse
-        Name of the pulse, or the pulse made again from the samples in the file.
-    restitution : float
-        eta of this cube [-].
-    restitutions : float array
-        eta of the cubes from which the interval above this one is interpolated [-], ascending.
-    axes : mapping of str to float array
-        alpha [rad], slenderness [-] and frequency_ratio [-].
-    mesh, angles : Mesh, AngleAxis
-        The same for the kernel.
-    layers : Layers
-        The variables, an array (angles, n, m) of `NODE`.
-    sha256 : str
-        Digest of the file, the version of the data.
-    """
-
-    pulse: str | SampledPulse
-    restitution: float
-    restitutions: Array
-    axes: Mapping[str, Array]
+    pulse: str | SampledPulse  # name of the pulse, or the pulse made again from the samples in the file
+    restitution: float  # eta of this cube [-]
+    restitutions: Array  # eta of the cubes from which the interval above this one is interpolated [-], ascending
+    axes: Mapping[str, Array]  # alpha [rad], slenderness [-] and frequency_ratio [-]
+    # mesh, angles: the same for the kernel
     mesh: Mesh
     angles: AngleAxis
-    layers: Layers
-    sha256: str
+    layers: Layers  # the variables, an array (angles, n, m) of `NODE`
+    sha256: str  # digest of the file, the version of the data
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
@@ -135,13 +107,7 @@ class CubeSlice:
 
 
 def open_slice(path: Path | str) -> CubeSlice:
-    """A spectrum cube of a file, which is checked; its variables are read when they are first needed.
-
-    Raises
-    ------
-    DatasetError
-        If the file is missing, damaged, or not a spectrum cube.
-    """
+    """A spectrum cube of a file, which is checked; its variables are read when they are first needed."""
     version = version_of(Path(path))
     return decode_slice(read_content(path), path, Path(path), version)
 
@@ -188,13 +154,7 @@ def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
 
 
 def slice_of(cube: xr.Dataset, sha256: str = "", read: Callable[[int], Nodes] | None = None) -> CubeSlice:
-    """A spectrum cube; `sha256` is the digest of its file, and `read` that of `Layers`, if it has one.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an axis has fewer than four nodes, or the samples of the pulse are none.
-    """
+    """A spectrum cube, four nodes a side at least; of a file `sha256` is its digest, and `read` that of `Layers`."""
     restitution = restitution_of(cube)
     axes = {name: cube[name].values for name in AXES}
     layers = Layers(cube["peak_rotation"].shape, read or (lambda angle: _layer(cube.isel(alpha=[angle]))))

@@ -24,21 +24,8 @@ Number = Any  # a float; of an array of blocks an array of them
 class AbstractBlock(AbstractBody):
     """What rocks like a rectangular block; its properties are those of the rectangle unless a subclass has others.
 
-    All arguments may be arrays, which broadcast: an array of blocks, of which the properties are arrays.
-
-    Parameters
-    ----------
-    width : float
-        2b of the rectangular block of this alpha and p [m], > 0.
-    height : float
-        2h of the same [m], > 0.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a length or gravity is not finite and positive.
+    `width`, `height`: 2b and 2h of the rectangular block of this alpha and p [m]. All arguments may be arrays, which
+    broadcast: an array of blocks, of which the properties are arrays.
     """
 
     width: Number

@@ -1,12 +1,13 @@
 """Checks of the parameters against their declared ranges."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number
+from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, plain_number
 from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 from rocking._base.quantity import Quantity
 from rocking._base.units import Scalar, WithUnit
@@ -72,21 +73,48 @@ def check_one_alpha(alpha: ArrayLike | WithUnit | None) -> float:
 
 
 def known_restitution(restitution: Any, alpha: Any) -> Any:
-    """The restitution as it is; for "momentum" (2.4) of the angles [rad], 0 where that is negative.
+    """The restitution as it is; for "momentum" (2.4) of the angles [rad], 0 where that is negative; for
+    "kalliontzis(k=...)" `spread_impact` of it.
 
-    Raises `InvalidArgumentError` for "momentum" without an angle, or with an angle of 0, the slender limit, in which
-    (2.4) loses no energy.
+    Raises `InvalidArgumentError` for these without an angle, or with an angle of 0, the slender limit, in which they
+    lose no energy.
     """
-    if not (isinstance(restitution, str) and restitution == "momentum"):
+    share = impact_share(restitution)
+    if share is None:
         return restitution
     if alpha is None or not np.all(ALPHA.convert(alpha) > 0.0):
         raise InvalidArgumentError("restitution", restitution, "a number in the slender limit: (2.4) needs `alpha` > 0")
     sine = np.sin(alpha if is_labelled(alpha) else ALPHA.convert(alpha))
-    return np.maximum(1.0 - 1.5 * sine * sine, 0.0)  # (2.4)
+    return spread_impact(1.0 - 1.5 * sine * sine, share)  # (2.4)
+
+
+def impact_share(restitution: Any) -> float | None:
+    """k of "kalliontzis(k=...)", (0, 1]; 1 of "momentum"; None of anything else, which is no such text."""
+    if not isinstance(restitution, str):
+        return None
+    if restitution == "momentum":
+        return 1.0
+    name, bracket, text = restitution.strip().partition("(")
+    if name.strip() != "kalliontzis":
+        return None
+    found = re.fullmatch(r"\s*k\s*=\s*([0-9.eE+-]{1,30})\s*\)", text) if bracket else None
+    if found is None:
+        raise InvalidArgumentError(
+            "restitution", restitution, "kalliontzis(k=0.8) with k in (0, 1], momentum or a number"
+        )
+    return number("restitution", plain_number("restitution", found[1]), 0.0, 1.0, closed="right")
+
+
+def spread_impact(momentum: Any, share: float) -> Any:
+    """Restitution of a body with two equal edges whose impact acts at the share k of the half base, not at the edge.
+
+    eta = (S - k^2 b^2)/(S + k^2 b^2), S = r^2 + h^2, from that of k = 1, `momentum`; of a rectangle
+    (4 - 3 s (1 + k^2))/(4 - 3 s (1 - k^2)), s = sin^2 alpha (Kalliontzis et al. 2016, after a secondary source).
+    """
+    kept, lost = 1.0 + momentum, share * share * (1.0 - momentum)
+    return np.maximum((kept - lost) / (kept + lost), 0.0)
 
 
 def check_groups(**given: Any) -> dict[str, Array]:
-    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays
-    of their shapes; alpha = None is 0.
-    """
+    """The given of `slenderness`, `frequency_ratio`, `restitution` and `alpha` as float64 arrays; alpha = None is 0."""
     return {name: check_alpha(one) if name == "alpha" else _GROUPS[name].convert(one) for name, one in given.items()}

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rocking._base.errors import broadcast, in_range
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.errors import broadcast, in_range, number
 
 Array = NDArray[np.float64]
 
@@ -21,7 +22,7 @@ RANGES: dict[str, tuple[float, float, str, str]] = {
     "velocity": (0.0, math.inf, "left", "m/s"),
     "displacement": (0.0, math.inf, "left", "m"),
     "vertical_ratio": (0.0, 100.0, "both", "-"),
-    "vertical_acceleration": (0.0, math.inf, "left", "m/s2"),
+    "vertical_acceleration": (0.0, STANDARD_GRAVITY / 0.4, "left", "m/s2"),
     "friction": (0.0, 10.0, "right", "-"),
     "confidence_factor": (1.0, 2.0, "both", "-"),
     "behaviour_factor": (1.0, 10.0, "both", "-"),
@@ -39,6 +40,12 @@ def checked(**given: Any) -> list[Array]:
         low, high, closed, unit = RANGES[name]
         arrays.append(in_range(name, value, low, high, closed=closed, unit=unit))
     return broadcast(given, arrays)
+
+
+def checked_number(name: str, value: Any) -> float:
+    """An argument that is one number."""
+    low, high, closed, unit = RANGES[name]
+    return number(name, value, low, high, closed=closed, unit=unit)
 
 
 def checked_body(half_width: ArrayLike, mass_height: ArrayLike, gyration: ArrayLike | None) -> tuple[Array, ...]:

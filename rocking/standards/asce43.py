@@ -24,8 +24,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, in_range
-from rocking.standards.arguments import checked, checked_body
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import Scalar
+from rocking.standards.arguments import checked, checked_body, checked_number
 
 Array = NDArray[np.float64]
 
@@ -100,9 +101,9 @@ def asce43_effective_damping(half_width: ArrayLike, mass_height: ArrayLike, gyra
 
 def asce43_rocking_angle(
     spectrum: Callable[[Array, float], ArrayLike],
-    half_width: float,
-    mass_height: float,
-    gyration: float | None = None,
+    half_width: Scalar,
+    mass_height: Scalar,
+    gyration: Scalar | None = None,
     *,
     vertical_spectrum: Callable[[Array, float], ArrayLike] | None = None,
 ) -> float:
@@ -122,13 +123,14 @@ def asce43_rocking_angle(
     vertical_spectrum : callable, optional
         The same of the vertical motion, which lowers the capacity.
     """
-    b, h, _ = (float(one) for one in checked_body(half_width, mass_height, gyration))
-    alpha, damping = math.atan2(b, h), float(asce43_effective_damping(b, h, gyration))
+    b, h = checked_number("half_width", half_width), checked_number("mass_height", mass_height)
+    r = None if gyration is None else checked_number("gyration", gyration)
+    alpha, damping = math.atan2(b, h), float(asce43_effective_damping(b, h, r))
     if math.isnan(damping):
         raise InvalidArgumentError("half_width", half_width, "a body with 1 - 2 a^2/C_3 > 0, which can rock")
 
     def excess(theta: Array) -> Array:
-        frequency = asce43_effective_frequency(theta, b, h, gyration)
+        frequency = asce43_effective_frequency(theta, b, h, r)
         demand = np.asarray(spectrum(frequency, damping), dtype=np.float64)
         upwards = 0.0 if vertical_spectrum is None else np.asarray(vertical_spectrum(frequency, damping)) / demand
         return demand - asce43_capacity(theta, b, h, upwards)
@@ -148,7 +150,7 @@ def asce43_rocking_angle(
 
 
 def asce43_sliding_distance(
-    spectrum: Callable[[Array, float], ArrayLike], friction: float, vertical_acceleration: float = 0.0
+    spectrum: Callable[[Array, float], ArrayLike], friction: Scalar, vertical_acceleration: Scalar = 0.0
 ) -> float:
     """Best-estimate sliding distance by the reserve-energy method (A.1): delta_s = c_s/(2 pi f_es)^2 [m].
 
@@ -164,11 +166,9 @@ def asce43_sliding_distance(
     vertical_acceleration : float
         Peak vertical acceleration A_V [m/s2], [0, 2.5 g).
     """
-    (mu,) = checked(friction=friction)
-    limit = STANDARD_GRAVITY / 0.4
-    up = in_range("vertical_acceleration", vertical_acceleration, 0.0, limit, closed="left", unit="m/s2")
+    mu, up = checked_number("friction", friction), checked_number("vertical_acceleration", vertical_acceleration)
     effective = mu * (1.0 - 0.4 * up / STANDARD_GRAVITY)  # (A-1)
-    coefficient = float(2.0 * effective * STANDARD_GRAVITY)  # (A-2)
+    coefficient = 2.0 * effective * STANDARD_GRAVITY  # (A-2)
     frequencies = np.geomspace(*FREQUENCIES)
     over = np.flatnonzero(np.asarray(spectrum(frequencies, 0.1)) >= coefficient)
     if not over.size:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
-from rocking._dimensional.problem import Problem
+from rocking._dimensional.problem import Problem, spread_restitution
 from rocking._dimensional.response import respond
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.record import Record
@@ -49,7 +49,8 @@ def body_outcomes(
         )
     motions = [one for record in checked_records(records) for one in (record, mirrored(record))]
     levels = checked_levels(intensity, chosen)
-    eta = None if restitution == "momentum" else np.array(RESTITUTION.number(restitution))
+    spread = spread_restitution(body, restitution)
+    eta = None if isinstance(spread, str) and spread == "momentum" else np.array(RESTITUTION.number(spread))
     column = body.changed(
         **{name: value.reshape(-1, 1) if value.ndim else value for name, value in body.parameters.items()}
     )

@@ -74,7 +74,7 @@ def fragility(
     measure : str
         "pga" [m/s2], "pgv" [m/s], "pga_ratio" PGA/(g tan alpha), "pgv_ratio" p PGV/(g tan alpha) or "frequency_ratio"
         omega_p/p: see `rocking.suites.intensity`. The last two are those of blocks with equal edges.
-    restitution : "momentum" or float
+    restitution : "momentum", "kalliontzis(k=...)" or float
         (2.4), 0 where that is negative; or eta [-], [0, 1]. An `Object` may have its own, which a number replaces.
     demand : "overturning", "alpha", a number, or a sequence of these
         The limit state: final overturning; passage of alpha at some time; max |theta|/alpha above a threshold [-],
@@ -140,10 +140,7 @@ def fragility(
 
 
 def fragility_of_outcomes(
-    outcomes: xr.Dataset,
-    demand: Sequence[str | float] = ("overturning",),
-    confidence: float = 0.95,
-    signs: int = 1,
+    outcomes: xr.Dataset, demand: Sequence[str | float] = ("overturning",), confidence: float = 0.95, signs: int = 1
 ) -> xr.Dataset:
     """Counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
 

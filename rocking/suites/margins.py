@@ -5,13 +5,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from rocking._base.quantities import HIGHEST_SCALE
-from rocking._boundary.scan import RESOLUTION, Index, lowest_overturning
+from rocking._boundary.scan import RESOLUTION, lowest_overturning
 from rocking._dimensional.problem import uplift_scale
 from rocking._dimensional.thresholds import block_lines
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._numba.cancellation import StopFlag
-from rocking.suites.outcomes import Array, Suite
+from rocking.suites.outcomes import Suite
 
 
 def with_margins(
@@ -48,17 +48,14 @@ def _mildest(
     """
     block, scales = suite.blocks[number], suite.measure.scales_amplitude
     own = suite.measure.of(record, block)
-    lines = block_lines(record, block, float(suite.restitution[number]), scales_size=not scales, stop=stop)
-
-    def solve(line: Index, severity: Array, _threads: int | None) -> tuple[Array, NDArray[np.bool_]]:
-        return lines(line, severity, threads)  # those asked for
-
+    eta = float(suite.restitution[number])
+    lines = block_lines(record, block, eta, scales_size=not scales, threads=threads, stop=stop)
     severities = suite.levels / own if scales else (own / suite.levels)[::-1]
     in_order = overturned if scales else overturned[::-1]
     last = float(severities[in_order.argmax() if in_order.any() else -1])
     lowest = uplift_scale(record, block) if scales else float(severities[0])
     limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE) if scales else last
-    found = float(lowest_overturning(solve, np.array([lowest]), last, limit, stop=stop)[0])
+    found = float(lowest_overturning(lines, np.array([lowest]), last, limit)[0])
     if in_order.any() and np.isnan(found):  # the level lies within a rounding of a change of outcome
         found = last
     return own * found if scales else own / found

@@ -11,6 +11,7 @@ Its unit of PGA is g, of PGV cm/s. The readers of openquake.engine 3.26 take bot
 import math
 import warnings
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 from os import PathLike
 from typing import IO, Literal
 
@@ -70,49 +71,69 @@ def write_nrml(
         If a fitted curve is above 0.01 at the lowest level, below which OpenQuake has no damage.
     """
     one_of("format", format, ("discrete", "lognormal"))
-    measure = fragility.attrs.get("measure", "")
-    if measure not in TYPES:
-        raise InvalidArgumentError("fragility", measure, "a fragility with the measure pga or pgv")
-    name, unit = TYPES[measure]
-    data = with_block(fragility)
-    levels = data["intensity"].values
-    if levels.size < 2:
-        raise InvalidArgumentError("fragility", f"{levels.size} level", "two levels at least")
-    outcomes = data[["overturned", "peak_rotation"]].transpose("block", "intensity", "record")
-    overturns = outcomes["overturned"].values.astype(bool)
-    rocks = overturns | (outcomes["peak_rotation"].values > 0.0)
+    name, unit = TYPES[checked_measure(fragility, TYPES)]
+    levels, reached_by = reached_states(fragility)
     root = ET.Element("nrml", xmlns=NAMESPACE)
     model = ET.SubElement(root, "fragilityModel", id="rocking", assetCategory="contents", lossCategory="contents")
     ET.SubElement(model, "description").text = description
     ET.SubElement(model, "limitStates").text = " ".join(LIMIT_STATES)
     shape = {"format": "discrete"} if format == "discrete" else {"format": "continuous", "shape": "logncdf"}
-    for k in range(overturns.shape[0]):
+    for k in range(reached_by["rocks"].shape[0]):
         function = ET.SubElement(model, "fragilityFunction", attrib={"id": f"block-{k + 1}", **shape})
         if format == "discrete":
             ET.SubElement(function, "imls", imt=name).text = _numbers(levels / unit)
         else:
             low, high = (f"{level / unit:.9g}" for level in (levels[0], levels[-1]))
             ET.SubElement(function, "imls", imt=name, noDamageLimit=low, minIML=low, maxIML=high)
-        for state, reached in zip(LIMIT_STATES, (rocks[k], overturns[k]), strict=True):
+        for state, reached in ((state, of_blocks[k]) for state, of_blocks in reached_by.items()):
             if format == "discrete":
                 ET.SubElement(function, "poes", ls=state).text = _numbers(reached.mean(axis=1))
                 continue
-            fit = fit_curve(reached, levels, model="lognormal")
-            if fit.status not in (FitStatus.FITTED, FitStatus.SEPARATED):
-                raise InvalidArgumentError("format", format, f"discrete: block-{k + 1} {state}: {fit.status.sentence}")
-            beta = max(fit.dispersion, STEP_DISPERSION)
-            at_start = float(curve_probability("lognormal", levels[0], fit.median, beta))
+            median, beta = lognormal_of(reached, levels, f"block-{k + 1} {state}", ("format", format, "discrete"))
+            at_start = float(curve_probability("lognormal", levels[0], median, beta))
             if at_start > SMALL:
                 text = (
                     f"block-{k + 1} {state}: at noDamageLimit, the lowest level, the fitted probability is "
                     f"{at_start:.2g}, and OpenQuake has none below: add lower levels, or write format='discrete'"
                 )
                 warnings.warn(text, UserWarning, stacklevel=2)
-            mean = fit.median / unit * math.exp(0.5 * beta**2)
+            mean = median / unit * math.exp(0.5 * beta**2)
             deviation = mean * math.sqrt(math.expm1(beta**2))
             ET.SubElement(function, "params", ls=state, mean=f"{mean:.9g}", stddev=f"{deviation:.9g}")
     ET.indent(root)
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def checked_measure(fragility: xr.Dataset, known: Mapping[str, object]) -> str:
+    """The measure of a fragility, which is one of those known."""
+    measure = str(fragility.attrs.get("measure", ""))
+    if measure not in known:
+        raise InvalidArgumentError("fragility", measure, f"a fragility with the measure {' or '.join(known)}")
+    return measure
+
+
+def reached_states(fragility: xr.Dataset) -> tuple[NDArray[np.float64], dict[str, NDArray[np.bool_]]]:
+    """The levels, and by limit state whether it is reached, (blocks, levels, records)."""
+    data = with_block(fragility)
+    levels = data["intensity"].values
+    if levels.size < 2:
+        raise InvalidArgumentError("fragility", f"{levels.size} level", "two levels at least")
+    outcomes = data[["overturned", "peak_rotation"]].transpose("block", "intensity", "record")
+    overturns = outcomes["overturned"].values.astype(bool)
+    return levels, dict(
+        zip(LIMIT_STATES, (overturns | (outcomes["peak_rotation"].values > 0.0), overturns), strict=True)
+    )
+
+
+def lognormal_of(
+    reached: NDArray[np.bool_], levels: NDArray[np.float64], what: str, argument: tuple[str, object, str]
+) -> tuple[float, float]:
+    """Median and dispersion of the lognormal fit to (levels, records); without a fit, an error of `argument`."""
+    fit = fit_curve(reached, levels, model="lognormal")
+    if fit.status not in (FitStatus.FITTED, FitStatus.SEPARATED):
+        name, value, allowed = argument
+        raise InvalidArgumentError(name, value, f"{allowed}: {what}: {fit.status.sentence}")
+    return fit.median, max(fit.dispersion, STEP_DISPERSION)
 
 
 def _numbers(values: NDArray[np.float64]) -> str:

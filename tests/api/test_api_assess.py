@@ -34,8 +34,8 @@ def test_rows_are_those_of_a_direct_call(client):
     objects = [rocking.Object(**row) for row in ROWS]
     site = rocking.Site(pga=3.0, pgv=0.3, shapes=["sine", "ricker"])
     for sensitivity in ("false", "true"):
-        answer = client.post(URL.replace("false", sensitivity), json=ROWS).json()
-        expected = rocking.assess(objects, site, sensitivity=sensitivity == "true")
+        answer = client.post(f"{URL.replace('false', sensitivity)}&standards=static,asce43", json=ROWS).json()
+        expected = rocking.assess(objects, site, sensitivity=sensitivity == "true", standards=["static", "asce43"])
         assert answer["rows"] == expected.rows
         assert answer["motions"] == ["sine", "ricker"]
         assert answer["bad_rows"] == []
@@ -132,8 +132,10 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert [row["verdict"] for row in rows] == [row["verdict"] for row in answer["rows"]] + ["not read"]
     assert float(rows[0]["factor"]) == answer["rows"][0]["factor"]
     assert rows[-1]["object"] == "row 3"
-    assert "colour" in rows[0]  # kept, although it is not read
-    assert [row.pop("colour") for row in rows] == [*answer["details"]["colour"], ""]
+    given = list(csv.DictReader(io.StringIO(TABLE)))
+    assert list(rows[0])[: len(given[0])] == list(given[0])  # as they stand, also those that are not read
+    assert [{name: row.pop(name) for name in given[0]} for row in rows] == [given[2], given[0], given[0], given[1]]
+    assert answer["details"]["colour"] == ["", "red", "red"]
     accepted = client.post(URL, json=ROWS, headers={"accept": "text/csv"})
     assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]
     assert {"name", "width", "height"} <= {*answer["columns"].values()}

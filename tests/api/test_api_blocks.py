@@ -426,3 +426,12 @@ def test_blocks_are_counted_as_rows_are_read(client, monkeypatch):
             response = client.post(url, content=TABLE.replace("\n", end) + end, headers=headers)
             assert response.status_code == status
     assert assert_problem(response, 413, "blocks")["allowed"] == "at most 2"
+
+
+def test_an_impact_at_a_share_of_the_half_base_is_the_number(client):
+    sine = 1 / 17
+    eta = (4 - 3 * sine * (1 + 0.49)) / (4 - 3 * sine * (1 - 0.49))
+    found = get_response(client, restitution="kalliontzis(k=0.7)")
+    assert found.status_code == 200, found.text
+    assert found.json()["restitution"] == pytest.approx(eta)
+    assert_problem(get_response(client, restitution="kalliontzis"), 422, "restitution")

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from rocking._assessment.objects import Object
-from rocking._assessment.tables import objects_of_csv, objects_of_json, read_objects
+from rocking._assessment.tables import SCHEMA, objects_of_csv, objects_of_json, read_objects
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.table_reader import TooManyRowsError
+from rocking._dimensional.table_reader import TooManyRowsError, csv_of_sheet
+from tests.sheets import xlsx_bytes
 
 TABLES = Path(__file__).parent / "tables"
 
@@ -211,6 +212,29 @@ def test_bad_rows_are_named_with_row_column_and_reason() -> None:
 def test_ambiguous_and_incomplete_tables_are_refused(text: str) -> None:
     with pytest.raises(InvalidArgumentError):
         objects_of_csv(text)
+
+
+def test_a_header_that_lacks_a_column_names_it_and_the_one_that_may_be_it() -> None:
+    header = "Name;material;location;room;remarks;Width [cm];Height overall max [cm]"
+    with pytest.raises(
+        InvalidArgumentError, match=r"missing: height; if that is 'Height overall max \[cm\]'"
+    ) as refused:
+        objects_of_csv(f"Inventory of 2024\n{header}\na;b;c;d;e;30;60\n")
+    assert "width" not in refused.value.allowed.partition("missing:")[2]
+    assert len(objects_of_csv(header.replace("overall max ", "") + "\na;b;c;d;e;30;60\n").objects) == 1
+
+
+def test_a_row_of_totals_says_nothing_of_the_decimal_sign_of_a_workbook(tmp_path: Path) -> None:
+    rows = [
+        ["object", "width [cm]", "height [cm]"],
+        ["vase", "1.234", 40.0],
+        ["jug", "40,0", 41.5],
+        ["Total", "5.5", 81.5],
+    ]
+    path = tmp_path / "table.xlsx"
+    path.write_bytes(xlsx_bytes(rows))
+    for table in (read_objects(path), objects_of_csv(csv_of_sheet(path.read_bytes(), SCHEMA))):
+        assert [one.width for one in table.objects] == pytest.approx([12.34, 0.4])
 
 
 @pytest.mark.parametrize(

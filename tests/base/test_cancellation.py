@@ -13,10 +13,10 @@ from rocking._history.motion import build_motion
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS
+from rocking._solver.peak_response import NO_EDGES, NO_FLIGHTS
 from rocking._solver.stages.batch import solve_by_arcs
 from rocking._solver.stages.state import stage_state
-from rocking._solver.state import RESPONSE_RECORD, pulse_state, step_state
+from rocking._solver.state import RESPONSE_RECORD, block_cells, pulse_state, step_state
 from rocking._spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
@@ -87,15 +87,15 @@ def test_work_ends_soon_after_cancellation(name):
 
 def test_a_kernel_reads_the_flag_within_one_cell():
     """One block with 200,000 impacts: the load of the flag must not be moved out of the loop."""
-    s, w, eta = (np.array([x]) for x in (MANY[-1], 0.05, 1.0))
     for alpha in (0.0, 0.2):
         for delay in (0.003, 0.006, 0.003, 0.006, 0.012):  # on a busy machine kernel or timer may start later
             flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
             pulse = pulse_state(rocking.pulse("c2")).copy()
             states, steps = np.repeat(pulse, LANES), step_state(pulse)
+            cells = block_cells(*(np.array([x]) for x in (0.05, MANY[-1], 1.0, alpha)))
             timer = threading.Timer(delay, flag.fill, [1])
             timer.start()
-            solve_batch(s, w, eta, np.array([alpha]), NO_BODIES, states, steps, flag, answers, NO_EDGES, NO_FLIGHTS)
+            solve_batch(cells, states, steps, flag, answers, NO_EDGES, NO_FLIGHTS)
             timer.join()
             reached = states[0]["impacts"]
             if 0 < reached < 200_000:

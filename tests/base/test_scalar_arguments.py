@@ -42,6 +42,11 @@ class Hump(rocking.SmoothPulse):
         return np.sin(phase * np.pi / 3.0)
 
 
+def flat_spectrum(frequency, damping):
+    """5 m/s2 at every frequency."""
+    return np.full(frequency.shape, 5.0 - damping)
+
+
 CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
     "Object": (
         rocking.Object,
@@ -125,6 +130,14 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
         [{"motion": "sine", "frequency_ratio": 5.0, "restitution": 0.9, "alpha": 0.2, "highest": 20.0},
          {"motion": UPWARDS, "vertical_scale": 1.0, "highest": 20.0, "resolution": 0.01}
          | {key: value for key, value in OF_RECORD.items() if key != "slenderness"}],
+    ),
+    "standards.asce43_rocking_angle": (
+        rocking.standards.asce43_rocking_angle,
+        [{"spectrum": flat_spectrum, "half_width": 0.2, "mass_height": 0.8, "gyration": 0.5}],
+    ),
+    "standards.asce43_sliding_distance": (
+        rocking.standards.asce43_sliding_distance,
+        [{"spectrum": flat_spectrum, "friction": 0.3, "vertical_acceleration": 1.0}],
     ),
     "floor_motion": (
         rocking.floor_motion, [{"record": RECORD, "periods": 0.5, "relative_tolerance": 0.01, "tail": 1.0}],
@@ -241,7 +254,7 @@ OPTIONAL = {
     "alpha", "threads", "relative_tolerance", "absolute_tolerance", "time_step", "duration", "samples",
     "uplift_acceleration", "top_height", "restitution", "scale", "vertical_scale", "highest", "size",
     "peak_acceleration", "period", "depth", "diameter", "mass_height", "mass", "friction", "pgv",
-    "tail", "skip",
+    "tail", "skip", "gyration",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.accuracy.record_sampling import FILES
 from benchmarks.accuracy.standards import counts, main, measured
-from rocking._assessment.standards import CLAUSES
+from rocking._assessment.columns import CLAUSES
 
 PAGE = (Path(__file__).parents[2] / "docs/checks.md").read_text()
 

@@ -7,8 +7,8 @@ import rocking
 from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, load, store
 from rocking._solver.kernels.event_loop import init_state, start_flight
-from rocking._solver.rules import set_block
-from rocking._solver.state import MAX_ORDER, pulse_state, step_state
+from rocking._solver.rules import set_body
+from rocking._solver.state import MAX_ORDER, block_cells, pulse_state, step_state
 from rocking._solver.taylor import events
 from rocking._solver.taylor.flight import free_lanes, highest_peak, impact_in_step, start_steps
 from rocking._solver.taylor.lane_events import (
@@ -77,13 +77,13 @@ def test_roots_of_all_lanes_are_refined_to_rounding():
 
 
 @kernel
-def first_steps(flights, steps, slenderness, omega, alpha):
+def first_steps(flights, steps, cells):
     free_lanes(steps)
     for lane in range(LANES - 1):  # the last lane is not in use
-        set_block(flights[lane], slenderness[lane], 0.9, alpha[lane])
-        init_state(flights[lane], omega[lane])
+        set_body(flights[lane], cells[lane], False)
+        init_state(flights[lane], cells[lane].rate)
         start_flight(flights[lane])
-        steps.omega[lane] = omega[lane]
+        steps.omega[lane] = cells[lane].rate
         start_steps(flights[lane], steps, lane)
 
 
@@ -96,7 +96,8 @@ def test_events_of_all_lanes_are_those_of_one(pulse):
     impacts = peaks = undecided = 0
     for case in range(120):
         slenderness = rng.uniform(0.1, 0.9, LANES)
-        first_steps(flights, steps, slenderness, rng.uniform(0.5, 8.0, LANES), rng.uniform(0.05, 1.0, LANES))
+        omega, alpha = rng.uniform(0.5, 8.0, LANES), rng.uniform(0.05, 1.0, LANES)
+        first_steps(flights, steps, block_cells(omega, slenderness, np.full(LANES, 0.9), alpha))
         if case % 2:
             steps["z0"], steps["w0"] = rng.uniform(0.0, 0.3, LANES), rng.uniform(-0.5, 0.5, LANES)
             steps["at_ground"], steps["starts_at_uplift"], steps["limit"] = 0.0, 0.0, 3.0

@@ -9,14 +9,12 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-import workflow.run
 from rocking._datasets.cube import read_dataset, write_dataset
 from tests.workflow.killed_runs import KILLED, content, interrupt, project
 from tests.workflow.killed_runs import reproduce as make_reproduce
@@ -175,81 +173,6 @@ def test_one_command_remakes_what_is_missing_damaged_or_replaced_after_three_kil
     assert recovered.returncode == 0, recovered.stdout
     assert content(folder) == before
     assert [*problems(folder)] == []
-
-
-COUNT_PASSES = """
-import atexit, time
-from snakemake.scheduling.job_scheduler import JobScheduler
-from workflow import run
-passes, start, select = [], time.monotonic(), JobScheduler.job_selector
-JobScheduler.job_selector = lambda scheduler, jobs: passes.append(jobs) or select(scheduler, jobs)
-atexit.register(lambda: print(len(passes), time.monotonic() - start))
-run.main(["--cores", "1", "--quiet", "all", "--directory", "."])
-"""
-
-
-def test_waiting_jobs_are_looked_at_once_a_second_and_when_a_job_ends(tmp_path: Path) -> None:
-    """Snakemake alone does it twice as often in this run, and more often the more jobs have ended."""
-    jobs = 12
-    rule = "    output: 'made/{number}'\n    shell: 'sleep 0.4; touch {output}'\n"
-    (tmp_path / "Snakefile").write_text(
-        f"rule all:\n    input: expand('made/{{number}}', number=range({jobs}))\nrule one:\n{rule}"
-    )
-    environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
-    command = [sys.executable, "-c", COUNT_PASSES]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert len([*(tmp_path / "made").iterdir()]) == jobs, done.stderr
-    passes, seconds = done.stdout.split()
-    assert int(passes) <= jobs + float(seconds) + 2
-
-
-CHANGED_SCHEDULER = """
-from snakemake.scheduling.job_scheduler import JobScheduler
-from workflow import run
-original = JobScheduler._schedule_reevalutation
-JobScheduler._schedule_reevalutation = changed = lambda self, delay, *, reason=None: original(self, delay)
-try:
-    run.main(["--cores", "1", "--quiet", "all", "--directory", "."])
-except SystemExit as ended:
-    print(ended.code, JobScheduler._schedule_reevalutation is changed)
-"""
-
-
-def test_a_scheduler_with_another_method_is_left_as_it_is_and_the_run_goes_on(tmp_path: Path) -> None:
-    (tmp_path / "Snakefile").write_text("rule all:\n    output: 'made'\n    shell: 'touch {output}'\n")
-    environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
-    command = [sys.executable, "-c", CHANGED_SCHEDULER]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert done.stdout.split() == ["0", "True"], done.stderr
-    assert (tmp_path / "made").exists()
-
-
-def test_a_scheduler_without_the_method_gets_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    for scheduler in (None, type("JobScheduler", (), {})):
-        monkeypatch.setattr(workflow.run, "JobScheduler", scheduler)
-        with workflow.run.limited_passes_of_the_scheduler():
-            assert not hasattr(scheduler, workflow.run.METHOD)
-
-
-def test_the_method_of_the_scheduler_is_its_own_again_after_the_run() -> None:
-    own = getattr(workflow.run.JobScheduler, workflow.run.METHOD)
-    with suppress(SystemExit), workflow.run.limited_passes_of_the_scheduler():
-        assert getattr(workflow.run.JobScheduler, workflow.run.METHOD) is not own
-        sys.exit()  # as Snakemake ends
-    assert getattr(workflow.run.JobScheduler, workflow.run.METHOD) is own
-
-
-def test_a_scheduler_that_counts_its_jobs_elsewhere_keeps_its_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = []
-
-    class Scheduler:
-        def _schedule_reevalutation(self, delay: int) -> None:
-            asked.append(delay)
-
-    monkeypatch.setattr(workflow.run, "JobScheduler", Scheduler)
-    with workflow.run.limited_passes_of_the_scheduler():
-        Scheduler()._schedule_reevalutation(2)
-    assert asked == [2]
 
 
 def test_temporary_files_of_jobs_lie_in_the_folder_of_the_run_and_are_deleted_by_the_next_run(tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ from workflow.verify import MANIFEST, problems
 
 ROOT = Path(__file__).parents[2]
 TEXTS = Path(__file__).parent
+PROBLEMS = ROOT / "reference" / "problems"
 OLDEST = 1980, 1, 1, 0, 0, 0  # time stamp of all files in the archive, the first that zip knows
 
 
@@ -79,6 +80,7 @@ def files(folder: Path) -> Iterator[tuple[str, bytes | Path]]:
         "LICENSE.txt": TEXTS / "LICENSE.txt",
         "verify.py": TEXTS / "verify.py",
         "datacite.json": (json.dumps(about, indent=2) + "\n").encode(),
+        **{f"reference-problems/{path.name}": path for path in sorted(PROBLEMS.glob("*.json"))},
         "data/manifest.json": folder / MANIFEST,
         **{f"data/{name}": folder / "results" / name for name in sorted(manifest["products"])},
     }

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
+from rocking._assessment.standards import checked_clauses
 from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._base.quantity import Quantity
 from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
@@ -94,12 +95,19 @@ class AssessParams(Params):
         json_schema_extra={"minimum": RESOLUTIONS[0], "maximum": RESOLUTIONS[1]},
     )
     sensitivity: bool = Field(True, description="find the factors of changed objects, and sizes not overturned")
+    standards: str = Field(
+        "",
+        description="checks by standards to state beside the outcome, separated by commas, or all",
+        examples=["static,asce43"],
+    )
     format: TableFormat = None
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
         super().check_field(name, value)
-        if name.startswith("floor_") and value is not None:
+        if name == "standards":
+            checked_clauses(value)
+        elif name.startswith("floor_") and value is not None:
             modes_of(name, str(value))  # a query with an error elsewhere has its numbers read
         elif name == "shapes" and value is not None:
             for shape in _parts(name, value, MAX_SHAPES, "shapes"):
@@ -234,7 +242,7 @@ class AssessResponse(Answer):
     )
     bad_rows: list[UnreadRow] = Field(description="rows that were not read; the others are assessed")
     details: dict[str, list[str]] = Field(
-        {}, description="other texts of the object of each row, by their headers in the table"
+        {}, description="cells of the object of each row as they stand, by the headers of the table"
     )
     columns: dict[str, str] = Field(description="what columns of the table were read as, by their headers")
     skipped: list[str] = Field(description="columns of the table that were not read; `details` has their cells")

@@ -40,10 +40,13 @@ def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
     try:
         return read(value)
     except ValidationError:
-        raise PydanticCustomError("restitution", "momentum, or a number in [0, 1] [-]") from None
+        raise PydanticCustomError("restitution", "momentum, kalliontzis(k=0.8), or a number in [0, 1] [-]") from None
 
 
-MomentumOrNumber = Annotated[Literal["momentum"] | float, WrapValidator(_momentum_or_number)]
+Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
+"""An impact at a share k of the half base."""
+
+MomentumOrNumber = Annotated[Literal["momentum"] | Spread | float, WrapValidator(_momentum_or_number)]
 
 Offset = Annotated[
     float,
@@ -61,7 +64,8 @@ class SizeParams(Params):
     width: float = quantity("width", "width 2b of the base", examples=[0.4])
     height: float = quantity("height", "height 2h", examples=[1.6])
     restitution: MomentumOrNumber = Field(
-        "momentum", description="eta [-], or momentum: (2.4), 0 where that is negative"
+        "momentum",
+        description="eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b",
     )
     gravity: float = quantity("gravity", "g", default=STANDARD_GRAVITY)
 
@@ -85,7 +89,7 @@ class BlocksParams(Params):
 
     pulse: PulseName | None = Field(None, description="pulse, required unless a JSON body holds it", examples=["sine"])
     restitution: MomentumOrNumber = Field(
-        "momentum", description="eta [-] of the blocks that state none, or momentum: (2.4), 0 where that is negative"
+        "momentum", description="eta [-] of the blocks that state none, momentum or kalliontzis(k=0.8), as of one block"
     )
     format: TableFormat = None
 

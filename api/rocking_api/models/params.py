@@ -15,6 +15,7 @@ from rocking._base.quantities import ALPHA, RESTITUTION
 from rocking._base.quantities import FREQUENCY_RATIO as ANY_FREQUENCY_RATIO
 from rocking._base.quantities import SLENDERNESS as ANY_SLENDERNESS
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
+from rocking._model.checks import impact_share
 
 # Ranges of the service, far outside of practice and inside those of the library: searches around a point, and points
 # shifted by rounding for the error bound, stay in the latter.
@@ -262,7 +263,7 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": as_pulse,
     "slenderness": SLENDERNESS.convert,
     "frequency_ratio": FREQUENCY_RATIO.convert,
-    "restitution": lambda value: (isinstance(value, str) and value == "momentum") or RESTITUTION.convert(value),
+    "restitution": lambda value: impact_share(value) is not None or RESTITUTION.convert(value),
     "alpha_deg": alpha_of,
 }
 """Checks of parameters whose range is not all of what is allowed, or which may be arrays."""

@@ -90,7 +90,7 @@ def _assess(
     size = sum(len(one.planes) for one in table.objects) * len(site.find_motions(stop))
     if size > MAX_PAIRS:
         raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
-    kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed", "resolution")}
+    kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed", "resolution", "standards")}
     found = assess(table.objects, site, **kept, stop=stop)
     if form == "csv":
         return text_response(found.to_csv(bad_rows=table.bad_rows), "assessment")

@@ -10,7 +10,7 @@ import codecs
 import re
 from array import array
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, islice
 from typing import TYPE_CHECKING
@@ -51,6 +51,8 @@ class TextFile:
     name: str
     content: bytes
     stop: StopFlag | None = None
+    overruled: list[str] = field(default_factory=list)
+    """Remarks on statements of the file that an argument contradicts."""
 
     def __post_init__(self) -> None:
         """Convert UTF-16 to UTF-8, as numbers are read from bytes, and CR CR LF to LF; leave out a last comment."""
@@ -160,10 +162,10 @@ class TextFile:
     def numbers(self, index: int, line: str) -> list[float]:
         """The numbers of a line."""
         found: list[float] = []
-        for field in line.split():
-            parts = [field] if NUMBER.fullmatch(field) else TOUCHING.split(field)
+        for text in line.split():
+            parts = [text] if NUMBER.fullmatch(text) else TOUCHING.split(text)
             if not all(NUMBER.fullmatch(part) for part in parts):
-                raise self.error(index, field, "a number")
+                raise self.error(index, text, "a number")
             found += map(to_float, parts)
         return found
 
@@ -175,10 +177,7 @@ class TextFile:
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
 
     def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
-        """The remark on a number of values that differs from the stated one; none if it does not.
-
-        Raises `RecordFileError` if the difference is larger than headers are usually off: the file is damaged.
-        """
+        """The remark on a number of values that differs from the stated one, by as much as headers are usually off."""
         difference = abs(values.size - stated)
         if difference > COUNT_DIFFERENCE * stated:
             raise self.error(line, f"{stated} stated, {values.size} values in the file", "equal numbers")
@@ -186,10 +185,7 @@ class TextFile:
 
 
 def to_floats(fields: list[bytes]) -> list[float]:
-    """Numbers that match `NUMBER`, with exponents of E.
-
-    Raises `ValueError` for any other text.
-    """
+    """Numbers that match `NUMBER`, with exponents of E; `ValueError` for any other text."""
     if b" ".join(fields).translate(None, b"0123456789+-.Ee "):
         raise ValueError("not only numbers")
     return [*map(float, fields)]
@@ -220,25 +216,31 @@ def parse_unit(text: str) -> str | None:
 
 
 def agreed_unit(file: TextFile, line: int | None, stated: str | None, given: str | None) -> str:
-    """The unit stated in the file, or given as an argument.
+    """The unit given as an argument, else the one stated in the file; a remark if they differ.
 
-    Raises `RecordFileError` if there is none, or the two differ.
+    Raises `RecordFileError` if there is none.
     """
     if stated is None and given is None:
         raise file.error(line, "no unit of acceleration", "one in the header, or the argument `unit`")
     same = stated is None or given is None or {stated, given} <= {"gal", "cm/s2"} or stated == given
-    if not same:
-        raise file.error(line, f"the unit {stated}", f"{given}, as the argument `unit` says")
-    return stated or str(given)
+    if same:
+        return stated or str(given)
+    file.overruled.append(overruled(f"the unit {stated}", "unit", str(given)))
+    return str(given)
 
 
 def agreed_step(file: TextFile, line: int | None, stated: float | None, given: float | None) -> float:
-    """The time step stated in the file [s], or given as an argument; errors as for `agreed_unit`."""
+    """The time step given as an argument, else the one stated in the file [s]; as `agreed_unit`."""
     if stated is None and given is None:
         raise file.error(line, "no time step", "one in the header, a column of times, or the argument `time_step`")
     if stated is not None and given is not None and abs(given / stated - 1.0) > 1e-3:
-        raise file.error(line, f"a time step of {stated:g} s", f"{given:g} s, as the argument `time_step` says")
+        file.overruled.append(overruled(f"a time step of {stated:g} s", "time_step", f"{given:g} s"))
     return float(given if given is not None else stated)  # type: ignore[arg-type]  # not both are None
+
+
+def overruled(stated: str, argument: str, given: str) -> str:
+    """The remark on a statement of a file that an argument contradicts."""
+    return f"the file states {stated}; {given} is used, as the argument `{argument}` says"
 
 
 def joined(parts: Iterable[str]) -> str:

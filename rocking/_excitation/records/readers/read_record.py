@@ -47,7 +47,8 @@ def read_record(
         The file.
     unit : str, optional
         Unit of the samples: "m/s2", "cm/s2", "gal", "mm/s2", "g", "mg", "%g", "g/10", "in/s2" or "ft/s2". Required
-        where the file states none, or one that is not understood; refused where it states another.
+        where the file states none, or one that is not understood; where it states another, this one is used, with a
+        remark that names both.
     time_step : float, optional
         Time step [s], [1e-6, 10]; likewise.
     component : str, optional
@@ -181,11 +182,15 @@ def _parsed(
     file = TextFile(name, content, stop)
     _check_text(file.content, name)
     try:
-        return _read_text(file, unit, step, component, passed)
+        found = _read_text(file, unit, step, component, passed)
     except RecordFileError:
         raise
     except InvalidArgumentError as error:  # samples that make no record, such as zeros only
         raise file.error(None, f"{error.parameter} {error.value}", error.allowed) from None
+    if not file.overruled:
+        return found
+    about = found.name, found.source, (*found.remarks, *file.overruled)
+    return Record(found.acceleration, found.time_step, "m/s2", *about)
 
 
 def _read_text(

@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 
 from rocking._base.errors import RecordFileError
+from rocking._excitation.records.readers.lines import overruled
 from rocking._excitation.records.record import Record
 
 SAC_VERSION_PLACE, SAC_VERSIONS = 304, (6, 7)  # byte and values of the header version of a binary SAC file
@@ -48,8 +49,8 @@ def read(content: bytes, file: str, unit: str | None, time_step: float | None, c
     if unit is None:
         raise RecordFileError(file, None, "no unit of acceleration", "the argument `unit`")
     step = float(trace.stats.delta)
+    remarks: tuple[str, ...] = ()
     if time_step is not None and abs(time_step / step - 1.0) > 1e-3:
-        raise RecordFileError(
-            file, None, f"a time step of {step:g} s", f"{time_step:g} s, as the argument `time_step` says"
-        )
-    return Record(np.asarray(trace.data, dtype=np.float64), step, unit, name=found[0], source=f"{file} (ObsPy)")
+        remarks, step = (overruled(f"a time step of {step:g} s", "time_step", f"{time_step:g} s"),), time_step
+    about = found[0], f"{file} (ObsPy)", remarks
+    return Record(np.asarray(trace.data, dtype=np.float64), step, unit, *about)

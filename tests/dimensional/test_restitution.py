@@ -1,0 +1,109 @@
+"""Named restitutions: momentum, and the impact at a share of the half base (Kalliontzis et al. 2016)."""
+
+import json
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import rocking
+from rocking._assessment.objects import Bodies
+from rocking._cli.app import app
+
+TEXT = "kalliontzis(k=0.7)"
+MOTION = {"motion": "sine", "peak_acceleration": 4.0, "period": 0.5}
+
+
+def by_momentum(b: float, h: float, r: float, k: float) -> float:
+    """From the angular momentum about the point of impact; before, the body rotates about the mirrored point."""
+    impact, centre = np.array([k * b, 0.0]), np.array([0.0, h])
+    before, after = (1.0 * np.array([-(centre - pivot)[1], (centre - pivot)[0]]) for pivot in (-impact, impact))
+    momenta = [r * r + np.linalg.det([centre - impact, velocity]) for velocity in (before, after)]
+    return float(momenta[0] / momenta[1])
+
+
+@pytest.mark.parametrize(("width", "height"), [(0.4, 1.6), (1.0, 1.2), (0.05, 2.0)])
+@pytest.mark.parametrize("k", [0.3, 0.7, 1.0])
+def test_each_entry_takes_the_number_that_momentum_gives(width, height, k):
+    """Bodies, groups, thresholds, histories and objects of an assessment."""
+    b, h = width / 2, height / 2
+    eta, text = by_momentum(b, h, np.hypot(b, h) / np.sqrt(3), k), f"kalliontzis(k={k})"
+    sine = np.sin(np.arctan2(b, h)) ** 2
+    assert eta == pytest.approx((4 - 3 * sine * (1 + k * k)) / (4 - 3 * sine * (1 - k * k)))
+    block = rocking.Block(width, height)
+    for body in (block, rocking.RigidBody.from_size(np.array([width]), np.array([height]))):
+        named, stated = (body.response(**MOTION, restitution=one, thresholds=False) for one in (text, eta))
+        np.testing.assert_allclose(named.rotation, stated.rotation, rtol=1e-9)
+        assert np.array_equal(named.outcome, stated.outcome)
+    groups = {"slenderness": 0.4, "frequency_ratio": 5.0, "alpha": block.alpha}
+    named, stated = (rocking.peak_response("ricker", **groups, restitution=one) for one in (text, eta))
+    assert named.peak_rotation == pytest.approx(stated.peak_rotation, rel=1e-9, nan_ok=True)
+    own = Bodies.of([rocking.Object("a", width=width, height=height, restitution=text)]).scaled()
+    assert own.right.restitution == own.left.restitution == pytest.approx(eta)
+
+
+def test_arrays_have_the_restitution_of_each_body():
+    blocks = rocking.Block(np.array([0.3, 0.6]), np.array([1.0, 1.0]))
+    named = blocks.response(**MOTION, restitution=TEXT, thresholds=False)
+    each = [
+        blocks_of.response(**MOTION, restitution=TEXT) for blocks_of in (rocking.Block(0.3, 1), rocking.Block(0.6, 1))
+    ]
+    np.testing.assert_allclose(named.rotation, [one.rotation for one in each], rtol=1e-9)
+
+
+def test_thresholds_fragility_and_assessments_follow():
+    """The same as with the number; k = 1 is momentum to the last digit."""
+    block = rocking.Block(0.3, 1.2)
+    eta = by_momentum(0.15, 0.6, np.hypot(0.15, 0.6) / np.sqrt(3), 0.7)
+    lowest = [block.thresholds("sine", period=0.5, restitution=one).lowest for one in (TEXT, eta)]
+    assert lowest[0] == pytest.approx(lowest[1], rel=1e-9)
+    record = rocking.Record(5 * np.sin(7 * 0.01 * np.arange(300)), 0.01, "m/s2")
+    found = [
+        rocking.fragility([record], block, intensity=[3.0, 6.0, 9.0], restitution=one)["peak_rotation"].values
+        for one in (TEXT, eta)
+    ]
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
+    site = rocking.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker"])
+    rows = [
+        rocking.assess(rocking.Object("a", width=0.3, height=1.2, restitution=one), site, sensitivity=False).rows
+        for one in (TEXT, eta, "kalliontzis(k=1)", "momentum")
+    ]
+    assert rows[0][0]["factor"] == pytest.approx(rows[1][0]["factor"], rel=1e-9)
+    assert rows[2] == rows[3]
+
+
+def test_command_and_table_take_the_text(tmp_path):
+    given = [
+        "response",
+        "--pulse",
+        "sine",
+        "--width=0.3m",
+        "--height=1.2m",
+        "--peak-acceleration=4m/s2",
+        "--period=0.5s",
+    ]
+    found = json.loads(CliRunner().invoke(app, [*given, "--restitution", TEXT, "--format=json"]).stdout)
+    expected = rocking.Block(0.3, 1.2).response(**MOTION, restitution=TEXT)
+    assert found["restitution"] == pytest.approx(by_momentum(0.15, 0.6, np.hypot(0.15, 0.6) / np.sqrt(3), 0.7))
+    assert found["overturned"] == bool(expected.overturned)
+    table = tmp_path / "table.csv"
+    table.write_text(f"name,width [m],height [m],restitution\na,0.3,1.2,{TEXT}\n")
+    assert rocking.read_objects(table).objects[0].restitution == TEXT
+
+
+@pytest.mark.parametrize(
+    "wrong", ["kalliontzis", "kalliontzis(0.8)", "kalliontzis(k=0)", "kalliontzis(k=1.1)", "housner"]
+)
+def test_other_texts_are_refused(wrong):
+    with pytest.raises(rocking.InvalidArgumentError, match="restitution"):
+        rocking.Block(0.3, 1.2).response(**MOTION, restitution=wrong)
+    with pytest.raises(rocking.InvalidArgumentError, match="restitution"):
+        rocking.Object("a", width=0.3, height=1.2, restitution=wrong)
+
+
+def test_bodies_with_two_different_edges_need_another():
+    for edges in ({"left": 0.1, "right": 0.2}, {"left": 0.1, "right": 0.1, "sides": "right"}):
+        with pytest.raises(rocking.InvalidArgumentError, match="different edges"):
+            rocking.RigidBody(**edges, height=0.6).response(**MOTION, restitution=TEXT)
+    with pytest.raises(rocking.InvalidArgumentError, match="not in the middle"):
+        rocking.Object("a", width=0.3, height=1.2, offset_width=0.01, restitution=TEXT)
