@@ -56,12 +56,10 @@ SHAPES = (
 )
 """Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
 
-_LENGTHS = {name for kind in _KINDS for name in kind.needed if kind.fields[name].unit == "m"}
+_OTHERS = [kind for kind in _KINDS if kind.needed.isdisjoint(("width", "diameter"))]
+_FIRST = [name for kind in _OTHERS for name in kind.fields if name in kind.needed and kind.fields[name].unit == "m"][:1]
 
-REQUIRED = (
-    ("width", "diameter", *sorted(_LENGTHS - {"width", "diameter", "height", "mass_height"})),
-    ("height", "mass_height"),
-)
+REQUIRED = (("width", "diameter", *_FIRST), ("height", "mass_height"))
 """Columns that the header of a table has, one of each group."""
 
 CLAUSES = {
