@@ -11,11 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-WIDTH, HEIGHT = 220.0, 95.0
-"""Of the area between the axes [pixels]."""
-
-MOST_POINTS = 320
-"""Points of a line beyond which it is thinned, largest and smallest values kept [-]."""
+WIDTH, HEIGHT = 220.0, 95.0  # of the area between the axes [pixels]
+MOST_POINTS = 320  # points of a line beyond which it is thinned, largest and smallest values kept [-]
 
 FLAT = 0.15
 """Departure of a line from its points that is not seen [pixels]."""

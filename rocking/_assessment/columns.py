@@ -56,12 +56,10 @@ SHAPES = (
 )
 """Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
 
-_LENGTHS = {name for kind in _KINDS for name in kind.needed if kind.fields[name].unit == "m"}
+_OTHERS = [kind for kind in _KINDS if kind.needed.isdisjoint(("width", "diameter"))]
+_FIRST = [name for kind in _OTHERS for name in kind.fields if name in kind.needed and kind.fields[name].unit == "m"][:1]
 
-REQUIRED = (
-    ("width", "diameter", *sorted(_LENGTHS - {"width", "diameter", "height", "mass_height"})),
-    ("height", "mass_height"),
-)
+REQUIRED = (("width", "diameter", *_FIRST), ("height", "mass_height"))
 """Columns that the header of a table has, one of each group."""
 
 CLAUSES = {
@@ -117,8 +115,5 @@ OUTPUTS = (
     Quantity("warnings", "", "what is in doubt"),
 )  # fmt: skip
 
-VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")
-"""From the best to the worst."""
-
-CLOSE = 0.2
-"""Distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better."""
+VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")  # from the best to the worst
+CLOSE = 0.2  # distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better

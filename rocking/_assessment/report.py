@@ -30,14 +30,9 @@ TEMPLATE = "report.html"
 COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
 """Of the verdicts; people who are colour-blind tell them apart (Okabe and Ito 2008)."""
 
-WORST = 5
-"""Objects that are drawn on the first page [-]."""
-
-LARGEST = 120.0, 165.0
-"""Largest width and height of a drawing on the first page [pixels]; all have one scale."""
-
-DRAWING = 105.0
-"""Height of an object in its drawings, and width of these together, at most [pixels]."""
+WORST = 5  # objects that are drawn on the first page [-]
+LARGEST = 120.0, 165.0  # largest width and height of a drawing on the first page [pixels]; all have one scale
+DRAWING = 105.0  # height of an object in its drawings, and width of these together, at most [pixels]
 
 MOST_DETAILED = 60
 """Objects, from the worst one on, that have drawings and charts at most [-]."""
@@ -77,11 +72,6 @@ def report_html(
 
     Objects that rock, overturn or are within 20 % of overturning have half a page each, in their worse direction. With
     `detailed` every object has a page for each direction.
-
-    Raises
-    ------
-    ImportError
-        If jinja2, the extra `report`, is not installed.
     """
     from jinja2 import Environment, StrictUndefined  # noqa: PLC0415  (an extra)
 

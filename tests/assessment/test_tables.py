@@ -217,7 +217,7 @@ def test_ambiguous_and_incomplete_tables_are_refused(text: str) -> None:
 def test_a_header_that_lacks_a_column_names_it_and_the_one_that_may_be_it() -> None:
     header = "Name;material;location;room;remarks;Width [cm];Height overall max [cm]"
     with pytest.raises(
-        InvalidArgumentError, match=r"missing: height; if that is 'Height overall max \[cm\]'"
+        InvalidArgumentError, match=r"missing: height or mass_height; if that is 'Height overall max \[cm\]'"
     ) as refused:
         objects_of_csv(f"Inventory of 2024\n{header}\na;b;c;d;e;30;60\n")
     assert "width" not in refused.value.allowed.partition("missing:")[2]
