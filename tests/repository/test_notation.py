@@ -21,7 +21,6 @@ import rocking
 from rocking._assessment.columns import INPUTS, OUTPUTS
 from rocking._cli.app import app
 from rocking._dimensional.table import COLUMNS
-from rocking._lookup.cube import Cube
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "notation.md").read_text(encoding="utf-8")
@@ -120,23 +119,3 @@ def test_names_of_a_row_are_the_same_in_all_interfaces() -> None:
 def test_the_page_holds_the_columns_of_an_assessment() -> None:
     stated = [(name.strip("`"), unit, meaning) for name, unit, meaning in rows_under("Columns of an assessment")[1:]]
     assert stated == [(one.name, one.unit or "text", one.meaning) for one in OUTPUTS]
-
-
-def test_slenderness_is_said_to_depend_on_the_motion_wherever_it_is_asked_for() -> None:
-    said = "depends on the motion, unlike h/b"
-    document = create_app(Settings()).openapi()
-    fields = [
-        model.get("properties", {}).get("slenderness", {}) for model in document["components"]["schemas"].values()
-    ]
-    asked = [
-        one for path in document["paths"].values() for method in path.values() for one in method.get("parameters", ())
-    ]
-    assert [one for one in asked if one["name"] == "slenderness" and said not in one["description"]] == []
-    assert [one for one in fields if "examples" in one and said not in one["description"]] == []
-    group = typer.main.get_command(app)
-    for name in ("response", "history", "spectrum"):
-        (option,) = [one for one in group.commands[name].params if one.name == "slenderness"]  # type: ignore[attr-defined]
-        assert said in option.help
-    for function in (rocking.peak_response, rocking.time_history, rocking.overturning_boundary, Cube.response):
-        text = inspect.getdoc(function) or ""
-        assert said in text.partition("\nslenderness : ")[2].split("\n\n")[0][:200], function
