@@ -14,6 +14,7 @@ from ._base.version import __version__ as __version__
 from ._boundary.amplitude import thresholds as thresholds
 from ._boundary.tracing import overturning_boundary as overturning_boundary
 from ._dimensional.block import Block as Block
+from ._dimensional.body_kinds import body as body
 from ._dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
 from ._dimensional.response import BodyResponse as BodyResponse
 from ._dimensional.rigid_body import RigidBody as RigidBody

@@ -4,14 +4,14 @@ import rocking
 from rocking._excitation.pulses import AbstractPulse
 from rocking._numba.compilation import Record
 from rocking._solver.kernels.event_loop import init_state, start_flight
-from rocking._solver.rules import RECOVERS, final_outcome, set_block, set_sign
-from rocking._solver.state import pulse_state
+from rocking._solver.rules import RECOVERS, final_outcome, set_body, set_sign
+from rocking._solver.state import block_cell, pulse_state
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:
     """Return the record of a block at rest before the pulse."""
     flight = pulse_state(rocking.pulse(pulse) if isinstance(pulse, str) else pulse).copy()
-    set_block(flight, slenderness, eta, alpha)
+    set_body(flight, block_cell(omega, slenderness, eta, alpha), False)
     init_state(flight, omega)
     return flight
 

@@ -23,9 +23,7 @@ NAME = re.compile(r"[a-z0-9_]{1,40}")  # names of pulses, which name folders
 
 
 def configured_pulse(entry: Any, folder: Path) -> str | SampledPulse:
-    """A pulse of a configuration: a name of the catalogue, or samples; paths are relative to `folder`, that of the
-    configuration.
-    """
+    """A pulse of a configuration: a name of the catalogue, or samples, in files relative to `folder`."""
     if not isinstance(entry, Mapping):
         made = pulse(entry)
         if made.name.partition("(")[0] not in PULSE_NAMES:

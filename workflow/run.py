@@ -5,31 +5,19 @@ active.
 """
 
 import argparse
-import inspect
 import os
 import shutil
 import sys
 import tempfile
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from snakemake.cli import main as snakemake
 
 from workflow.parts import forget_damaged_parts
 from workflow.records import forget_false_records
 from workflow.run_lock import FOLDER, RUN_ID, RunningError, acquire, end_with
-
-try:
-    from snakemake.scheduling.job_scheduler import JobScheduler
-except ImportError:
-    JobScheduler = None
-
-METHOD = "_schedule_reevalutation"
-"""Method of Snakemake's scheduler that starts another pass after a delay [s]; the spelling is Snakemake's."""
 
 MEMORY_SHARE = 0.8
 """Share of the memory of the machine that the jobs of a run may use together [-], by what their rules state."""
@@ -53,8 +41,7 @@ def main(arguments: Sequence[str]) -> None:
     use_temporary_folder(options.directory)
     for difference in chain(forget_false_records(options.directory), forget_damaged_parts(options.directory)):
         print(f"{difference}; it is made again", flush=True)
-    with limited_passes_of_the_scheduler():
-        snakemake([*_memory_limit(arguments), *arguments])
+    snakemake([*_memory_limit(arguments), *arguments])
 
 
 def _memory_limit(arguments: Sequence[str]) -> list[str]:
@@ -65,43 +52,6 @@ def _memory_limit(arguments: Sequence[str]) -> list[str]:
         return []  # POSIX does not have this name
     megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") * MEMORY_SHARE / 1e6
     return [f"--resources=mem_mb={megabytes:.0f}"]
-
-
-@contextmanager
-def limited_passes_of_the_scheduler() -> Iterator[None]:
-    """Let at most one further pass of Snakemake's scheduler wait at a time, in this block.
-
-    A pass that leaves jobs ready starts another one a second later, for its limit of jobs per second, and so does each
-    job that ends. Without this, after a hundred jobs a hundred passes a second look at all inputs of all ready jobs;
-    the run of the atlas took 40 % of a processor for itself. Its option for longer times between passes makes each run
-    end as much later. The method is private: a Snakemake that does not have it, or has another one of this name, keeps
-    its own.
-    """
-    original = getattr(JobScheduler, METHOD, None)
-    if original is None or [*inspect.signature(original).parameters] != ["self", "delay"]:
-        yield
-        return
-    waiting = threading.Lock()
-
-    def schedule_pass(scheduler: Any, delay: float) -> None:
-        if not hasattr(scheduler, "_open_jobs"):
-            original(scheduler, delay)
-            return
-
-        def start() -> None:
-            waiting.release()
-            scheduler._open_jobs.release()
-
-        if waiting.acquire(blocking=False):
-            timer = threading.Timer(delay, start)
-            timer.daemon = True  # the end of the run does not wait for it
-            timer.start()
-
-    setattr(JobScheduler, METHOD, schedule_pass)
-    try:
-        yield
-    finally:
-        setattr(JobScheduler, METHOD, original)
 
 
 def use_temporary_folder(directory: Path) -> None:

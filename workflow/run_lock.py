@@ -77,10 +77,7 @@ def _locked(file: IO[str], timeout: float) -> bool:
 
 
 def join_run() -> None:
-    """In a job: share the lock of the folder until the job ends, and end with the run.
-
-    Raises `RunningError` if the run of this job was killed and another one has begun.
-    """
+    """In a job: share the lock of the folder until the job ends; end with the run, or at once if another has begun."""
     jobs = _held[FOLDER] = (FOLDER / "jobs.lock").open("a", encoding="utf-8")
     fcntl.flock(jobs, fcntl.LOCK_SH)
     number = os.environ.get(RUN_NUMBER)  # a cluster may not pass it on

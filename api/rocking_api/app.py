@@ -12,7 +12,6 @@ from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
-from rocking._lookup.collection import CubeCollection
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
 from rocking_api.http.openapi import describe
 from rocking_api.http.request_log import RequestLog
@@ -43,7 +42,6 @@ from rocking_api.routers import (
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
-from rocking_api.zarr_store import ZarrStores
 
 LOG = logging.getLogger("rocking.service")
 
@@ -73,8 +71,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         responses=RESPONSES,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request
     )
-    cubes = CubeCollection(settings.results)
-    service = app.state.service = Service(settings, cubes, ZarrStores(cubes.catalogue))
+    service = app.state.service = Service(settings)
     # data sets are compressed already, and a compressed response has no ranges
     binary = ("application/x-netcdf", "application/octet-stream", "application/zip")
     app.add_middleware(

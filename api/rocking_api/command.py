@@ -13,8 +13,16 @@ import uvicorn
 from pydantic import ValidationError
 
 from rocking_api.execution.kernels import compile_command
-from rocking_api.json_log import CONFIG
 from rocking_api.settings import Settings
+
+LOG: dict[str, Any] = {
+    "version": 1,
+    "disable_existing_loggers": False,
+    "formatters": {"line": {"format": "%(asctime)s %(levelname)s %(name)s: %(message)s"}},
+    "handlers": {"stderr": {"class": "logging.StreamHandler", "formatter": "line"}},
+    "loggers": {name: {"handlers": ["stderr"], "level": "INFO", "propagate": False} for name in ("rocking", "uvicorn")},
+}
+"""For logging.config.dictConfig."""
 
 HEALTHCHECK_SECONDS = 60
 """Time after which uvicorn replaces a worker that does not answer it [s]; loading the package takes some of it."""
@@ -68,7 +76,7 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
             workers=workers,
             ws="none",
             server_header=False,
-            log_config=CONFIG,
+            log_config=LOG,
             access_log=settings.access_log,
             limit_concurrency=settings.max_connections,
             timeout_graceful_shutdown=settings.stop_seconds,

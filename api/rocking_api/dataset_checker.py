@@ -34,17 +34,8 @@ class State(NamedTuple):
 class DatasetChecker:
     """Checks every data set once per version of its file, on request, and logs each that is found damaged or repaired.
 
-    Parameters
-    ----------
-    cubes : CubeCollection
-        Cubes and catalogue of the results folder.
-    on_change : callable, optional
-        Called with the name of a data set or folder, and whether it is damaged, where that has changed.
-
-    Attributes
-    ----------
-    damaged : dict of str to str
-        What is wrong, by name, of each data set or folder that exists and cannot be used: what the last check found.
+    `damaged` says of each data set or folder that exists and cannot be used what is wrong, by name; `on_change` is
+    called with a name and whether it is damaged, where that has changed.
     """
 
     def __init__(self, cubes: CubeCollection, on_change: Callable[[str, bool], None] = lambda *_: None) -> None:
@@ -101,9 +92,7 @@ class DatasetChecker:
         if (now := self.damaged.get(name)) == before:
             return
         self._on_change(name, now is not None)
-        fields = {"dataset": name} | ({} if now is None else {"problem": now})
-        LOG.log(
-            logging.INFO if now is None else logging.ERROR,
-            "a data set is no longer damaged" if now is None else "a data set is damaged",
-            extra={"fields": fields},
-        )
+        if now is None:
+            LOG.info("a data set is no longer damaged: %s", name)
+        else:
+            LOG.error("a data set is damaged: %s: %s", name, problem)

@@ -40,18 +40,8 @@ class Mark:
 class Dial:
     """Parts of the drawing, x to the right and y downwards from the middle.
 
-    Attributes
-    ----------
-    marks : list of Mark
-        One for each direction.
-    worst : list of Mark
-        Those of the lowest factor.
-    curve, base : str
-        Through the marks, and around the base; points of a polygon.
-    site : float
-        Radius at which the factor is 1, nan beyond the rim.
-    rim : float
-        Factor there [-].
+    `curve` and `base` are points of polygons; `site` is the radius at which the factor is 1, nan beyond the rim, and
+    `rim` the factor there [-].
     """
 
     marks: list[Mark]

@@ -34,15 +34,7 @@ _POLL = 0.1
 def result_of(
     module: str, raw: bytes, parameter: str, name: str, stop: StopFlag, options: tuple[str, ...] = ()
 ) -> dict[str, Any]:
-    """What the process of a module prints for the path of a file with these bytes, and options.
-
-    Raises
-    ------
-    InvalidArgumentError
-        Of the parameter, if the file `name` is damaged or exceeds a limit.
-    StoppedError
-        If `stop` was set.
-    """
+    """What the process of a module prints for the path of a file with these bytes, and options."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / f"file{PurePath(name).suffix.lower()}"
         path.write_bytes(raw)

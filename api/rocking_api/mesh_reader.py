@@ -22,17 +22,7 @@ ENDINGS = (".stl", ".ply", ".obj", ".glb")
 
 @dataclass(frozen=True)
 class MeshShape:
-    """What an assessment needs of a mesh.
-
-    Attributes
-    ----------
-    planes : dict of float to Plane
-        Those across the sides of its base, by angle from the x axis [degrees].
-    footprint : list of (float, float)
-        Corners of its base from the centre of mass [m].
-    remarks : list of str
-        What was repaired, each as the end of a sentence about the mesh.
-    """
+    """What an assessment needs of a mesh."""
 
     planes: dict[float, Plane]
     footprint: list[tuple[float, float]]
@@ -45,17 +35,7 @@ def can_read_meshes() -> bool:
 
 
 def read_mesh(raw: bytes, name: str, unit: str, stop: StopFlag) -> MeshShape:
-    """The shape of a mesh from the bytes of its file, by another process.
-
-    Raises
-    ------
-    UnsupportedBodyError
-        If the format is none of `ENDINGS`, or meshes cannot be read here.
-    InvalidArgumentError
-        If the file is damaged, does not stand, or exceeds a limit.
-    StoppedError
-        If `stop` was set.
-    """
+    """The shape of a mesh from the bytes of its file, by another process."""
     one_of("unit", unit, UNITS["m"])
     ending = PurePath(name).suffix.lower()
     if ending not in ENDINGS:

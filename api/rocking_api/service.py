@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Annotated, TypeVar
 
 import anyio
@@ -38,49 +37,29 @@ SEARCH_SHARE = 0.2
 """Share of the time limit for the search along one line [-]."""
 
 
-@dataclass
 class Service:
     """One per application, made in `create_app`."""
 
-    settings: Settings
-    cubes: CubeCollection
-    zarr_stores: ZarrStores
-    single: BoundedExecutor = field(init=False)
-    kernels: Kernels = field(init=False)
-    executor: BoundedExecutor = field(init=False)
-    metrics: Metrics = field(init=False)
-    dataset_checker: DatasetChecker = field(init=False)
-    io_limiter: CapacityLimiter = field(init=False)
-    parser: BoundedExecutor = field(init=False)
-    memory_budget: MemoryBudget = field(init=False)
-    summaries: DatasetSummaries = field(init=False)
-    suites: SuiteReader = field(init=False)
-    turns: anyio.Lock = field(default_factory=anyio.Lock)
-
-    def __post_init__(self) -> None:
-        settings = self.settings
-        # a separate thread: requests for one block do not wait for heavy work
-        self.single = BoundedExecutor(1, settings.max_connections, settings.max_seconds)
-        self.kernels = Kernels(settings.max_seconds)
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        queue, seconds = settings.max_queue, settings.max_seconds
+        self.cubes = CubeCollection(settings.results)
+        self.zarr_stores = ZarrStores(self.cubes.catalogue)
+        self.kernels = Kernels(seconds)
         self.metrics = Metrics()
-        self.executor = BoundedExecutor(
-            settings.max_workers, settings.max_queue, settings.max_seconds, self.metrics.heavy, trials=True
-        )
+        # a separate thread: requests for one block do not wait for heavy work
+        self.single = BoundedExecutor(1, settings.max_connections, seconds)
+        self.executor = BoundedExecutor(settings.max_workers, queue, seconds, self.metrics.heavy, trials=True)
+        self.parser = BoundedExecutor(1, queue, seconds, trials=True)
         self.dataset_checker = DatasetChecker(self.cubes, self.metrics.damaged)
         self.summaries = DatasetSummaries(self.cubes.catalogue)
         self.suites = SuiteReader(self.cubes.catalogue)
         self.io_limiter = CapacityLimiter(settings.max_workers)
-        self.parser = BoundedExecutor(1, settings.max_queue, settings.max_seconds, trials=True)
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
+        self.turns = anyio.Lock()
 
     async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
-        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            At once, if a parameter is out of range.
-        """
+        """Run heavy work for a request whose body was read, see `BoundedExecutor.run`."""
         params.check()
         await self.kernels.wait()
         return await self.executor.run(work, request, self.reservation(request).held)
@@ -105,11 +84,6 @@ class Service:
 
         An object of JSON is read as `body`, which has the fields of `kind`; these may be in the query as well. Beside a
         file or a list they are in the query.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If parameters or body do not fit, see `check_json`, `read_json` and `limited_body`.
         """
         query = query_parameters(request)
         raw = await self.read_body(request, limit, hint)

@@ -52,7 +52,7 @@ class Settings(BaseSettings):
     )
     arrival_seconds: float = Field(default=20.0, gt=0.0, description="time for a body to arrive [s]")
     stop_seconds: int = Field(default=30, ge=1, description="time for running requests at shutdown [s]")
-    access_log: bool = Field(default=True, description="one line of JSON for each request")
+    access_log: bool = Field(default=True, description="one line of the log for each request")
     # pydantic-settings would report text that is no JSON by an error without its value
     cors_origins: Annotated[tuple[str, ...], NoDecode, BeforeValidator(_origins)] = Field(
         default=(), description="web origins that may read the responses"

@@ -59,13 +59,7 @@ class PulseStore(NamedTuple):
 
 
 class ZarrStores:
-    """Zarr stores of data sets, and of the spectrum cubes of a pulse.
-
-    Parameters
-    ----------
-    catalogue : Catalogue
-        Source of the data sets.
-    """
+    """Zarr stores of data sets, and of the spectrum cubes of a pulse."""
 
     def __init__(self, catalogue: Catalogue) -> None:
         self._catalogue = catalogue
@@ -75,15 +69,7 @@ class ZarrStores:
         self._chunks = lru_cache(MAX_KEPT)(self._make_chunks)
 
     def value(self, name: str, key: str) -> tuple[str, bytes | None]:
-        """The sha256 of what the value of a key is made from, and the value; None if the store has no such key.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is neither a data set nor a folder of cubes of that name.
-        DatasetError
-            If it is damaged, or cannot be read.
-        """
+        """The sha256 of what the value of a key is made from, and the value; None if the store has no such key."""
         folder, _, pulse = name.partition("/")
         if folder == SPECTRA and pulse and "/" not in pulse:
             return self._value_of_cubes(name, key)
@@ -145,15 +131,7 @@ class ZarrStores:
 
     @contextmanager
     def _open(self, cube: CubeVersion) -> Iterator[xr.Dataset]:
-        """One version of a cube, without reading its variables.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If it was removed.
-        DatasetError
-            If it was replaced, is damaged, or cannot be read.
-        """
+        """One version of a cube, without reading its variables."""
         with self._catalogue.open(cube.name) as file:
             content = file.content()
         damage = find_damage(content) if sha256_of(content) == cube.sha256 else "replaced while it is read; ask again"

@@ -38,13 +38,11 @@ from rocking.suites.hazard import curve_rates, outcome_rates
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-WIDE = 0.1
-"""Relative distance of the bounds of an annual rate above which a warning is given [-]."""
+WIDE = 0.1  # relative distance of the bounds of an annual rate above which a warning is given [-]
 
 CONFIDENCE = 0.95
 
-RATE_LEVELS = 12
-"""Levels of a hazard curve at which outcomes are computed [-]."""
+RATE_LEVELS = 12  # levels of a hazard curve at which outcomes are computed [-]
 
 
 def assess(

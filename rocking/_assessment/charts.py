@@ -30,19 +30,7 @@ STYLES = tuple(
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis.
-
-    Parameters
-    ----------
-    label : str
-        With unit.
-    low, high : float
-        Its ends, low < high.
-    size : float
-        Its length [pixels].
-    logarithmic : bool
-        Whether equal ratios have equal lengths.
-    """
+    """One axis with its ends, low < high, and its length [pixels]."""
 
     label: str
     low: float

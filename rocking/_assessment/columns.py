@@ -22,6 +22,7 @@ from rocking._base.quantities import (
     WIDTH,
 )
 from rocking._base.quantity import Quantity
+from rocking._dimensional.body_kinds import BODIES, RIGID
 
 INPUTS = (
     NAME,
@@ -41,10 +42,26 @@ INPUTS = (
 )
 """What an object has."""
 
-STAND_INS = (NUMBER, LENGTH, THICKNESS)
-"""Other columns of tables, which are read as one of these."""
+STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are read as one of these
 
-REQUIRED = (("width", "diameter"), ("height",))
+BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
+
+_KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
+
+_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination", "sides", "rebound"}
+
+SHAPES = (
+    BODY,
+    *{name: one for kind in _KINDS for name, one in kind.fields.items() if one.names[0] not in _OWN}.values(),
+)
+"""Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
+
+_LENGTHS = {name for kind in _KINDS for name in kind.needed if kind.fields[name].unit == "m"}
+
+REQUIRED = (
+    ("width", "diameter", *sorted(_LENGTHS - {"width", "diameter", "height", "mass_height"})),
+    ("height", "mass_height"),
+)
 """Columns that the header of a table has, one of each group."""
 
 CLAUSES = {
@@ -59,65 +76,46 @@ floor is that of the floor."""
 
 OUTPUTS = (
     Quantity("object", "", "name of the object"),
-    Quantity(
-        "direction",
-        "",
+    Quantity("direction", "",
         "along which it rocks: width, depth, any of a round base, the plane of an outline, or an angle from the x axis "
-        "of a mesh",
-    ),
+        "of a mesh"),
     Quantity("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
     Quantity("uplifts", "bool", "whether a motion of the site makes it uplift"),
     Quantity("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
     Quantity("factor", "-", "lowest factor tried on the motions of the site at which one of them overturns it"),
     Quantity("governing", "", "that motion"),
     Quantity("overturned_by", "", "motions that overturn it at the strength of the site or below"),
-    Quantity(
-        "share",
-        "-",
-        "share of the motions of the site, a pair of components being one, that overturn it at a factor up to 1",
-    ),
+    Quantity("share", "-",
+        "share of the motions of the site, a pair of components being one, that overturn it at a factor up to 1"),
     Quantity("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
     Quantity("share_upper", "-", "upper end of it"),
     Quantity("rotation", "rad", "largest rotation under the motions that do not overturn it"),
     Quantity("displacement", "m", "largest movement of its top under them"),
-    Quantity(
-        "annual_rate", "1/year", "annual rate of overturning, where a hazard curve is given that reaches far enough"
-    ),
+    Quantity("annual_rate", "1/year",
+        "annual rate of overturning, where a hazard curve is given that reaches far enough"),
     Quantity("annual_rate_lower", "1/year", "that rate at least"),
     Quantity("annual_rate_upper", "1/year", "that rate at most; not known where the hazard curve begins too high"),
     Quantity("friction_needed", "-", "coefficient of friction that uplift needs"),
     Quantity("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
-    Quantity(
-        "slides_under",
-        "",
-        "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, too",
-    ),
+    Quantity("slides_under", "",
+        "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, "
+        "too"),
     Quantity("slides_at", "s", "earliest of these times"),
-    Quantity(
-        "sliding",
-        "m",
-        "largest displacement if it only slides, with the vertical components, where it slides first",
-    ),
-    Quantity(
-        "smallest_width",
-        "m",
-        "smallest base at this height from which on no base that was tried is overturned at a factor up to 1",
-    ),
-    Quantity(
-        "largest_height", "m", "largest height on this base up to which no height that was tried is overturned so"
-    ),
+    Quantity("sliding", "m",
+        "largest displacement if it only slides, with the vertical components, where it slides first"),
+    Quantity("smallest_width", "m",
+        "smallest base at this height from which on no base that was tried is overturned at a factor up to 1"),
+    Quantity("largest_height", "m",
+        "largest height on this base up to which no height that was tried is overturned so"),
     Quantity("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
     Quantity("factor_more_restitution", "-", "the factor with one higher by 0.05"),
     Quantity("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
     Quantity("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
-    Quantity(
-        "sampled_share",
-        "-",
-        "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1",
-    ),
+    Quantity("sampled_share", "-",
+        "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1"),
     *(Quantity(f"{name}_ratio", "-", f"{meaning}; the largest of the motions") for name, meaning in CLAUSES.items()),
     Quantity("warnings", "", "what is in doubt"),
-)
+)  # fmt: skip
 
 VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")
 """From the best to the worst."""

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-LEAST_COMPONENT = 1e-9
-"""Cosine up to which a motion has no component along a direction [-]."""
+LEAST_COMPONENT = 1e-9  # cosine up to which a motion has no component along a direction [-]
 
 
 def factors_by_direction(
@@ -33,31 +32,15 @@ def factors_by_direction(
     stop: StopFlag | None = None,
     resolution: float = RESOLUTION,
 ) -> xr.Dataset:
-    """Lowest factors on motions that overturn an object, over the direction of the ground motion.
+    """`Assessment.directions`: lowest factors that overturn an object, over the direction of the ground motion.
+
+    The planes are those across the sides of its base, by angle, 0 to below 180 [degrees].
 
     A motion in direction theta has the component cos(theta - phi) of it along phi. The object turns about the side of
     its base across phi if this component suffices, so the factor is the least of F(phi)/cos(theta - phi), F that of
     the plane across a side. For the uplift this is exact: with distances of sides as F, it is the distance from the
     centre of mass to the boundary of a convex base in the direction. A planar base of the extent in theta itself would
     turn about a corner, which is farther away.
-
-    Parameters
-    ----------
-    planes : mapping of float to Plane
-        Those across the sides of the base, by angle, 0 to below 180 [degrees].
-    restitution : float or "momentum"
-        Of every impact [-].
-    motions : sequence of Motion
-        Of the site.
-    stop : StopFlag, optional
-        Cancels the work.
-    resolution : float
-        Largest relative distance of the factors on records that are tried [-].
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `direction`, see `Assessment.directions`.
     """
     import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 

@@ -101,23 +101,9 @@ def first_exceedances(
 def envelope_of(
     given: Sequence[tuple[Object, str]], motions: Sequence[Motion], highest: float, stop: StopFlag | None = None
 ) -> tuple[Array, dict[str, Array]]:
-    """Lowest peak accelerations that overturn objects, for the pulse shapes of a site over the period.
+    """Periods [s], and by shape of pulse the lowest peak accelerations [m/s2] (objects, periods) that overturn objects.
 
-    Parameters
-    ----------
-    given : sequence of (Object, str)
-        Objects and directions.
-    motions : sequence of Motion
-        Of the site; records have none.
-    highest : float
-        Peak acceleration that is searched [m/s2].
-    stop : StopFlag, optional
-        Cancels the work.
-
-    Returns
-    -------
-    (float array (periods,), dict of str to float array (objects, periods))
-        Periods [s], and for each shape the peak acceleration, nan where none was found [m/s2].
+    Of objects in directions; nan where none up to `highest` [m/s2] was found.
     """
     pulses = {one.motion.name: one.motion for one in motions if isinstance(one.motion, AbstractPulse)}
     if not pulses or not given:

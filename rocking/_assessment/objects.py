@@ -12,23 +12,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
+from rocking._dimensional.body import RespondingBody
+from rocking._dimensional.body_kinds import body as describe
 from rocking._dimensional.rigid_body import RigidBody
+from rocking._model.block import RectangularBlock
 from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices
 from rocking._model.checks import impact_share
 
 Array = NDArray[np.float64]
 
-LENGTHS = 1e-4, 1e3
-"""Smallest and largest dimension of an object [m]."""
-
-STEP = 15
-"""Between the directions around an object [degrees]."""
-
-CYLINDER = 0.75
-"""12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]."""
+LENGTHS = 1e-4, 1e3  # smallest and largest dimension of an object [m]
+STEP = 15  # between the directions around an object [degrees]
+CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]
 
 
 class RowDetails(dict[str, str]):
@@ -132,7 +131,7 @@ class Object:
 
     def _set(self, values: dict[str, float]) -> None:
         for name, value in values.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+            vars(self)[name] = value  # a frozen dataclass
 
     def _check_described(self, description: str) -> None:
         """Check an object that has its dimensions from a description, such as "a mesh"."""
@@ -209,6 +208,29 @@ class Object:
         corners = tuple((float(x), float(y)) for x, y in checked_vertices(vertices))
         return OutlineObject(name, vertices=corners, **others)
 
+    @staticmethod
+    def from_body(
+        body: RespondingBody | str | Mapping[str, Any], *, name: str = "body", **others: Any
+    ) -> DescribedObject:
+        """An object from a rigid body or its description, as of `rocking.body`; it rocks in the plane of this body.
+
+        Parameters
+        ----------
+        body : Block, RigidBody, str or mapping
+            The body, or what describes it, such as "hollow(width=40cm, height=1.6m, wall=2cm)".
+        name : str
+            For output.
+        others
+            mass, friction, restitution, tolerance, pedestal and notes, as above.
+
+        Raises
+        ------
+        InvalidArgumentError
+            If it is no rigid body; as for an object.
+        """
+        made = body if isinstance(body, RespondingBody) else describe(body)
+        return DescribedObject(name, described=made, **others)
+
     @property
     def cells(self) -> Mapping[str, str]:
         """The row of the table that it was read from as it stands, by its headers; of other objects empty."""
@@ -270,34 +292,18 @@ class Object:
 
 @dataclass(frozen=True)
 class Plane:
-    """An object in a plane in which it rocks.
+    """An object in a plane in which it rocks."""
 
-    Attributes
-    ----------
-    base, offset : float
-        Size of the base, and distance of the centre of mass from its middle towards the right edge [m].
-    height, mass_height : float
-        Of the object, and of its centre of mass [m].
-    base_share, inertia : float
-        12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-].
-    """
-
-    base: float
-    offset: float
-    height: float
-    mass_height: float
-    base_share: float
-    inertia: float
+    base: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
+    offset: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
+    height: float  # of the object, and of its centre of mass [m]
+    mass_height: float  # of the object, and of its centre of mass [m]
+    base_share: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
+    inertia: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
 
     @classmethod
     def of(cls, found: PolygonProperties) -> Plane:
-        """The plane of a body with these edges and this radius of gyration.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If it is smaller or larger than an object may be.
-        """
+        """The plane of a body with these edges and this radius of gyration."""
         base = found.left + found.right
         for name, size in (("base", base), ("height", found.top)):
             number(name, size, *LENGTHS, unit="m")
@@ -307,16 +313,10 @@ class Plane:
 
 @dataclass(frozen=True)
 class MeshObject(Object):
-    """What `Object.from_mesh` makes.
+    """What `Object.from_mesh` makes."""
 
-    Attributes
-    ----------
-    path, unit : str
-        The file, and the unit of its lengths.
-    """
-
-    path: str = ""
-    unit: str = "m"
+    path: str = ""  # the file, and the unit of its lengths
+    unit: str = "m"  # the file, and the unit of its lengths
 
     def __post_init__(self) -> None:
         self._check_described("a mesh")
@@ -354,16 +354,33 @@ class MeshObject(Object):
 
 
 @dataclass(frozen=True)
-class OutlineObject(Object):
-    """What `Object.from_outline` makes.
+class DescribedObject(Object):
+    """What `Object.from_body` makes."""
 
-    Attributes
-    ----------
-    vertices : tuple of (float, float)
-        Corners x, y of the outline [m].
-    """
+    described: Any = None  # the body in the plane in which it rocks
 
-    vertices: tuple[tuple[float, float], ...] = ()
+    def __post_init__(self) -> None:
+        self._check_described("a body")
+
+    @cached_property
+    def planes(self) -> dict[str, Plane]:
+        return {"width": plane_of(self.described)}
+
+    @property
+    def planes_around(self) -> dict[float, Plane]:
+        return {0.0: next(iter(self.planes.values()))}
+
+    @property
+    def footprint(self) -> Array:
+        (plane,) = self.planes.values()
+        return np.array([(-0.5 * plane.base - plane.offset, 0.0), (0.5 * plane.base - plane.offset, 0.0)])
+
+
+@dataclass(frozen=True)
+class OutlineObject(DescribedObject):
+    """What `Object.from_outline` makes."""
+
+    vertices: tuple[tuple[float, float], ...] = ()  # corners x, y of the outline [m]
 
     def __post_init__(self) -> None:
         self._check_described("an outline")
@@ -371,15 +388,6 @@ class OutlineObject(Object):
     @cached_property
     def planes(self) -> dict[str, Plane]:
         return {"outline": plane_of(RigidBody.from_polygon(self.vertices))}
-
-    @property
-    def planes_around(self) -> dict[float, Plane]:
-        return {0.0: self.planes["outline"]}
-
-    @property
-    def footprint(self) -> Array:
-        plane = self.planes["outline"]
-        return np.array([(-0.5 * plane.base - plane.offset, 0.0), (0.5 * plane.base - plane.offset, 0.0)])
 
     def outline(self, direction: str) -> Array:
         plane = self.planes[direction]
@@ -389,31 +397,36 @@ class OutlineObject(Object):
         return np.asarray(points - (0.5 * (base.min() + base.max()), 0.0))
 
 
-def plane_of(body: RigidBody) -> Plane:
+def plane_of(body: RespondingBody) -> Plane:
     """A rigid body as a plane of an object."""
-    names = "left", "right", "height", "gyration", "top_height"
-    return Plane.of(PolygonProperties(*(float(body.parameters[name]) for name in names)))
+    if body.shape or not isinstance(body, RigidBody | RectangularBlock):
+        raise InvalidArgumentError("body", body.description, "one rigid body, such as rocking.RigidBody")
+    one_sided = getattr(body, "sides", "both") != "both"
+    if one_sided or float(body.tilt) or float(body.gravity) != STANDARD_GRAVITY:
+        allowed = "on level ground under standard gravity, without a wall at its side"
+        raise InvalidArgumentError("body", body.description, allowed)
+    if isinstance(body, RectangularBlock):
+        return Plane.of(
+            PolygonProperties(
+                body.half_width, body.half_width, body.half_height, body.half_diagonal / math.sqrt(3.0), body.height
+            )
+        )
+    given = body.parameters
+    values = given["left"], given["right"], body.height, body.gyration, body.top_height
+    return Plane.of(PolygonProperties(*map(float, values)))
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """One body for each object and direction; arrays (bodies,), SI units.
+    """One body for each object and direction; arrays (bodies,), SI units."""
 
-    Attributes
-    ----------
-    base, offset, height, mass_height, base_share, inertia : float array
-        As of `Plane`.
-    restitution : float array [-]
-        Nan: from the angular momentum.
-    """
-
-    base: Array
-    offset: Array
-    height: Array
-    mass_height: Array
-    base_share: Array
-    inertia: Array
-    restitution: Array
+    base: Array  # as of `Plane`
+    offset: Array  # as of `Plane`
+    height: Array  # as of `Plane`
+    mass_height: Array  # as of `Plane`
+    base_share: Array  # as of `Plane`
+    inertia: Array  # as of `Plane`
+    restitution: Array  # nan: from the angular momentum [-]
 
     @classmethod
     def of(cls, objects: Iterable[Object]) -> Bodies:
@@ -440,21 +453,12 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False)
 class BodyArray(AbstractBody):
-    """Rigid bodies of which some have a coefficient of restitution of their own.
+    """Rigid bodies of which some have a coefficient of restitution of their own."""
 
-    Attributes
-    ----------
-    rigid : RigidBody
-        The bodies, arrays (bodies,) or (bodies, 1).
-    own : float array [-]
-        Restitution of each; -k: from the angular momentum of an impact at the share k of the half base, of each edge.
-    change : float array [-]
-        Added to the restitution, which stays in [0, 1].
-    """
-
-    rigid: RigidBody
+    rigid: RigidBody  # the bodies, arrays (bodies,) or (bodies, 1)
+    # restitution of each; -k: from the angular momentum of an impact at the share k of the half base, of each edge [-]
     own: Array
-    change: Array
+    change: Array  # added to the restitution, which stays in [0, 1] [-]
 
     @cached_property
     def right(self) -> Edge:

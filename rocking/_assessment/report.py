@@ -51,8 +51,7 @@ PAGE, HEAD, NOTE, LINE, GAP = 259.0, 28.0, 13.0, 3.6, 1.0
 NAME, VERDICT, MOTION, STEP = 22, 14, 11, 17
 """Characters in a line of these columns of the table [-], on the safe side."""
 
-STRONGEST = 3.0
-"""Height of the axis of an envelope over the peak acceleration of the site [-]."""
+STRONGEST = 3.0  # height of the axis of an envelope over the peak acceleration of the site [-]
 
 
 @dataclass(frozen=True)

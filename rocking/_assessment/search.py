@@ -22,11 +22,8 @@ from rocking._numba.cancellation import StopFlag
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Index = NDArray[np.intp]
-Progress = Callable[[float], None]
-"""Called with the share of the work that is done [-]."""
-
-HIGHEST_FACTOR = 10.0
-"""Highest factor on the motions of a site that is searched [-]."""
+Progress = Callable[[float], None]  # called with the share of the work that is done [-]
+HIGHEST_FACTOR = 10.0  # highest factor on the motions of a site that is searched [-]
 
 
 def least(values: Array) -> Array:

@@ -28,8 +28,7 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Index = NDArray[np.intp]
 
-ETA_CHANGE = 0.05
-"""Change of the coefficient of restitution [-]."""
+ETA_CHANGE = 0.05  # change of the coefficient of restitution [-]
 
 LARGEST, COARSE, HALVINGS = 8.0, 32, 3
 """Largest size that is tried over that which does not uplift [-]; parts of its logarithm, 6.7 % wide, and how often one
@@ -44,14 +43,12 @@ PROBES = np.append(np.geomspace(0.5, 0.9, 5), 1.0)
 QUIET = 0.5
 """Peak |theta|/alpha under a pulse up to which, at these factors, a body is taken not to overturn between them [-]."""
 
-SIZES = np.geomspace(1.0, LARGEST, COARSE * 2**HALVINGS + 1)
-"""Sizes that may be tried [-]."""
+SIZES = np.geomspace(1.0, LARGEST, COARSE * 2**HALVINGS + 1)  # sizes that may be tried [-]
 
 ABOVE = 1.05
 """Highest factor that is searched where only factors up to 1 count [-]: what lies just above guides the search."""
 
-SIZE_ERROR = 1e-3
-"""Relative width of the bracket of the first change of outcome [-]."""
+SIZE_ERROR = 1e-3  # relative width of the bracket of the first change of outcome [-]
 
 CHANGED_RESOLUTION = 4.0
 """Multiple of the resolution for changed objects and samples, and for sizes before the last is confirmed [-]."""
@@ -59,8 +56,7 @@ CHANGED_RESOLUTION = 4.0
 SHARES = 1.0 + np.array([1e-5, 1e-3, 1e-2, 3e-2])
 """Multiples of the factor of a body that are tried for its variants before a search [-]."""
 
-MAX_SAMPLES = 100_000
-"""Most samples of an object in one direction [-]."""
+MAX_SAMPLES = 100_000  # most samples of an object in one direction [-]
 
 
 def changed_objects(

@@ -28,51 +28,27 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-STRENGTHS = 1e-3, 1e3
-"""Smallest and largest PGA [m/s2] and PGV [m/s]."""
-
-LENGTH = 0.01, 10.0
-"""Shortest and longest period of a pulse, and ratio of PGV to PGA [s]."""
-
-PAIR_ANGLES = 12
-"""Directions in which the components of a pair are assessed, over 180 degrees [-]; even."""
+STRENGTHS = 1e-3, 1e3  # smallest and largest PGA [m/s2] and PGV [m/s]
+LENGTH = 0.01, 10.0  # shortest and longest period of a pulse, and ratio of PGV to PGA [s]
+PAIR_ANGLES = 12  # directions in which the components of a pair are assessed, over 180 degrees [-]; even
 
 SHAPE_PIECES = 2000
 """Linear pieces for a pulse that is not given by samples [-]: from its largest value they depart by 2e-6."""
 
-MOST_SAMPLES = 20_000_000
-"""Most samples of all motions of a floor together [-]."""
-
-PERIODS = 12
-"""Periods of each shape where the site has a range of periods, in equal ratios from its ends [-]."""
+MOST_SAMPLES = 20_000_000  # most samples of all motions of a floor together [-]
+PERIODS = 12  # periods of each shape where the site has a range of periods, in equal ratios from its ends [-]
 
 
 @dataclass(frozen=True)
 class Motion:
-    """One motion of a site.
+    """One motion of a site."""
 
-    Attributes
-    ----------
-    name : str
-        For output.
-    motion : AbstractPulse or Record
-        The ground motion.
-    peak_acceleration : float
-        At the site [m/s2]; on a floor, that of the floor.
-    period : float
-        Of a pulse [s]; 1 for a record.
-    group : int
-        Motions of one group are one event: the components of a pair, and a pair at other angles.
-    ground : float
-        Peak ground acceleration that belongs to `peak_acceleration` [m/s2].
-    """
-
-    name: str
-    motion: AbstractPulse | Record
-    peak_acceleration: float
-    period: float
-    group: int
-    ground: float
+    name: str  # for output
+    motion: AbstractPulse | Record  # the ground motion
+    peak_acceleration: float  # at the site [m/s2]; on a floor, that of the floor
+    period: float  # of a pulse [s]; 1 for a record
+    group: int  # motions of one group are one event: the components of a pair, and a pair at other angles
+    ground: float  # peak ground acceleration that belongs to `peak_acceleration` [m/s2]
 
 
 @dataclass(frozen=True)
@@ -128,9 +104,9 @@ class Site:
         for name, unit in (("pga", "m/s2"), ("pgv", "m/s")):
             if getattr(self, name) is not None:
                 value = number(name, getattr(self, name), *STRENGTHS, unit=unit)
-                object.__setattr__(self, name, value)  # a frozen dataclass
+                vars(self)[name] = value  # a frozen dataclass
         records = (self.records,) if isinstance(self.records, Record) else self.records
-        object.__setattr__(self, "records", tuple(map(_checked_pair, records)))
+        vars(self)["records"] = tuple(map(_checked_pair, records))
         ways = (self.pgv is not None) + (self.periods is not None) + bool(self.records)
         if ways != 1:
             raise InvalidArgumentError("site", f"{ways} of pgv, periods, records", "exactly one of them")
@@ -147,25 +123,25 @@ class Site:
                 "floor_participation": participation,
             }
             for name, modal in zip(modes, broadcast(modes, [np.array(periods), damping, participation]), strict=True):
-                object.__setattr__(self, name, tuple(modal.tolist()))
+                vars(self)[name] = tuple(modal.tolist())
         if self.hazard is not None:
             if not self.records:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
             from rocking.suites.hazard_files import hazard_arrays  # noqa: PLC0415  (xarray takes longer to load)
 
-            object.__setattr__(self, "hazard", check_hazard_curve(hazard_arrays(self.hazard, "pga")))
+            vars(self)["hazard"] = check_hazard_curve(hazard_arrays(self.hazard, "pga"))
         if self.periods is not None:
             given_periods: Any = self.periods
             ends = in_range("periods", given_periods, *LENGTH, unit="s")
             if ends.shape != (2,) or ends[0] > ends[1]:
                 raise InvalidArgumentError("periods", self.periods, "the shortest and the longest period")
-            object.__setattr__(self, "periods", tuple(ends.tolist()))
+            vars(self)["periods"] = tuple(ends.tolist())
         if self.pgv is not None and not LENGTH[0] <= vars(self)["pgv"] / vars(self)["pga"] <= LENGTH[1]:
             raise InvalidArgumentError("pgv", self.pgv, f"{LENGTH[0]:g} to {LENGTH[1]:g} s times pga")
         if self.shapes is not None:
             if not len(self.shapes):
                 raise InvalidArgumentError("shapes", self.shapes, "one or more pulses")
-            object.__setattr__(self, "shapes", tuple(as_pulse(shape) for shape in self.shapes))
+            vars(self)["shapes"] = tuple(as_pulse(shape) for shape in self.shapes)
 
     @property
     def motions(self) -> list[Motion]:
@@ -175,7 +151,7 @@ class Site:
     def find_motions(self, stop: StopFlag | None) -> list[Motion]:
         """`motions`, which are found once; `stop` cancels the work, which is long on a floor."""
         if "_motions" not in self.__dict__:
-            object.__setattr__(self, "_motions", self._found(stop))
+            vars(self)["_motions"] = self._found(stop)
         found: list[Motion] = self.__dict__["_motions"]
         return found
 

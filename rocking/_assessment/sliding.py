@@ -25,15 +25,7 @@ Array = NDArray[np.float64]
 
 
 def sliding_displacement(motion: Motion, friction: float) -> float:
-    """Largest displacement relative to the ground of a block that slides under a motion of a site [m].
-
-    Parameters
-    ----------
-    motion : Motion
-        The motion, with its vertical component, > -g.
-    friction : float
-        Coefficient of friction [-], > 0.
-    """
+    """Largest displacement [m] over the ground of a block that slides under a motion of a site; `friction` > 0 [-]."""
     times, samples, vertical = _pieces(motion)
     resistance = friction * (STANDARD_GRAVITY + vertical)
     return largest_slip(times, samples, resistance, friction * STANDARD_GRAVITY)
@@ -72,16 +64,9 @@ def _pieces(motion: Motion) -> tuple[Array, Array, Array]:
 
 
 def largest_slip(times: Array, acceleration: Array, resistance: Array, at_end: float) -> float:
-    """Largest |displacement| [m] under accelerations that are linear between times.
+    """Largest |displacement| [m] under accelerations of the ground [m/s2] at times [s] (samples,), linear between them.
 
-    Parameters
-    ----------
-    times, acceleration : ndarray
-        Shape (samples,) [s], and of the ground [m/s2].
-    resistance : ndarray
-        Shape (samples,); of the friction [m/s2], > 0, linear between times as well.
-    at_end : float
-        The resistance after the motion [m/s2].
+    `resistance` is that of the friction, > 0, linear likewise; `at_end` the one after the motion [m/s2].
     """
     slip = velocity = largest = 0.0
     exceeds = np.abs(acceleration) > resistance

@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking._assessment.columns import INPUTS, REQUIRED, STAND_INS
+from rocking._assessment.columns import INPUTS, REQUIRED, SHAPES, STAND_INS
 from rocking._assessment.objects import Object, RowDetails
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_header import Schema
@@ -106,13 +106,13 @@ def objects_of_json(text: str, most: int | None = None) -> ObjectTable:
         raise InvalidArgumentError("objects", type(given).__name__, "a list of objects, one for each row")
     if most is not None and len(given) > most:
         raise TooManyRowsError("objects", len(given), f"at most {most}")
-    known = {one.name for one in fields(Object)}
+    known = {one.name for one in fields(Object)} | _SHAPES
     found, bad = [], []
     for row, one in enumerate(given, start=1):
         try:
             for key in one.keys() - known:
                 raise InvalidArgumentError(str(key), one[key], f"one of {', '.join(sorted(known))}")
-            found.append(Object(**{"name": f"row {row}"} | one))
+            found.append(_made({"name": f"row {row}"} | one))
         except InvalidArgumentError as error:
             bad.append(BadRow(row, error.parameter, str(error)))
     return ObjectTable(found, bad)
@@ -134,8 +134,22 @@ def _objects(table: Table[Object]) -> ObjectTable:
 def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:
     """The object of a row, with the cells of the columns that hold no numbers that are read."""
     given = {name: value.strip() if isinstance(value, str) else value for name, value in values.items()}
-    return Object(**{"name": f"row {row}"} | given, details=others)
+    return _made({"name": f"row {row}"} | given | {"details": others})
 
 
-SCHEMA = Schema("objects", (*INPUTS, *STAND_INS), REQUIRED, _object, every_length=True)
-"""A table of objects."""
+def _made(given: dict[str, Any]) -> Object:
+    """The object of its own parameters; or with those of a kind of body, of that body."""
+    kind, shapes = given.pop("body", None), given.keys() & _SHAPES
+    if kind is None and not shapes:
+        return Object(**given)
+    stated = {name: given.pop(name) for name in [*given] if name not in _ABOUT}
+    return Object.from_body(stated if kind is None else {**stated, "kind": kind}, **given)
+
+
+_SHAPES = {one.name for one in SHAPES}
+
+_ABOUT = {"name", "mass", "friction", "restitution", "tolerance", "pedestal", "notes", "details"}
+"""What is stated of an object beside its body."""
+
+
+SCHEMA = Schema("objects", (*INPUTS, *STAND_INS, *SHAPES), REQUIRED, _object, every_length=True)  # a table of objects

@@ -29,11 +29,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-REPLICATES = 8
-"""Independent scramblings of the quasi-random points, whose scatter gives the interval [-]."""
-
-NAMES = ("width", "height", "mass_height", "offset", "restitution")
-"""Inputs that may be uncertain."""
+REPLICATES = 8  # independent scramblings of the quasi-random points, whose scatter gives the interval [-]
+NAMES = ("width", "height", "mass_height", "offset", "restitution")  # inputs that may be uncertain
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ It imports nothing heavy: the layer of an interface makes its own object from th
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,8 +18,7 @@ if TYPE_CHECKING:  # they load numpy, which help does without
 
     from rocking._base.units import Values
 
-MAX_LABEL = 25
-"""Characters of a label that xarray writes in one line, with a unit [-]."""
+MAX_LABEL = 25  # characters of a label that xarray writes in one line, with a unit [-]
 
 
 @dataclass(frozen=True)
@@ -117,16 +117,15 @@ class Quantity:
         InvalidArgumentError
             As `convert`; the words are among what it allows.
         """
-        from rocking._base.errors import InvalidArgumentError, plain_number  # noqa: PLC0415
+        from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
+        from rocking._base.units import USUAL  # noqa: PLC0415
 
         if not self.unit or (isinstance(value, str) and value.partition("(")[0].strip() in self.words):
             return value
         try:
-            if isinstance(value, str) and (si or self.unit == "-"):
-                try:
+            if isinstance(value, str) and (si or self.unit not in USUAL):  # a number, or a percentage
+                with suppress(ValueError):
                     value = float(value)
-                except ValueError:
-                    value = plain_number(self.name, value) if self.unit == "-" else value
             return self.number(value)
         except InvalidArgumentError as error:
             if not self.words:

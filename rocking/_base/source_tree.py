@@ -13,8 +13,7 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 """Folder of the package and, in a checkout, of `workflow/` and `environment.lock`; in an installation of all others."""
 
-_BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
-"""Attributes of statements that hold statements."""
+_BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")  # attributes of statements that hold statements
 
 
 class SourceTree:

@@ -16,9 +16,7 @@ ALPHA_TOLERANCE = 1e-12
 
 
 def join_curves(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """The curves of all parts, one part after the other: ragged polylines with equal variables over `curve` or
-    `point`.
-    """
+    """The curves of all parts in turn: ragged polylines with equal variables over `curve` or `point`."""
     curves, points = ([part.drop_dims(other) for part in parts] for other in ("point", "curve"))
     return xr.merge([xr.concat(curves, dim="curve"), xr.concat(points, dim="point")])
 

@@ -110,12 +110,8 @@ class Panel:
     def share(self, end: float) -> float:
         """Where the next column shall lie, as a share of the step: near the predicted end of a region, or halfway.
 
-        First it lies before the end, where the prediction becomes better, then just beyond it and just before it.
-
-        Parameters
-        ----------
-        end : float
-            Distance in log omega within which the end shall be known [-].
+        First it lies before the end, where the prediction becomes better, then just beyond it and just before it. `end`
+        is the distance in log omega within which the end shall be known [-].
         """
         side = int(self.right.below.size > self.left.below.size)
         column, other = (self.right, self.left) if side else (self.left, self.right)

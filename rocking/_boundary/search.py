@@ -19,7 +19,6 @@ from rocking._model.checks import check_one_alpha
 from rocking._model.energy import outcome_margin
 from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
 from rocking._numba.cancellation import StopFlag
-from rocking._numba.compilation import contiguous_array
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.state import FULL_PRECISION
 
@@ -109,7 +108,7 @@ def without_layers(codes: Codes) -> Codes:
 
 def counted_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = outcome_code(found)
+    codes = outcome_codes(found.outcome, found.impacts)
     return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
@@ -159,7 +158,7 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
         # rounding must not lead out of the range
         omega = np.clip(np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
         groups = np.broadcast_arrays(slenderness, omega, eta)
-        cells = [contiguous_array(group).ravel() for group in groups]
+        cells = [np.array(group).ravel() for group in groups]  # contiguous and writable
         records, margin = solve(*cells)
         if work is not None:
             work.add(records["impacts"])
@@ -185,7 +184,7 @@ class Nodes:
     @classmethod
     def joined(cls, parts: Iterable[Nodes]) -> Nodes:
         """The nodes of one part after the other."""
-        columns = ((part.line, part.x, part.codes, part.margin) for part in parts)
+        columns = [(part.line, part.x, part.codes, part.margin) for part in parts]
         return cls(*map(np.concatenate, zip(*columns, strict=True)))
 
     @classmethod
@@ -251,7 +250,7 @@ def refine_brackets(
         a, fa = x, fx
         width = np.abs(b - a)
         left = width > least_width[active]
-        active, a, b, c, fa, fb, fc, width = (each[left] for each in (active, a, b, c, fa, fb, fc, width))
+        active, a, b, c, fa, fb, fc, width = [each[left] for each in (active, a, b, c, fa, fb, fc, width)]
         share = _next_share(a, b, c, fa, fb, fc)
         least = 0.5 * least_width[active] / width
         share = np.clip(share, least, 1.0 - least)

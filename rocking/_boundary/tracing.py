@@ -107,11 +107,7 @@ def overturning_boundary(
 
 
 def trace_curves(
-    solve: Solve,
-    eta: float,
-    frequency_ratio: tuple[float, float],
-    slenderness: tuple[float, float],
-    nodes: int = 401,
+    solve: Solve, eta: float, frequency_ratio: tuple[float, float], slenderness: tuple[float, float], nodes: int = 401
 ) -> xr.Dataset:
     """`overturning_boundary` by any solver, whose slenderness is 1 at uplift."""
     nodes = integer("nodes", nodes, 16, 4001)

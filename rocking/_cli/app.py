@@ -22,7 +22,6 @@ from rocking._cli.options import (
     Duration,
     FrequencyRatioMax,
     FrequencyRatioMin,
-    MassOptions,
     OutputOptions,
     ProblemOptions,
     SpectrumOptions,
@@ -90,7 +89,6 @@ def main(
 @with_options
 def response(
     block: ProblemOptions,
-    mass: MassOptions,
     output: OutputOptions,
     file: Annotated[
         str | None,
@@ -110,12 +108,9 @@ def response(
     with arguments.option_errors({"blocks": "FILE"}):
         if file is None:
             form = printing.output_format(output, block)
-            if body := arguments.read_body(block, mass):
-                printing.body_response(*body, form)
-            else:
-                printing.response(arguments.read_params(block), form)
+            printing.response(arguments.read_params(block), form)
             return
-        table = arguments.read_blocks(file, block, mass)
+        table = arguments.read_blocks(file, block)
         printing.responses(table, printing.output_format(output, block, table.read.units))
     bad = [f"{file}, {printing.printable(str(one))}" for one in table.read.bad_rows]
     if bad:
@@ -127,7 +122,6 @@ def response(
 @with_options
 def history(
     block: ProblemOptions,
-    mass: MassOptions,
     output: OutputOptions,
     duration: Duration = None,
     samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.", metavar="[NUMBER]")] = 400,
@@ -140,9 +134,6 @@ def history(
 
     with arguments.option_errors():
         form = printing.output_format(output, block)
-        if body := arguments.read_body(block, mass):
-            printing.body_history(*body, duration, samples, contact, form)
-            return
         params = arguments.read_params(block)
         printing.history(params, arguments.read_duration(duration, params), samples, contact, form)
 

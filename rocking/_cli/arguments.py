@@ -10,33 +10,24 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, plain_number, positive, si_value
-from rocking._base.quantities import FREQUENCY_RATIO
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, si_value
+from rocking._base.quantities import FREQUENCY_RATIO, PEAK_ACCELERATION, PERIOD, RESTITUTION
 from rocking._base.units import split_quantity, unit_name
-from rocking._cli.options import MassOptions, ProblemOptions, ShapeOptions, SizeOptions, SpectrumOptions, WindowOptions
+from rocking._cli.options import BODY, BodyOptions, ProblemOptions, ShapeOptions, SpectrumOptions, WindowOptions
+from rocking._dimensional.body_kinds import body
 from rocking._excitation.pulses import AbstractPulse, as_pulse, pulse_names
 from rocking._model.checks import check_window
 
 if TYPE_CHECKING:
-    from rocking._dimensional.block import Block
+    from rocking._dimensional.body import RespondingBody
     from rocking._dimensional.problem import Problem
-    from rocking._dimensional.rigid_body import RigidBody
     from rocking._dimensional.table import BlockTable
+    from rocking._model.body import AbstractBody
 
-SI_UNITS = {
-    "width": "m",
-    "height": "m",
-    "peak_acceleration": "m/s2",
-    "period": "s",
-    "period_min": "s",
-    "period_max": "s",
-}
+SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD)} | {"period_min": "s", "period_max": "s"}
 """Options with units."""
 
-MAX_ERRORS = 20
-"""Lines of a file that an error names at most."""
-
-_SIZES = ("width", "height")
+MAX_ERRORS = 20  # lines of a file that an error names at most
 
 
 @dataclass(frozen=True)
@@ -92,13 +83,7 @@ def _error_text(error: InvalidArgumentError) -> str:
 
 
 def read_pulse(text: str) -> AbstractPulse:
-    """The pulse of a name with its parameters, or else that in a file; a leading minus mirrors either.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the text is neither a name nor a file that holds a pulse.
-    """
+    """The pulse of a name with its parameters, or else that in a file; a leading minus mirrors either."""
     name = text.removeprefix("-")
     if name.partition("(")[0].strip() in pulse_names():
         return as_pulse(text)
@@ -115,122 +100,69 @@ def read_pulse(text: str) -> AbstractPulse:
 
 
 def read_params(options: ProblemOptions) -> Params:
-    """A block under a pulse.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If groups and units are mixed, an option is missing, or a value is not allowed.
-    """
+    """A body under a pulse."""
     if not _has_units(options):
         for name in ("slenderness", "frequency_ratio"):
             if getattr(options, name) is None:
                 raise InvalidArgumentError(name, None, "a number; or a block and a pulse with units instead")
-        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-        slenderness, ratio = options.slenderness or 0.0, options.frequency_ratio or 0.0
-        return Params(read_pulse(options.pulse), slenderness, ratio, read_eta(options.restitution), angle or None)
-    _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
-    block = read_block(options)
-    return _of_problem(options, block, _given(options, "peak_acceleration"), _positive(options, "period"))
+        return _in_groups(options, options.slenderness or 0.0, options.frequency_ratio or 0.0)
+    _refuse_groups(options, "slenderness", "frequency_ratio", "alpha")
+    body = read_body(options)
+    return _of_problem(options, body, _given(options, "peak_acceleration"), _given(options, "period"))
 
 
 def read_spectrum(
     options: SpectrumOptions, low: float, high: float, context: typer.Context
 ) -> tuple[Params, tuple[float, float]]:
-    """A block under pulses of one amplitude, at the lowest frequency ratio, and the window of frequency ratios.
-
-    Raises
-    ------
-    InvalidArgumentError
-        As `read_params`.
-    """
+    """A body under pulses of one amplitude, at the lowest frequency ratio, and the window of frequency ratios."""
     if not _has_units(options):
         if options.slenderness is None:
             raise InvalidArgumentError("slenderness", None, "a number; or a block and an amplitude with units instead")
         window = check_window(FREQUENCY_RATIO, low, high)
-        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-        eta = read_eta(options.restitution)
-        return Params(read_pulse(options.pulse), options.slenderness, window[0], eta, angle or None), window
-    _refuse_groups(options, ("slenderness", "alpha"))
-    block = read_block(options)
-    window = _window(options, block, low, high, context)
-    return _of_problem(options, block, _given(options, "peak_acceleration"), _period(block, window[0])), window
+        return _in_groups(options, options.slenderness, window[0]), window
+    _refuse_groups(options, "slenderness", "alpha")
+    body = read_body(options)
+    window = _window(options, body, low, high, context)
+    return _of_problem(options, body, _given(options, "peak_acceleration"), unit_period(body) / window[0]), window
 
 
 def read_boundary(
     options: WindowOptions, low: float, high: float, context: typer.Context
 ) -> tuple[Params, tuple[float, float]]:
-    """A block without amplitude, and the window of frequency ratios.
-
-    Raises
-    ------
-    InvalidArgumentError
-        As `read_params`.
-    """
+    """A body without amplitude, and the window of frequency ratios."""
     if not _has_units(options):
         window = check_window(FREQUENCY_RATIO, low, high)
-        angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-        return Params(read_pulse(options.pulse), 1.0, window[0], read_eta(options.restitution), angle or None), window
-    _refuse_groups(options, ("alpha",))
-    block = read_block(options)
-    window = _window(options, block, low, high, context)
-    return _of_problem(options, block, block.uplift_acceleration, _period(block, window[0])), window
+        return _in_groups(options, 1.0, window[0]), window
+    _refuse_groups(options, "alpha")
+    body = read_body(options)
+    window = _window(options, body, low, high, context)
+    return _of_problem(options, body, float(body.uplift_acceleration), unit_period(body) / window[0]), window
 
 
-def read_block(options: SizeOptions) -> Block:
-    """The block of the sizes.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If one is missing or not allowed.
-    """
-    from rocking._dimensional.block import Block
-
-    return Block(_positive(options, "width"), _positive(options, "height"))
-
-
-def read_body(options: ProblemOptions, mass: MassOptions) -> tuple[RigidBody, dict[str, Any]] | None:
-    """A body whose centre of mass is not that of the block, and its motion, as arguments; None for a block.
-
-    Raises
-    ------
-    InvalidArgumentError
-        As `read_params`.
-    """
-    from rocking._dimensional.block import Block
-    from rocking._dimensional.rigid_body import body_of_size
-
-    if mass == MassOptions():
-        return None
-    _refuse_groups(options, ("slenderness", "frequency_ratio", "alpha"))
-    body = body_of_size(_positive(options, "width"), _positive(options, "height"), mass.offset or 0.0, mass.mass_height)
-    if isinstance(body, Block):
-        return None
-    return body, {
-        "motion": read_pulse(options.pulse),
-        "peak_acceleration": _positive(options, "peak_acceleration"),
-        "period": _positive(options, "period"),
-        "restitution": _restitution(options),
-    }
+def read_body(options: BodyOptions) -> RespondingBody:
+    """The body of the options."""
+    given = {one.name: getattr(options, one.name) for one in BODY if getattr(options, one.name) is not None}
+    if options.body is not None:
+        for name, value in given.items():
+            raise InvalidArgumentError(name, value, "a parameter of --body, in its brackets")
+        return body(options.body)
+    if given.keys() < {"width", "height"}:
+        for name in ("width", "height"):
+            _given(options, name)
+    return body(given)
 
 
-def read_blocks(path: str, options: ProblemOptions, mass: MassOptions) -> BlockTable:
-    """The blocks of a table in a file; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, or blocks are also given by options.
-    """
+def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
+    """The blocks of a table in a file; `-` is standard input."""
     from rocking._dimensional.table import read_blocks as read_table
 
-    given = vars(options) | vars(mass)
-    for name in (*_SIZES, *vars(mass), "slenderness", "frequency_ratio", "alpha"):
-        if given[name] is not None:
-            raise InvalidArgumentError(name, given[name], "no blocks but those of the table")
+    for name in (*(one.name for one in BODY), "body", "slenderness", "frequency_ratio", "alpha"):
+        if getattr(options, name) is not None:
+            raise InvalidArgumentError(name, getattr(options, name), "no blocks but those of the table")
     strength = {
-        name: _positive(options, name) for name in ("peak_acceleration", "period") if getattr(options, name) is not None
+        one.name: one.number(_given(options, one.name))
+        for one in (PEAK_ACCELERATION, PERIOD)
+        if getattr(options, one.name) is not None
     }
     return read_table(path, read_pulse(options.pulse), _restitution(options), **strength)
 
@@ -248,43 +180,53 @@ def given_units(options: object, columns: Mapping[str, str] | None = None) -> di
 
 
 def read_duration(text: str | None, params: Params) -> float | None:
-    """Length of a history in tau = p t: a number, or a time with a unit for a block.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is neither.
-    """
+    """Length of a history in tau = p t: a number, or a time with a unit for a block; of other bodies in seconds."""
     if text is None:
         return None
     if params.problem is not None:
-        return float(si_value("duration", text, "s") * params.problem.block.frequency_parameter)
+        length = si_value("duration", text, "s")
+        return length * params.problem.block.frequency_parameter if params.problem.is_block else length
     try:
         return float(text)
     except ValueError:
         raise InvalidArgumentError("duration", text, "a number tau = p t; seconds for a block with units") from None
 
 
+def unit_period(body: AbstractBody) -> float:
+    """Period at the frequency ratio 1 to the right edge [s]."""
+    return float(2.0 * math.pi / body.right.frequency_parameter)
+
+
 def _has_units(options: ShapeOptions) -> bool:
-    return any(getattr(options, name, None) for name in SI_UNITS)
+    return any(getattr(options, name, None) for name in ("body", *SI_UNITS))
 
 
-def _refuse_groups(options: ShapeOptions, names: tuple[str, ...]) -> None:
+def _refuse_groups(options: ShapeOptions, *names: str) -> None:
     for name in names:
         if getattr(options, name) is not None:
             raise InvalidArgumentError(name, getattr(options, name), "either groups or a block and a pulse with units")
 
 
-def _of_problem(options: ShapeOptions, block: Block, peak_acceleration: float | str, period: float) -> Params:
+def _in_groups(options: ShapeOptions, slenderness: float, ratio: float) -> Params:
+    angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
+    eta = "momentum" if options.restitution is None else read_eta(options.restitution)
+    if isinstance(eta, str):
+        raise InvalidArgumentError("restitution", options.restitution, "a number, or momentum for a block with units")
+    return Params(read_pulse(options.pulse), slenderness, ratio, eta, angle or None)
+
+
+def _of_problem(options: ShapeOptions, body: AbstractBody, peak_acceleration: Any, period: Any) -> Params:
     from rocking._dimensional.problem import Problem
 
     pulse = read_pulse(options.pulse)
-    problem = Problem.of(block, pulse, peak_acceleration, period, _restitution(options))
+    problem = Problem.of(body, pulse, peak_acceleration, period, _restitution(options))
+    if not problem.is_block:
+        return Params(pulse, math.nan, math.nan, math.nan, None, problem)
     return Params(pulse, **problem.groups, problem=problem)
 
 
 def _window(
-    options: WindowOptions, block: Block, low: float, high: float, context: typer.Context
+    options: WindowOptions, body: AbstractBody, low: float, high: float, context: typer.Context
 ) -> tuple[float, float]:
     """Frequency ratios of the periods, by default as for groups."""
     for name, ratio, period in (("min", low, "period_max"), ("max", high, "period_min")):  # two options for one end
@@ -292,51 +234,30 @@ def _window(
         if getattr(options, period) is not None and source is not None and source.name == "COMMANDLINE":
             option = f"--{period.replace('_', '-')}"
             raise InvalidArgumentError(f"frequency_ratio_{name}", ratio, f"either this or {option}")
-    shortest = None if options.period_min is None else _positive(options, "period_min")
-    longest = None if options.period_max is None else _positive(options, "period_max")
-    if shortest is not None and longest is not None:
-        number("period_max", longest, shortest, math.inf, closed="neither", unit="s")
-    ends = low if longest is None else _ratio(block, longest), high if shortest is None else _ratio(block, shortest)
-    return check_window(FREQUENCY_RATIO, *ends)
+    ends = {
+        name: PERIOD.number(getattr(options, name), name)
+        for name in ("period_min", "period_max")
+        if getattr(options, name) is not None
+    }
+    if len(ends) == 2:
+        number("period_max", ends["period_max"], ends["period_min"], math.inf, closed="neither", unit="s")
+    unit = unit_period(body)
+    lowest = unit / ends["period_max"] if "period_max" in ends else low
+    return check_window(FREQUENCY_RATIO, lowest, unit / ends["period_min"] if "period_min" in ends else high)
 
 
-def _ratio(block: Block, period: float) -> float:
-    return float(2.0 * math.pi / (period * block.frequency_parameter))
-
-
-def _period(block: Block, ratio: float) -> float:
-    return float(2.0 * math.pi / (ratio * block.frequency_parameter))
-
-
-def _given(options: SizeOptions, name: str) -> str:
+def _given(options: BodyOptions, name: str) -> str:
     text: str | None = getattr(options, name)
     if text is None:
         raise InvalidArgumentError(name, None, "required with the other options that have units")
     return text
 
 
-def _positive(options: SizeOptions, name: str) -> float:
-    return positive(name, _given(options, name), SI_UNITS[name])
-
-
 def _restitution(options: ShapeOptions) -> float | str:
-    from rocking._base.quantities import RESTITUTION
-
-    given = options.restitution or "momentum"
-    return given if given.partition("(")[0] in RESTITUTION.words else read_eta(given)
+    return "momentum" if options.restitution is None else read_eta(options.restitution)
 
 
-def read_eta(text: str | None, allowed: str = "a number, or momentum for a block with units") -> float:
-    """The coefficient of restitution of a text.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is not a number, with what is `allowed`.
-    """
-    if text is None:
-        raise InvalidArgumentError("restitution", None, allowed)
-    try:
-        return plain_number("restitution", text)
-    except InvalidArgumentError:
-        raise InvalidArgumentError("restitution", text, allowed) from None
+def read_eta(text: str) -> float | str:
+    """The coefficient of restitution of a text, or what names a rule: momentum, kalliontzis(k=0.8)."""
+    found: float | str = text if text.partition("(")[0] in RESTITUTION.words else RESTITUTION.read(text)
+    return found

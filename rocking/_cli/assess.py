@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._cli.options import BaselineOrder, Component, OutputOptions, Skip, with_options
+from rocking._assessment.columns import INPUTS, SHAPES
+from rocking._base.quantities import PERIOD, PGA, PGV, TIME_STEP
+from rocking._cli.options import BaselineOrder, Component, OutputOptions, Skip, option, said, with_options
 
 if TYPE_CHECKING:
     from rocking._assessment.report import Project
@@ -31,194 +33,114 @@ HINTS = {
 }
 """Where a value was given, by the argument that an error names; others have the name of the option."""
 
-Objects = Annotated[
-    str | None,
-    typer.Argument(
-        help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells; columns name, "
-        "height, width or diameter, and optionally depth, mass_height, offset_width, offset_depth, mass, friction, "
-        "restitution, tolerance, pedestal, notes.",
-        metavar="OBJECTS",
-    ),
-]
-Columns = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--columns",
-        help='What a column of the table is: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
-        metavar="[HEADER=NAME]",
-    ),
-]
-Mesh = Annotated[
-    list[str] | None,
-    typer.Option(
-        help="Closed surface of an object (STL, PLY, OBJ, ...), z upwards, from all sides; may be repeated.",
-        metavar="[FILE]",
-    ),
-]
-MeshUnit = Annotated[str, typer.Option(help="Unit of the lengths of the meshes: m, cm, mm, in, ft.", metavar="[UNIT]")]
-Friction = Annotated[
-    float | None,
-    typer.Option(help="Coefficient of friction of the meshes; none by default: sliding is not judged.", metavar="[-]"),
-]
-Pga = Annotated[
-    str | None, typer.Option(help="Peak ground acceleration, such as 0.3g; records are scaled to it.", metavar="[m/s2]")
-]
-Pgv = Annotated[
-    str | None, typer.Option(help="Peak ground velocity, such as '0.3 m/s': each pulse has this one.", metavar="[m/s]")
-]
-PeriodMin = Annotated[
-    str | None, typer.Option(help="In place of PGV: shortest period of the pulses, such as 0.2s.", metavar="[s]")
-]
-PeriodMax = Annotated[str | None, typer.Option(help="Longest period of the pulses, such as 1s.", metavar="[s]")]
-Records = Annotated[
-    list[str] | None, typer.Option("--record", help="Accelerogram of the suite; may be repeated.", metavar="[FILE]")
-]
-Pair = Annotated[
-    list[str] | None,
-    typer.Option(help="Two horizontal components: one record at all angles; may be repeated.", metavar="[FILE,FILE]"),
-]
-Vertical = Annotated[
-    list[str] | None,
-    typer.Option(
-        help="Vertical component: one for each --record, then one for each --pair, or none.", metavar="[FILE]"
-    ),
-]
-Hazard = Annotated[
-    str | None, typer.Option(help="Hazard curve of PGA of the site, as of OpenQuake or the USGS.", metavar="[FILE]")
-]
-FloorPeriods = Annotated[
-    str | None,
-    typer.Option(
-        "--floor-periods",
-        "--floor",
-        help="Periods of a building of which the objects are on a floor: 0.5s,0.2s.",
-        metavar="[s,s,...]",
-    ),
-]
-FloorDamping = Annotated[
-    str, typer.Option(help="Damping ratios of these modes, one or one for each.", metavar="[-,-,...]")
-]
-FloorParticipation = Annotated[
-    str,
-    typer.Option(
-        help="Participation factors times mode shapes at the floor, one or one for each.", metavar="[-,-,...]"
-    ),
-]
-Samples = Annotated[
-    int,
-    typer.Option(
-        help="Variants of each object within its tolerance that are tried, such as 10000.", metavar="[NUMBER]"
-    ),
-]
-Seed = Annotated[int, typer.Option(help="Seed of these variants.", metavar="[NUMBER]")]
-Resolution = Annotated[
-    float,
-    typer.Option(
-        help="Largest relative distance of the factors on a record that are tried, 0.0001 to 0.1.", metavar="[-]"
-    ),
-]
-Unit = Annotated[
-    str | None, typer.Option(help="Unit of the records if their files state none, such as g.", metavar="[UNIT]")
-]
-TimeStep = Annotated[
-    str | None, typer.Option(help="Time step of the records if their files state none, such as 0.01s.", metavar="[s]")
-]
-Shapes = Annotated[
-    str | None,
-    typer.Option(
-        help="Pulses, such as sine,ricker; by default all by name that leave the ground at rest.",
-        metavar="[NAME,NAME,...]",
-    ),
-]
-MovingGround = Annotated[
-    bool,
-    typer.Option(
-        "--moving-ground", help="Also pulses that leave the ground moving: half sine, rectangular.", metavar=""
-    ),
-]
-Sensitivity = Annotated[
-    bool,
-    typer.Option(
-        "--sensitivity/--no-sensitivity",
-        help="Whether to find the factors of changed objects and the sizes that are not overturned.",
-        metavar="",
-    ),
-]
-Standards = Annotated[
-    str,
-    typer.Option(
-        help="Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
-        "circolare_nonlinear.",
-        metavar="[NAME,NAME,...]",
-    ),
-]
-Output = Annotated[
-    str | None,
-    typer.Option(
-        "--output", "-o", help="CSV or XLSX file to write: the table as given, and all columns.", metavar="[FILE]"
-    ),
-]
-Directions = Annotated[
-    bool,
-    typer.Option("--directions", help="Each object in both directions; by default in the worse one.", metavar=""),
-]
-Detail = Annotated[
-    Literal["usual", "all"],
-    typer.Option(
-        help="Objects with drawings in the report: those that rock, or are close to it; all.", metavar="[NAME]"
-    ),
-]
-
-Report = Annotated[
-    str | None, typer.Option(help="HTML file to write: verdicts, drawings, inputs; prints on A4.", metavar="[FILE]")
-]
-Author = Annotated[str, typer.Option(help="Author of the report.", metavar="[TEXT]")]
-Title = Annotated[str, typer.Option(help="Title of the report.", metavar="[TEXT]")]
-Place = Annotated[str, typer.Option("--site", help="Name of the site in the report.", metavar="[TEXT]")]
-Date = Annotated[
-    str | None, typer.Option(help="Date of the report, such as 2026-11-25; by default today.", metavar="[DATE]")
-]
+Texts = list[str] | None
 
 
 @with_options
 def assess(
     form: OutputOptions,
-    objects: Objects = None,
-    column: Columns = None,
-    mesh: Mesh = None,
-    mesh_unit: MeshUnit = "m",
-    friction: Friction = None,
-    pga: Pga = None,
-    pgv: Pgv = None,
-    period_min: PeriodMin = None,
-    period_max: PeriodMax = None,
-    record: Records = None,
-    pair: Pair = None,
-    vertical: Vertical = None,
-    unit: Unit = None,
-    time_step: TimeStep = None,
+    objects: Annotated[
+        str | None,
+        typer.Argument(
+            help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells; columns "
+            f"{', '.join(one.name for one in INPUTS)}, and those of other kinds of bodies: "
+            f"{', '.join(one.name for one in SHAPES)}.",
+            metavar="OBJECTS",
+        ),
+    ] = None,
+    column: Annotated[
+        Texts,
+        said(
+            'What a column of the table is: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
+            "HEADER=NAME",
+            "--columns",
+        ),
+    ] = None,
+    mesh: Annotated[
+        Texts,
+        said("Closed surface of an object (STL, PLY, OBJ, ...), z upwards, from all sides; may be repeated.", "FILE"),
+    ] = None,
+    mesh_unit: Annotated[str, said("Unit of the lengths of the meshes: m, cm, mm, in, ft.", "UNIT")] = "m",
+    friction: Annotated[
+        float | None, said("Coefficient of friction of the meshes; none by default: sliding is not judged.", "-")
+    ] = None,
+    pga: Annotated[str | None, option(PGA)] = None,
+    pgv: Annotated[str | None, option(PGV)] = None,
+    period_min: Annotated[str | None, option(PERIOD, text="In place of PGV: shortest period of the pulses")] = None,
+    period_max: Annotated[str | None, option(PERIOD, text="Longest period of the pulses")] = None,
+    record: Annotated[Texts, said("Accelerogram of the suite; may be repeated.", "FILE", "--record")] = None,
+    pair: Annotated[
+        Texts, said("Two horizontal components: one record at all angles; may be repeated.", "FILE,FILE")
+    ] = None,
+    vertical: Annotated[
+        Texts, said("Vertical component: one for each --record, then one for each --pair, or none.", "FILE")
+    ] = None,
+    unit: Annotated[str | None, said("Unit of the records if their files state none, such as g.", "UNIT")] = None,
+    time_step: Annotated[
+        str | None, option(TIME_STEP, text="Time step of the records if their files state none")
+    ] = None,
     component: Component = None,
     skip: Skip = None,
     baseline_order: BaselineOrder = None,
-    hazard: Hazard = None,
-    floor_periods: FloorPeriods = None,
-    floor_damping: FloorDamping = "0.05",
-    floor_participation: FloorParticipation = "1",
-    shapes: Shapes = None,
-    moving_ground: MovingGround = False,
-    sensitivity: Sensitivity = True,
-    standards: Standards = "",
-    samples: Samples = 0,
-    seed: Seed = 0,
-    resolution: Resolution = 0.005,
-    output: Output = None,
-    directions: Directions = False,
-    report: Report = None,
-    detail: Detail = "usual",
-    title: Title = "Assessment of free-standing objects",
-    author: Author = "",
-    place: Place = "",
-    date: Date = None,
+    hazard: Annotated[str | None, said("Hazard curve of PGA of the site, as of OpenQuake or the USGS.", "FILE")] = None,
+    floor_periods: Annotated[
+        str | None,
+        said(
+            "Periods of a building of which the objects are on a floor: 0.5s,0.2s.",
+            "s,s,...",
+            "--floor-periods",
+            "--floor",
+        ),
+    ] = None,
+    floor_damping: Annotated[str, said("Damping ratios of these modes, one or one for each.", "-,-,...")] = "0.05",
+    floor_participation: Annotated[
+        str, said("Participation factors times mode shapes at the floor, one or one for each.", "-,-,...")
+    ] = "1",
+    shapes: Annotated[
+        str | None,
+        said("Pulses, such as sine,ricker; by default all by name that leave the ground at rest.", "NAME,NAME,..."),
+    ] = None,
+    moving_ground: Annotated[
+        bool, said("Also pulses that leave the ground moving: half sine, rectangular.", "", "--moving-ground")
+    ] = False,
+    sensitivity: Annotated[
+        bool,
+        said(
+            "Whether to find the factors of changed objects and the sizes that are not overturned.",
+            "",
+            "--sensitivity/--no-sensitivity",
+        ),
+    ] = True,
+    standards: Annotated[
+        str,
+        said(
+            "Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
+            "circolare_nonlinear.",
+            "NAME,NAME,...",
+        ),
+    ] = "",
+    samples: Annotated[
+        int, said("Variants of each object within its tolerance that are tried, such as 10000.", "NUMBER")
+    ] = 0,
+    seed: Annotated[int, said("Seed of these variants.", "NUMBER")] = 0,
+    resolution: Annotated[
+        float, said("Largest relative distance of the factors on a record that are tried, 0.0001 to 0.1.", "-")
+    ] = 0.005,
+    output: Annotated[
+        str | None, said("CSV or XLSX file to write: the table as given, and all columns.", "FILE", "--output", "-o")
+    ] = None,
+    directions: Annotated[
+        bool, said("Each object in both directions; by default in the worse one.", "", "--directions")
+    ] = False,
+    report: Annotated[str | None, said("HTML file to write: verdicts, drawings, inputs; prints on A4.", "FILE")] = None,
+    detail: Annotated[
+        Literal["usual", "all"],
+        said("Objects with drawings in the report: those that rock, or are close to it; all.", "NAME"),
+    ] = "usual",
+    title: Annotated[str, said("Title of the report.", "TEXT")] = "Assessment of free-standing objects",
+    author: Annotated[str, said("Author of the report.", "TEXT")] = "",
+    place: Annotated[str, said("Name of the site in the report.", "TEXT", "--site")] = "",
+    date: Annotated[str | None, said("Date of the report, such as 2026-11-25; by default today.", "DATE")] = None,
 ) -> None:
     """Which objects the motions of a site overturn, from which factor on these motions, the worst first.
 
@@ -341,13 +263,7 @@ def _html(found: Assessment, project: Project, table: ObjectTable, detailed: boo
 
 
 def _write(option: str, path: str, content: str | bytes) -> None:
-    """Write a file.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If that is not possible.
-    """
+    """Write a file."""
     from rocking._base.errors import InvalidArgumentError
 
     try:

@@ -6,31 +6,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import FileOptions, with_options
+from rocking._cli.options import FileOptions, said, with_options
 from rocking._cli.record import File, file_errors
 
 if TYPE_CHECKING:
     from rocking._excitation.records.record import Record
 
-Periods = Annotated[
-    list[str], typer.Option("--period", help="Period of a mode, such as 0.5s; once for each mode.", metavar="[s]")
-]
-Damping = Annotated[list[float], typer.Option(help="Damping ratio, of all modes or once for each.", metavar="[-]")]
-Participation = Annotated[
-    list[float],
-    typer.Option(
-        help="Participation factor times mode shape at the floor, of all modes or once for each.", metavar="[-]"
-    ),
-]
-
 
 @with_options
 def floor(
     file: File,
-    period: Periods,
+    period: Annotated[list[str], said("Period of a mode, such as 0.5s; once for each mode.", "s", "--period")],
     stated: FileOptions,
-    damping: Damping = [0.05],  # noqa: B006  # typer reads it
-    participation: Participation = [1.0],  # noqa: B006
+    damping: Annotated[list[float], said("Damping ratio, of all modes or once for each.", "-")] = [0.05],  # noqa: B006
+    participation: Annotated[  # typer reads the lists
+        list[float], said("Participation factor times mode shape at the floor, of all modes or once for each.", "-")
+    ] = [1.0],  # noqa: B006
 ) -> None:
     """Print the motion of a floor of a linear structure as CSV, a record for the other commands.
 

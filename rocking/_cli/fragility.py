@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._cli.options import BaselineOrder, OutputOptions, with_options
+from rocking._cli.options import BaselineOrder, OutputOptions, said, with_options
 from rocking._cli.progress import progress
 from rocking._cli.record import file_errors
 
@@ -30,49 +30,32 @@ Configuration = Annotated[
     ),
 ]
 
-MAX_NESTING = 100
-"""Most brackets within brackets of a suite in YAML."""
+MAX_NESTING = 100  # most brackets within brackets of a suite in YAML
 
 MAX_LINE = 4096
 """Most characters of a line of TOML: the time of tomllib grows with the square of the parts of a key such as a.b.c."""
-
-TableOption = Annotated[
-    Literal["levels", "curves", "sensitivity"],
-    typer.Option(
-        "--table",
-        help="What --format csv holds: counts at each level; fitted curves; friction demand, and the effect of "
-        "restitution and sampling, if the configuration asks for them.",
-    ),
-]
-
-HazardOption = Annotated[
-    str | None,
-    typer.Option(
-        "--hazard",
-        help="Hazard curve of OpenQuake or the USGS, in place of that of the configuration.",
-        metavar="[FILE]",
-    ),
-]
-
-FileOption = Annotated[
-    str | None,
-    typer.Option(
-        "--output",
-        "-o",
-        help="File to write in place of printing: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.",
-        metavar="[FILE]",
-    ),
-]
 
 
 @with_options
 def fragility(
     configuration: Configuration,
     output: OutputOptions,
-    table: TableOption = "levels",
-    hazard: HazardOption = None,
+    table: Annotated[
+        Literal["levels", "curves", "sensitivity"],
+        typer.Option(
+            "--table",
+            help="What --format csv holds: counts at each level; fitted curves; friction demand, and the effect of "
+            "restitution and sampling, if the configuration asks for them.",
+        ),
+    ] = "levels",
+    hazard: Annotated[
+        str | None, said("Hazard curve of OpenQuake or the USGS, in place of that of the configuration.", "FILE")
+    ] = None,
     baseline_order: BaselineOrder = None,
-    file: FileOption = None,
+    file: Annotated[
+        str | None,
+        said("File to write in place of printing: .csv, .json, or .xml (NRML of OpenQuake).", "FILE", "--output", "-o"),
+    ] = None,
 ) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
 
@@ -208,13 +191,7 @@ def configuration_errors() -> Iterator[None]:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """The mapping in a file, by the ending of its name.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, holds no mapping, or is YAML without the package that reads it.
-    """
+    """The mapping in a file, by the ending of its name."""
     from rocking._base.errors import InvalidArgumentError
 
     try:

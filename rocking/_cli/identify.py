@@ -6,26 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import OutputOptions, with_options
+from rocking._base.quantities import TIME_STEP
+from rocking._cli.options import OutputOptions, option, said, with_options
 
 if TYPE_CHECKING:
     import xarray as xr
 
-MAX_SAMPLES = 1_000_000
-"""Most rows of a file that are read."""
-
-Degrees = Annotated[
-    bool,
-    typer.Option("--degrees", help="The rotations are in degrees, where the header states no unit.", metavar=""),
-]
-Edges = Annotated[
-    int, typer.Option(help="1 for a body with equal edges, 2 for one with a right and a left edge.", metavar="[1|2]")
-]
-TimeStep = Annotated[
-    str | None,
-    typer.Option(help="Time between the rows where the file counts them, such as 0.02s or 16.7ms.", metavar="[s]"),
-]
-Confidence = Annotated[float, typer.Option(help="Confidence of the intervals, (0, 1).", metavar="[-]")]
+MAX_SAMPLES = 1_000_000  # most rows of a file that are read
 
 
 @with_options
@@ -38,10 +25,12 @@ def identify(
         ),
     ],
     output: OutputOptions,
-    degrees: Degrees = False,
-    time_step: TimeStep = None,
-    edges: Edges = 1,
-    confidence: Confidence = 0.95,
+    degrees: Annotated[
+        bool, said("The rotations are in degrees, where the header states no unit.", "", "--degrees")
+    ] = False,
+    time_step: Annotated[str | None, option(TIME_STEP, text="Time between the rows where the file counts them")] = None,
+    edges: Annotated[int, said("1 for a body with equal edges, 2 for one with a right and a left edge.", "1|2")] = 1,
+    confidence: Annotated[float, said("Confidence of the intervals, (0, 1).", "-")] = 0.95,
 ) -> None:
     """Restitution, slenderness angle and frequency parameter from a trace of free rocking, with intervals."""
     from rocking._cli import printing
@@ -80,9 +69,9 @@ def _found(path: str, degrees: bool, time_step: str | None, edges: int, confiden
     from rocking._evidence.free_rocking import identify_free_rocking
     from rocking._excitation.records.readers.columns import read_rotations
     from rocking._excitation.records.readers.lines import TextFile
-    from rocking._excitation.records.record import TIME_STEP
+    from rocking._excitation.records.record import TIME_STEP as ENDS
 
-    step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
+    step = None if time_step is None else number("time_step", time_step, *ENDS, unit="s")
     try:
         file = TextFile(Path(path).name, Path(path).read_bytes())
         time, rotation = read_rotations(file, MAX_SAMPLES, degrees or None, step)

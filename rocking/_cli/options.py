@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import math
 import re
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, fields
@@ -15,15 +16,48 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
-from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
+from rocking._base.quantities import (
+    ALPHA,
+    DIAMETER,
+    FREQUENCY_RATIO,
+    GYRATION,
+    HEIGHT,
+    LEFT,
+    MASS_HEIGHT,
+    OFFSET,
+    PEAK_ACCELERATION,
+    PERIOD,
+    RESTITUTION,
+    RIGHT,
+    SCALE,
+    SLENDERNESS,
+    TIME_STEP,
+    WIDTH,
+)
+from rocking._base.quantity import Quantity
+from rocking._dimensional.body_kinds import BODIES, signatures
 
 _GROUPS = "In groups"
 _UNITS = "With units"
 
 
-def _in_groups(text: str, unit: str = "-") -> Any:
+def option(quantity: Quantity, *names: str, text: str = "", panel: str | None = None, **more: Any) -> Any:
+    """The option of a quantity: its sentence, or a text, range and example in its help, its unit as metavar."""
+    said = text or quantity.meaning
+    symbol = "" if text or not quantity.symbol else f", {quantity.symbol}"
+    ends = (quantity.lower > 0.0 or math.isfinite(quantity.upper)) and quantity.unit == "-"
+    allowed = f", {quantity.interval}" if ends and not text else ""
+    words = "".join(f", or {word}" for word in quantity.words)
+    example = quantity.example if " " not in quantity.example else repr(quantity.example)
+    such = f", such as {example}" if example else ""
     # a word in brackets would be taken for markup
-    return typer.Option(help=re.sub(r"\[(?=[a-z])", r"\\[", text), rich_help_panel=_GROUPS, metavar=f"[{unit}]")
+    described = re.sub(r"\[(?=[a-z])", r"\\[", f"{said[0].upper()}{said[1:]}{symbol}{allowed}{words}{such}.")
+    return typer.Option(*names, help=described, rich_help_panel=panel, metavar=f"[{quantity.unit or 'TEXT'}]", **more)
+
+
+def said(text: str, metavar: str, *names: str, **more: Any) -> Any:
+    """An option of what is no quantity: a file, a name, a flag (without metavar)."""
+    return typer.Option(*names, help=text, metavar=metavar and f"[{metavar}]", **more)
 
 
 def _pulses(incomplete: str) -> list[str]:
@@ -33,33 +67,41 @@ def _pulses(incomplete: str) -> list[str]:
     return [name for name in pulse_names() if name.startswith(incomplete)]
 
 
-def _with_units(text: str, unit: str) -> Any:
-    return typer.Option(help=text, rich_help_panel=_UNITS, metavar=f"[{unit}]")
+def _bodies(incomplete: str) -> list[str]:
+    """Names of the kinds of bodies, for the completion of the shell."""
+    return [name for name in BODIES if name.startswith(incomplete)]
+
+
+BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT)
+"""Parameters of bodies that are options of their own."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SizeOptions:
-    """The size of a block."""
+class BodyOptions:
+    """A body: its parameters, or a text."""
 
-    width: Annotated[str | None, _with_units("Width 2b, such as 0.4m.", "m")] = None
-    height: Annotated[str | None, _with_units("Height 2h, such as '160 cm'.", "m")] = None
-
-
-@dataclass(frozen=True)
-class MassOptions:
-    """The place of the centre of mass, where it is not that of the block."""
-
-    offset: Annotated[
+    width: Annotated[str | None, option(WIDTH, panel=_UNITS)] = None
+    height: Annotated[str | None, option(HEIGHT, panel=_UNITS)] = None
+    offset: Annotated[str | None, option(OFFSET, panel=_UNITS)] = None
+    mass_height: Annotated[str | None, option(MASS_HEIGHT, panel=_UNITS)] = None
+    gyration: Annotated[str | None, option(GYRATION, panel=_UNITS)] = None
+    diameter: Annotated[str | None, option(DIAMETER, panel=_UNITS)] = None
+    left: Annotated[str | None, option(LEFT, panel=_UNITS)] = None
+    right: Annotated[str | None, option(RIGHT, panel=_UNITS)] = None
+    body: Annotated[
         str | None,
-        _with_units("Distance of the centre of mass from the middle of the width, positive to the right.", "m"),
-    ] = None
-    mass_height: Annotated[
-        str | None, _with_units("Height of the centre of mass; half the height by default.", "m")
+        typer.Option(
+            help=f"A body of any kind in place of these, such as 'hollow(width=40cm, height=1.6m, wall=2cm)': "
+            f"{signatures().replace('[', '(').replace(']', ')')}.",
+            rich_help_panel=_UNITS,
+            metavar="[KIND]",
+            autocompletion=_bodies,
+        ),
     ] = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShapeOptions(SizeOptions):
+class ShapeOptions(BodyOptions):
     """A pulse without amplitude and a block: its slenderness angle, or its size."""
 
     pulse: Annotated[
@@ -71,66 +113,47 @@ class ShapeOptions(SizeOptions):
             autocompletion=_pulses,
         ),
     ]
-    restitution: Annotated[
-        str | None,
-        typer.Option(
-            help=f"{RESTITUTION.help}, {RESTITUTION.interval}; momentum for a block with units (its default): (2.4), 0 "
-            "where negative.",
-            metavar="[-]",
-        ),
-    ] = None
-    alpha: Annotated[str | None, _in_groups(f"{ALPHA.help}, such as '20 deg'.", "rad")] = None
+    restitution: Annotated[str | None, option(RESTITUTION)] = None
+    alpha: Annotated[str | None, option(ALPHA, panel=_GROUPS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class ProblemOptions(ShapeOptions):
     """A block under a pulse: in groups, or with units."""
 
-    slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
-    frequency_ratio: Annotated[float | None, _in_groups(f"{FREQUENCY_RATIO.help}.")] = None
-    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.", "m/s2")] = None
-    period: Annotated[
-        str | None,
-        _with_units("T_p = 2 pi/omega_g, such as 0.5s; a half sine or rectangular pulse lasts half of it.", "s"),
-    ] = None
+    slenderness: Annotated[float | None, option(SLENDERNESS, panel=_GROUPS)] = None
+    frequency_ratio: Annotated[float | None, option(FREQUENCY_RATIO, panel=_GROUPS)] = None
+    peak_acceleration: Annotated[str | None, option(PEAK_ACCELERATION, panel=_UNITS)] = None
+    period: Annotated[str | None, option(PERIOD, panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class WindowOptions(ShapeOptions):
     """A block under pulses of all periods of a window."""
 
-    period_min: Annotated[str | None, _with_units("Shortest T_p, such as 0.1s.", "s")] = None
-    period_max: Annotated[str | None, _with_units("Longest T_p, such as 2s.", "s")] = None
+    period_min: Annotated[str | None, option(PERIOD, text="Shortest T_p", panel=_UNITS)] = None
+    period_max: Annotated[str | None, option(PERIOD, text="Longest T_p", panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpectrumOptions(WindowOptions):
     """The same with an amplitude."""
 
-    slenderness: Annotated[float | None, _in_groups(f"{SLENDERNESS.help}.")] = None
-    peak_acceleration: Annotated[str | None, _with_units("a_g, such as '4 m/s^2', 0.4g or '400 gal'.", "m/s2")] = None
+    slenderness: Annotated[float | None, option(SLENDERNESS, panel=_GROUPS)] = None
+    peak_acceleration: Annotated[str | None, option(PEAK_ACCELERATION, panel=_UNITS)] = None
 
 
 Component = Annotated[
     str | None,
-    typer.Option(
-        help="Column or trace of a file with several; rows for one series along the rows of several columns.",
-        metavar="[NAME]",
-    ),
+    said("Column or trace of a file with several; rows for one series along the rows of several columns.", "NAME"),
 ]
 Skip = Annotated[
     int | None,
-    typer.Option(
-        help="Rows of numbers above the samples of a file of columns, such as a count or a factor.", metavar="[NUMBER]"
-    ),
+    said("Rows of numbers above the samples of a file of columns, such as a count or a factor.", "NUMBER"),
 ]
 BaselineOrder = Annotated[
     int | None,
-    typer.Option(
-        help="Remove a baseline of this degree, 0 to 6, from the acceleration; none by default, but for the offset of "
-        "K-NET counts.",
-        metavar="[NUMBER]",
-    ),
+    said("Remove a baseline of this degree, 0 to 6; none by default, but for the offset of K-NET counts.", "NUMBER"),
 ]
 
 
@@ -139,32 +162,22 @@ class FileOptions:
     """What the file of a record does not state: arguments of `read_record`."""
 
     unit: Annotated[
-        str | None,
-        typer.Option(help="Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", metavar="[UNIT]"),
+        str | None, said("Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", "UNIT")
     ] = None
-    time_step: Annotated[
-        str | None, typer.Option(help="Time step if the file states none, such as 0.01s.", metavar="[s]")
-    ] = None
+    time_step: Annotated[str | None, option(TIME_STEP, text="Time step if the file states none")] = None
     component: Component = None
     vertical: Annotated[
-        str | None,
-        typer.Option(
-            help="File of the vertical component, upwards, or its column or trace in the file.", metavar="[FILE|NAME]"
-        ),
+        str | None, said("File of the vertical component, upwards, or its column or trace in the file.", "FILE|NAME")
     ] = None
     skip: Skip = None
 
 
 @dataclass(frozen=True, kw_only=True)
-class RecordOptions(FileOptions, SizeOptions):
+class RecordOptions(FileOptions, BodyOptions):
     """A block, and a record."""
 
-    restitution: Annotated[
-        str, typer.Option(help=f"{RESTITUTION.help}, {RESTITUTION.interval}, or momentum: (2.4).", metavar="[-]")
-    ] = "momentum"
-    scale: Annotated[
-        float, typer.Option(help="Factor of the record, of its vertical component too.", metavar="[-]")
-    ] = 1.0
+    restitution: Annotated[str, option(RESTITUTION)] = "momentum"
+    scale: Annotated[float, option(SCALE)] = 1.0
     baseline_order: BaselineOrder = None
 
 
@@ -176,9 +189,7 @@ class OutputOptions:
         Literal["table", "csv", "json"],
         typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
     ] = "table"
-    all: Annotated[
-        bool, typer.Option("--all", help="All values in the table; CSV and JSON always have them.", metavar="")
-    ] = False
+    all: Annotated[bool, said("All values in the table; CSV and JSON always have them.", "", "--all")] = False
 
 
 @dataclass(frozen=True)
@@ -186,21 +197,16 @@ class PictureOptions:
     """Where a picture goes."""
 
     output: Annotated[
-        str | None,
-        typer.Option(
-            "--output", "-o", help="File to write, .png or .svg; by default a window opens.", metavar="[FILE]"
-        ),
+        str | None, said("File to write, .png or .svg; by default a window opens.", "FILE", "--output", "-o")
     ] = None
 
 
-GROUPS = (SizeOptions, FileOptions, MassOptions, OutputOptions, PictureOptions)
-"""Types of arguments whose fields are options."""
+GROUPS = (BodyOptions, FileOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
 
-FrequencyRatioMin = Annotated[float, typer.Option(help="Lower end of omega_g/p.", metavar="[-]")]
-FrequencyRatioMax = Annotated[float, typer.Option(help="Upper end of omega_g/p.", metavar="[-]")]
+FrequencyRatioMin = Annotated[float, said("Lower end of omega_g/p.", "-")]
+FrequencyRatioMax = Annotated[float, said("Upper end of omega_g/p.", "-")]
 Duration = Annotated[
-    str | None,
-    typer.Option(help="Length: a number tau = p t, or a time such as 3s for a block with units.", metavar="[-|s]"),
+    str | None, said("Length: a number tau = p t, or a time such as 3s for a block with units.", "-|s")
 ]
 
 

@@ -32,17 +32,10 @@ if TYPE_CHECKING:
 
 plot = typer.Typer(no_args_is_help=True, help="Draw a picture: png, svg, or a window.")
 
-SIZE = (5.2, 3.4)
-"""Width and height of a picture [in]."""
-
-POINTS = 600
-"""Points of a spectrum, columns of a map."""
-
-ROWS = 300
-"""Rows of a map."""
-
-AMPLITUDE = (1.0, 12.0)
-"""Amplitudes a of a map [-]."""
+SIZE = (5.2, 3.4)  # width and height of a picture [in]
+POINTS = 600  # points of a spectrum, columns of a map
+ROWS = 300  # rows of a map
+AMPLITUDE = (1.0, 12.0)  # amplitudes a of a map [-]
 
 
 @plot.command()
@@ -71,11 +64,16 @@ def history(
         length = arguments.read_duration(duration, params)
 
         def panels(pictures: Any, figure: Any) -> None:
+            from rocking._dimensional.curves import history as history_of
             from rocking._dimensional.curves import in_si_units
             from rocking._history.time_history import time_history
 
-            found = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
-            data = found if params.problem is None else in_si_units(found, params.problem)
+            problem = params.problem
+            if problem is not None and not problem.is_block:
+                data = history_of(problem, duration=length)
+            else:
+                data = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
+                data = data if problem is None else in_si_units(data, problem)
             _draw_history(pictures, figure, data)
 
         draw(panels)
@@ -140,11 +138,15 @@ def boundary(
     frequency_ratio_max: FrequencyRatioMax = 15.0,
 ) -> None:
     """Boundaries of overturning: amplitude against the frequency ratio, or against the period."""
-    from rocking._cli import arguments
+    from rocking._cli import arguments, printing
 
     with _picture(picture) as draw:
         params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
-        draw(lambda pictures, figure: pictures.boundary(_boundary(params, window), figure.add_subplot()).legend())
+        draw(
+            lambda pictures, figure: pictures.boundary(
+                printing.boundary_curves(params, window), figure.add_subplot()
+            ).legend()
+        )
 
 
 @plot.command("map")
@@ -277,25 +279,15 @@ def _found(params: Params) -> Any:
 def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
     import numpy as np
 
-    from rocking._dimensional.curves import block_spectrum
-    from rocking._dimensional.problem import period_of
+    from rocking._cli.arguments import unit_period
+    from rocking._dimensional.curves import spectrum as spectrum_of
     from rocking._solver.peak_response import peak_response
 
     if params.problem is None:
         groups = params.groups | {"frequency_ratio": np.linspace(*window, POINTS)}
         return peak_response(params.pulse, **groups).to_xarray()  # type: ignore[arg-type]
-    unit = period_of(params.problem.block, 1.0)
-    return block_spectrum(params.problem, np.geomspace(unit / window[1], unit / window[0], POINTS))
-
-
-def _boundary(params: Params, window: tuple[float, float]) -> xr.Dataset:
-    from rocking._boundary.tracing import overturning_boundary
-    from rocking._dimensional.curves import add_si_axes
-
-    curves = overturning_boundary(
-        params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
-    )
-    return curves if params.problem is None else add_si_axes(curves, params.problem.block)
+    unit = unit_period(params.problem.body)
+    return spectrum_of(params.problem, np.geomspace(unit / window[1], unit / window[0], POINTS))
 
 
 def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:
@@ -304,6 +296,7 @@ def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:
     from rocking._dimensional.problem import period_of
     from rocking._solver.peak_response import peak_response
 
+    block = None if params.problem is None else params.problem.block
     amplitude = np.geomspace(*AMPLITUDE, ROWS)
     omega = np.linspace(*window, POINTS) if params.problem is None else np.geomspace(*window, POINTS)[::-1]
     found = peak_response(
@@ -313,9 +306,8 @@ def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:
         restitution=params.restitution,
         alpha=params.alpha,
     ).to_xarray()
-    if params.problem is None:
+    if block is None:
         return found
-    block = params.problem.block
     return found.assign_coords(
         peak_acceleration=("slenderness", block.uplift_acceleration * amplitude, {"units": "m s-2"}),
         period=("frequency_ratio", period_of(block, 1.0) / omega, {"units": "s"}),

@@ -12,7 +12,7 @@ import typer
 
 from rocking._base.errors import finite, in_range
 from rocking._base.units import UNITS
-from rocking._cli.arguments import Params, given_units
+from rocking._cli.arguments import Params, given_units, unit_period
 from rocking._cli.options import OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
@@ -25,8 +25,8 @@ from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
 if TYPE_CHECKING:
     import xarray as xr
 
+    from rocking._dimensional.problem import Problem
     from rocking._dimensional.response import BodyResponse
-    from rocking._dimensional.rigid_body import RigidBody
     from rocking._dimensional.table import BlockTable
 
 
@@ -78,13 +78,6 @@ def response(params: Params, form: Form) -> None:
     print_answer(result, [sentence], form)
 
 
-def body_response(body: RigidBody, motion: Mapping[str, Any], form: Form) -> None:
-    """Print outcome, peaks about both edges and changes of the outcome of a body under a pulse."""
-    with progress("solving the body"):
-        result = body_columns(body.response(**motion))
-    print_answer(result, [result["meaning"]], form)
-
-
 def body_columns(found: BodyResponse) -> dict[str, Any]:
     """What is printed of one body, by name; of one with two edges also its size."""
     strengths = (
@@ -93,14 +86,10 @@ def body_columns(found: BodyResponse) -> dict[str, Any]:
     about = found.summary() | strengths | {"thresholds": found.changes}
     if found.problem.is_block:
         return about
-    given = {name: float(value) for name, value in found.body.parameters.items()}
-    return about | {
-        "width": given["left"] + given["right"],
-        "height": given["top_height"],
-        "mass_height": given["height"],
-        "left": given["left"],
-        "right": given["right"],
-    }
+    body: Any = found.body
+    left, right = (float(body.parameters[name]) for name in ("left", "right"))
+    heights = {"height": float(body.top_height), "mass_height": float(body.height)}
+    return about | {"width": left + right, **heights, "left": left, "right": right}
 
 
 def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -> None:
@@ -234,6 +223,9 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     from rocking._history.contact import ATTRIBUTES, COLUMNS
     from rocking._history.time_history import time_history
 
+    if params.problem is not None and not params.problem.is_block:
+        _body_history(params.problem, duration, samples, contact, form)
+        return
     with progress("solving the block"):
         motion = time_history(
             params.pulse,
@@ -265,19 +257,13 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     _print_curve(about, columns, shown, form)
 
 
-def body_history(
-    body: RigidBody,
-    given: Mapping[str, Any],
-    duration: str | None,
-    samples: int,
-    contact: bool,
-    form: Form,
-) -> None:
+def _body_history(problem: Problem, duration: float | None, samples: int, contact: bool, form: Form) -> None:
     """Print the motion of a body under a pulse, as `history`; with the edge in contact: 1 right, -1 left, 0 both."""
+    from rocking._dimensional.curves import history as history_of
     from rocking._history.contact import COLUMNS
 
     with progress("solving the body"):
-        motion = body.history(**given, duration=duration, samples=samples, contact=contact)
+        motion = history_of(problem, duration=duration, samples=samples, contact=contact)
     columns = _si_columns(motion) | {"edge": motion["edge"].values.tolist()}
     columns |= {name: [finite(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
     names = ("outcome", "impacts", "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio", "warnings")
@@ -310,40 +296,37 @@ def _print_curve(about: Mapping[str, Any], columns: Mapping[str, Any], shown: Ma
 
 
 def spectrum(params: Params, window: tuple[float, float], points: int, form: Form) -> None:
-    """Print the peak against the frequency ratio, for a block with units against the period."""
-    in_range("points", points, 2, 1_000_000)
-    frequency_ratio = np.geomspace(*window, points)
-    with progress(f"solving {points} blocks"):
-        found = _solve(params, frequency_ratio)
-    columns = {"frequency_ratio": frequency_ratio.tolist()} | _columns(found)
-    about = {name: value for name, value in _groups(params).items() if name != "frequency_ratio"}
-    shown = {name: columns[name] for name in ("frequency_ratio", "peak_rotation", "outcome", "impacts")}
-    if params.problem is not None:
-        from rocking._dimensional.curves import block_spectrum
-        from rocking._dimensional.problem import period_of
+    """Print the peak against the frequency ratio, for a body with units against the period."""
+    from rocking._dimensional.curves import spectrum as spectrum_of
 
-        problem = params.problem
-        period = period_of(problem.block, 1.0) / frequency_ratio
-        curve = block_spectrum(problem, period)
-        columns |= {
-            "period": period.tolist(),
-            "peak_rotation_deg": [finite(x) for x in np.degrees(curve["rotation"].values).tolist()],
-            "top_displacement": [finite(x) for x in curve["top_displacement"].values.tolist()],
-        }
-        about |= {"peak_acceleration": problem.peak_acceleration}
-        names = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
-        shown = {name: columns[name][::-1] for name in names}  # from the shortest period
-    _print_curve(about, columns, shown, form)
+    in_range("points", points, 2, 1_000_000)
+    frequency_ratio, problem = np.geomspace(*window, points), params.problem
+    columns: dict[str, Any] = {"frequency_ratio": frequency_ratio.tolist()}
+    about = {name: value for name, value in _groups(params).items() if name != "frequency_ratio"}
+    shown: tuple[str, ...] = ("frequency_ratio", "peak_rotation", "outcome", "impacts")
+    with progress(f"solving {points} blocks"):
+        if problem is None or problem.is_block:
+            columns |= _columns(_solve(params, frequency_ratio))
+        if problem is not None:
+            period = unit_period(problem.body) / frequency_ratio
+            curve = spectrum_of(problem, period)
+            columns["period"], moved = period.tolist(), "top_displacement" if problem.is_block else "displacement"
+            if not problem.is_block:
+                columns |= _columns(curve)
+            columns |= {
+                "peak_rotation_deg": [finite(x) for x in np.degrees(curve["rotation"].values).tolist()],
+                "top_displacement": [finite(x) for x in curve[moved].values.tolist()],
+            }
+            about |= {"peak_acceleration": float(problem.peak_acceleration)}
+            shown = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
+    step = 1 if problem is None else -1  # from the shortest period
+    _print_curve(about, columns, {name: columns[name][::step] for name in shown}, form)
 
 
 def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
-    """Print the overturning boundary curves; for a block with units also peak accelerations and periods."""
-    from rocking._boundary.tracing import overturning_boundary
-
+    """Print the overturning boundary curves; for a body with units also peak accelerations and periods."""
     with progress("tracing the boundaries"):
-        curves = overturning_boundary(
-            params.pulse, restitution=params.restitution, alpha=params.alpha, frequency_ratio=window
-        )
+        curves = boundary_curves(params, window)
     sizes = curves["row_size"].values
     outcomes = [Outcome(int(code)).name for code in curves["outcome"].values]
     columns = {
@@ -354,14 +337,23 @@ def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
         "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
     }
     if params.problem is not None:
-        from rocking._dimensional.curves import add_si_axes
-
-        curves = add_si_axes(curves, params.problem.block)
         columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
         if form.kind == "table" and not form.all:
             columns = {name: columns[name] for name in ("curve", "period", "peak_acceleration", "outcome", "impacts")}
-    about = {"pulse": params.pulse.name, "restitution": params.restitution, "alpha": params.alpha}
+    about = {name: value for name, value in _groups(params).items() if name in ("pulse", "restitution", "alpha")}
     print_columns((about if form.kind == "json" else {}) | columns, form)
+
+
+def boundary_curves(params: Params, window: tuple[float, float]) -> xr.Dataset:
+    """The boundary curves over a window of frequency ratios; of a body with units with its axes."""
+    if params.problem is None:
+        from rocking._boundary.tracing import overturning_boundary
+
+        eta = params.restitution
+        return overturning_boundary(params.pulse, restitution=eta, alpha=params.alpha, frequency_ratio=window)
+    from rocking._dimensional.curves import boundary as boundary_of
+
+    return boundary_of(params.problem, window=window)
 
 
 def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
@@ -372,13 +364,16 @@ def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
 
 
 def _groups(params: Params) -> dict[str, Any]:
-    return {"pulse": params.pulse.name, **params.groups}
+    known = params.problem is None or params.problem.is_block
+    return {"pulse": params.pulse.name, **(params.groups if known else {})}
 
 
-def _columns(found: BoundedResponse) -> dict[str, list[Any]]:
+def _columns(found: BoundedResponse | xr.Dataset) -> dict[str, list[Any]]:
     columns: dict[str, list[Any]] = {}
     for field in COLUMN_FIELDS:
-        values = getattr(found, field.name).ravel().tolist()
+        if not hasattr(found, field.name):  # of bodies whose edges differ
+            continue
+        values = np.asarray(getattr(found, field.name)).ravel().tolist()
         if field is OUTCOME:
             values = [Outcome(code).name for code in values]
         elif field.dtype == "f8":
@@ -412,7 +407,8 @@ def print_csv(columns: Mapping[str, Sequence[Any]], form: Form, units: Mapping[s
 
 def print_text(result: Mapping[str, Any], form: Form) -> None:
     """Print a name with its unit and a value a line."""
-    labels = {name: _label(name, form.labels()) for name in result}
+    known = form.labels()
+    labels = {name: _label(name, known) for name in result}
     width = max(map(len, labels.values()))
     for name, value in result.items():
         if value is not None:
@@ -447,4 +443,4 @@ def _text(value: Any) -> str:
 
 def printable(text: str) -> str:
     """A text without control characters, which a terminal would obey."""
-    return "".join(one if one.isprintable() else "\ufffd" for one in text)
+    return text if text.isprintable() else "".join(one if one.isprintable() else "\ufffd" for one in text)

@@ -8,30 +8,14 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-DELAY = 1.0
-"""Time after which the indicator appears [s]; commands that are faster do not load what it needs."""
-
-REFRESH = 0.2
-"""Time between updates of the indicator [s]."""
-
-LONG = 4.0
-"""Time after which the indicator says that first calls are longer [s]."""
+DELAY = 1.0  # time after which the indicator appears [s]; commands that are faster do not load what it needs
+REFRESH = 0.2  # time between updates of the indicator [s]
+LONG = 4.0  # time after which the indicator says that first calls are longer [s]
 
 
 @contextmanager
 def progress(text: str) -> Iterator[Callable[[float], None]]:
-    """Show `text` and the elapsed time on a terminal until the block ends; nothing if stderr is piped.
-
-    Parameters
-    ----------
-    text : str
-        What is done.
-
-    Yields
-    ------
-    callable
-        To be called with the share of the work that is done [-], where that is known.
-    """
+    """Show `text` and the elapsed time on a terminal until the block ends; nothing if stderr is piped."""
     ended = threading.Event()
     shares: deque[float] = deque(maxlen=1)
     shown = threading.Thread(target=_show, args=(text, shares, ended), daemon=True)

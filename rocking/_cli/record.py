@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import MassOptions, OutputOptions, RecordOptions, with_options
+from rocking._cli.options import OutputOptions, RecordOptions, said, with_options
 
 if TYPE_CHECKING:
-    from rocking._dimensional.block import Block
+    from rocking._dimensional.body import RespondingBody
     from rocking._excitation.records.record import Record
+    from rocking._model.block import AbstractBlock
 
 File = Annotated[
     str,
@@ -22,37 +23,29 @@ File = Annotated[
         metavar="FILE",
     ),
 ]
-Thresholds = Annotated[
-    bool,
-    typer.Option(
-        "--thresholds/--no-thresholds", help="Whether to find all scales at which the outcome changes.", metavar=""
-    ),
-]
-Fit = Annotated[bool, typer.Option("--fit", help="Fit a pulse, and compare how both overturn the block.", metavar="")]
 
 
 @with_options
 def record(
     file: File,
     block: RecordOptions,
-    mass: MassOptions,
     output: OutputOptions,
-    thresholds: Thresholds = True,
-    fit: Fit = False,
+    thresholds: Annotated[
+        bool, said("Whether to find all scales at which the outcome changes.", "", "--thresholds/--no-thresholds")
+    ] = True,
+    fit: Annotated[bool, said("Fit a pulse, and compare how both overturn the block.", "", "--fit")] = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
     from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
-    from rocking._dimensional.block import Block
-    from rocking._dimensional.rigid_body import body_of_size
+    from rocking._model.block import AbstractBlock
 
     with option_errors(), file_errors():
         form = printing.output_format(output, block)
-        motion, shape, restitution = read_problem(file, block)
-        body = body_of_size(shape.width, shape.height, mass.offset or 0.0, mass.mass_height)
-        if fit and not isinstance(body, Block):
+        motion, body, restitution = read_problem(file, block)
+        if fit and not isinstance(body, AbstractBlock):
             raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
         with progress("solving the block under the record"):
             found = body.response(motion, scale=block.scale, restitution=restitution, thresholds=thresholds)
@@ -64,7 +57,7 @@ def record(
                 about["threshold_scale"] = [one["scale"] for one in changes]
                 about["overturns_above"] = [one["overturns_above"] for one in changes]
             about |= {"scale": block.scale, **_measures(motion)}
-            if isinstance(body, Block):
+            if isinstance(body, AbstractBlock):
                 about |= {"alpha": body.alpha} | (_fitted(motion, body) if fit else {})
         sentences = [text for text in (about["meaning"], about["margin"]) if text]
     printing.print_answer(about, sentences, form)
@@ -94,24 +87,12 @@ def with_options_named(message: str) -> str:
     )
 
 
-def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, float | str]:
-    """The record in a file, the block, and its restitution.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an option is missing, or a value is not allowed.
-    RecordFileError
-        If the file does not hold a record.
-    """
-    from rocking._cli.arguments import read_block, read_eta
+def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingBody, float | str]:
+    """The record in a file, the body, and its restitution."""
+    from rocking._cli.arguments import read_body, read_eta
     from rocking._excitation.records.readers.read_record import read_record
 
-    block = read_block(options)
-    from rocking._base.quantities import RESTITUTION
-
-    named = options.restitution.partition("(")[0] in RESTITUTION.words
-    eta: float | str = options.restitution if named else read_eta(options.restitution, "a number, or momentum")
+    body, eta = read_body(options), read_eta(options.restitution)
     motion = read_record(
         file,
         unit=options.unit,
@@ -122,7 +103,7 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, Block, floa
     )
     if options.baseline_order is not None:
         motion = motion.baseline_corrected(order=options.baseline_order)
-    return motion, block, eta
+    return motion, body, eta
 
 
 def _measures(motion: Record) -> dict[str, Any]:
@@ -145,7 +126,7 @@ def _measures(motion: Record) -> dict[str, Any]:
     }
 
 
-def _fitted(motion: Record, block: Block) -> dict[str, Any]:
+def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
     """What is printed of the pulse that is fitted to a record, by name."""
     from rocking._base.errors import finite
     from rocking.suites.pulse_fit import fit_pulse

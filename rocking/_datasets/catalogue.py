@@ -98,9 +98,7 @@ class DataFile:
         return self._file.fileno()
 
     def content(self) -> bytes:
-        """All bytes of the file, of one version. Raises `DatasetError` if it cannot be read or changes during every
-        attempt.
-        """
+        """All bytes of the file, of one version; `DatasetError` if it cannot be read or changes all the time."""
         try:
             for _ in range(MAX_READS):
                 self.version = self._settled()

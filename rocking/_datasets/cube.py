@@ -250,13 +250,7 @@ def read_content(path: Path | str) -> bytes:
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
-    """The same from the bytes of a file; messages name `path`.
-
-    Raises
-    ------
-    DatasetError
-        If the bytes were not written by this package or are damaged.
-    """
+    """`read_dataset` from the bytes of a file; messages name `path`."""
     with open_checked(content, path) as opened:
         dataset = opened.load()
         if dataset.attrs["content_sha256"] != _content_digest(dataset):
@@ -268,13 +262,7 @@ def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:
 
 @contextmanager
 def open_checked(content: bytes, path: Path | str) -> Iterator[xr.Dataset]:
-    """The data set of the bytes of a file whose digest at its end is right, open inside of the `with` block.
-
-    Raises
-    ------
-    DatasetError
-        As `decode_dataset`, also for errors of the libraries inside of the block.
-    """
+    """The data set of the bytes of a file whose digest at its end is right, open inside of the `with` block."""
     _raise_if_damaged(content, path)
     try:
         with open_netcdf(content) as opened:
@@ -309,13 +297,7 @@ def decode_spectrum(content: bytes, path: Path | str) -> xr.Dataset:
 
 
 def check_spectrum(cube: xr.Dataset, path: Path | str) -> None:
-    """Check a data set, which may be open, against the schema of spectrum cubes.
-
-    Raises
-    ------
-    DatasetError
-        As `read_spectrum`.
-    """
+    """Refuse a data set, which may be open, that has not the schema of spectrum cubes."""
     present = {name: about for name, about in OPTIONAL_VARIABLES.items() if name in cube}
     for name, (dtype, _) in (VARIABLES | present).items():
         if name not in cube or cube[name].dims != DIMENSIONS or cube[name].dtype != np.dtype(dtype):

@@ -15,14 +15,7 @@ from rocking._base.errors import InvalidArgumentError, in_range, integer, number
 from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
-from rocking._dimensional.curves import (
-    block_boundary,
-    block_history,
-    block_spectrum,
-    body_boundary,
-    body_history,
-    over_axis,
-)
+from rocking._dimensional.curves import boundary, history, over_axis, spectrum
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import (
     STRENGTHS,
@@ -244,7 +237,7 @@ class RespondingBody(AbstractBody):
             times = positive("period", period, "s")
         if size is None and self.is_block:
             one = Problem.of(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
-            return block_spectrum(one, along, stop)
+            return spectrum(one, along, stop)
         found = respond(Problem.of(body, motion, peak_acceleration, times, restitution, scale=scale), stop=stop)
         return over_axis(found, axis, along)
 
@@ -286,7 +279,7 @@ class RespondingBody(AbstractBody):
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
         problem = Problem.of(self, motion, 1.0, unit, restitution)
-        return (block_boundary if problem.is_block else body_boundary)(problem, period, stop)
+        return boundary(problem, period, stop)
 
     def history(
         self,
@@ -336,8 +329,7 @@ class RespondingBody(AbstractBody):
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
         problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
-        draw = block_history if problem.is_block else body_history
-        return draw(problem, duration=length, samples=samples, contact=contact, stop=stop)
+        return history(problem, duration=length, samples=samples, contact=contact, stop=stop)
 
     def scaled(self, size: Values) -> RespondingBody:
         """The body with all lengths times a factor.
@@ -368,18 +360,10 @@ class RespondingBody(AbstractBody):
 
 @dataclass(frozen=True, eq=False)
 class ScaledBody(RespondingBody):
-    """A body with all lengths times a factor: p falls with the root of it.
+    """A body with all lengths times a factor: p falls with the root of it."""
 
-    Attributes
-    ----------
-    body : RespondingBody
-        The body of factor 1.
-    size : float array
-        The factor [-], > 0.
-    """
-
-    body: RespondingBody
-    size: Array
+    body: RespondingBody  # the body of factor 1
+    size: Array  # the factor [-], > 0
 
     @property
     def right(self) -> Edge:

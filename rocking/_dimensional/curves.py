@@ -1,4 +1,4 @@
-"""Time histories, spectra and boundaries of a block in SI units, as labelled data sets."""
+"""Time histories, spectra and boundaries of one body in SI units, as labelled data sets."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._base.errors import InvalidArgumentError, in_range, integer, positive
-from rocking._base.units import Scalar
+from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._boundary.tracing import overturning_boundary, trace_curves
-from rocking._dimensional.problem import Problem, frequency_ratio_of, period_of
+from rocking._dimensional.problem import Problem, frequency_ratio_of
+from rocking._dimensional.response import BodyResponse, respond
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, reactions_of
 from rocking._history.motion import SamplesMotion
@@ -27,35 +27,30 @@ from rocking._solver.bounded_response import solve_with_bound
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking._dimensional.response import BodyResponse
 
-
-def block_history(
+def history(
     problem: Problem,
     *,
-    duration: Scalar | None = None,
+    duration: float | None = None,
     samples: int | None = None,
     contact: bool = False,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Rotation of a block against time in SI units, as `rocking.Block.history`; other arguments and errors are those.
+    """Rotation of one body against time in SI units, as `rocking.Block.history`; `duration` is checked [s].
 
-    Returns
-    -------
-    xarray.Dataset
-        time(time) [s]; rotation(time) [rad]; angular_velocity(time) [rad/s]; ground_acceleration(time) [m/s2];
-        top_displacement(time) [m]; impact_time(impact) [s]. Under a record also the coordinate tau(time) [-], and
-        vertical_acceleration(time) [m/s2] if it has it.
+    Of a block under a record also the coordinate tau(time) [-].
     """
-    length = None if duration is None else positive("duration", duration, "s")
-    if length is not None and not isinstance(problem.motion, Record):
-        length *= problem.block.frequency_parameter
-    found = time_history(problem.motion, **problem.groups, duration=length, samples=samples, contact=contact, stop=stop)
+    if not problem.is_block:
+        return _body_history(problem, duration, samples, contact, stop)
+    if duration is not None and not isinstance(problem.motion, Record):
+        duration *= problem.block.frequency_parameter
+    groups = problem.groups
+    found = time_history(problem.motion, **groups, duration=duration, samples=samples, contact=contact, stop=stop)
     return in_si_units(found, problem)
 
 
 def in_si_units(found: xr.Dataset, problem: Problem) -> xr.Dataset:
-    """A time history of `rocking.time_history` for the groups of a problem, as `block_history` returns it."""
+    """A time history of `rocking.time_history` for the groups of a problem, as `history` returns it."""
     about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
     if isinstance(problem.motion, Record):
         return _in_radians(found, problem.block).assign_attrs(about | {"scale": problem.scale})
@@ -86,15 +81,10 @@ def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
     return history.assign(scaled)
 
 
-def body_history(
-    problem: Problem,
-    *,
-    duration: float | None = None,
-    samples: int | None = None,
-    contact: bool = False,
-    stop: StopFlag | None = None,
+def _body_history(
+    problem: Problem, duration: float | None, samples: int | None, contact: bool, stop: StopFlag | None
 ) -> xr.Dataset:
-    """Rotation of one body against time, as `rocking.RigidBody.history`; arguments and errors are those."""
+    """The history of one body whose edges differ."""
     import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
     if samples is not None:
@@ -158,24 +148,15 @@ def body_history(
     )
 
 
-def block_spectrum(problem: Problem, period: NDArray[np.float64], stop: StopFlag | None = None) -> xr.Dataset:
-    """Peak rotation of a block against the period of the pulse, in SI units.
+def spectrum(problem: Problem, period: NDArray[np.float64], stop: StopFlag | None = None) -> xr.Dataset:
+    """Peak rotation of one body over periods of the pulse (periods,) [s], as `rocking.Block.spectrum`.
 
-    Parameters
-    ----------
-    problem : Problem
-        The block and the pulse, whose own period is not read.
-    period : float array (periods,)
-        T_p [s], > 0.
-    stop : StopFlag, optional
-        Cancels the work.
-
-    Returns
-    -------
-    xarray.Dataset
-        rotation(period) [rad], top_displacement(period) [m], peak_rotation(period) [-], overturned, outcome, impacts;
-        frequency_ratio(period) [-] as a coordinate.
+    The period of the problem is not read. Of a block with the coordinate frequency_ratio(period) [-].
     """
+    if not problem.is_block:
+        eta = "momentum" if problem.restitution is None else problem.restitution
+        many = Problem.of(problem.body, problem.motion, problem.peak_acceleration, period, eta)
+        return over_axis(respond(many, stop=stop), "period", period)
     import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
     block = problem.block
@@ -210,37 +191,36 @@ def over_axis(found: BodyResponse, axis: str, along: NDArray[np.float64]) -> xr.
     return kept.assign_coords({axis: (axis, along, about)})
 
 
-def block_boundary(problem: Problem, period: tuple[float, float] | None, stop: StopFlag | None = None) -> xr.Dataset:
-    """Boundary curves of overturning of a block: peak acceleration against period, as of `rocking.Block.boundary`."""
-    block, groups = problem.block, problem.groups
-    window = frequency_window(period, lambda one: frequency_ratio_of(block, one))
-    found = overturning_boundary(
-        problem.pulse, restitution=groups["restitution"], alpha=groups["alpha"], frequency_ratio=window, stop=stop
-    )
-    return add_si_axes(found, block)
+def boundary(
+    problem: Problem,
+    period: tuple[float, float] | None = None,
+    stop: StopFlag | None = None,
+    window: tuple[float, float] | None = None,
+) -> xr.Dataset:
+    """Boundary curves of overturning of one body, as of `rocking.Block.boundary`.
 
-
-def body_boundary(problem: Problem, period: tuple[float, float] | None, stop: StopFlag | None = None) -> xr.Dataset:
-    """The same of one body whose edges differ."""
-    body, eta = problem.body, float(problem.cells["eta"][0, 0])
+    `window`: of checked frequency ratios to the right edge, in place of periods.
+    """
+    body = problem.body
     unit = 2.0 * math.pi / float(body.right.frequency_parameter)
-    window = frequency_window(period, lambda one: unit / one)
-    curves = trace_curves(problem.solver(0, stop), eta, window, (0.02, 1.0))
+    if problem.is_block:
+        groups = problem.groups
+        window = window or frequency_window(period, lambda one: frequency_ratio_of(problem.block, one))
+        found = overturning_boundary(
+            problem.pulse, restitution=groups["restitution"], alpha=groups["alpha"], frequency_ratio=window, stop=stop
+        )
+        return _with_si_axes(found, problem.block.uplift_acceleration, unit)
+    window = window or frequency_window(period, lambda one: unit / one)
+    curves = trace_curves(problem.solver(0, stop), float(problem.cells["eta"][0, 0]), window, (0.02, 1.0))
     uplift = float(body.uplift_acceleration)
     curves.attrs |= {"pulse": problem.motion.name, "body": body.description, "uplift_acceleration": uplift}
-    return with_si_axes(curves, uplift, unit)
+    return _with_si_axes(curves, uplift, unit)
 
 
 def frequency_window(
     period: tuple[float, float] | None, frequency_ratio: Callable[[float], float]
 ) -> tuple[float, float]:
-    """Window of frequency ratios of a window of periods [s], 0 < low < high; 0.2 to 15 without one.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a period is out of range, or they do not ascend.
-    """
+    """Window of frequency ratios of a window of periods [s], 0 < low < high; 0.2 to 15 without one."""
     if period is None:
         return 0.2, 15.0
     ends = in_range("period", period, 0.0, math.inf, closed="neither", unit="s")
@@ -250,13 +230,8 @@ def frequency_window(
     return frequency_ratio(high), frequency_ratio(low)
 
 
-def add_si_axes(curves: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
-    """Boundary curves with peak_acceleration(point) [m/s2] and period(point) [s] of a block of their alpha."""
-    return with_si_axes(curves, block.uplift_acceleration, period_of(block, 1.0))
-
-
-def with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: float) -> xr.Dataset:
-    """The same, from the acceleration at slenderness 1 [m/s2] and the period at frequency ratio 1 [s]."""
+def _with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: float) -> xr.Dataset:
+    """With peak acceleration and period, from those at slenderness 1 [m/s2] and at frequency ratio 1 [s]."""
     return curves.assign(
         peak_acceleration=variable(
             "point", uplift_acceleration / curves["slenderness"].values, "m s-2", "peak acceleration a_g"

@@ -16,20 +16,11 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking._solver.records.amplification import CHANGE
 
-BodyResponse = Any
-"""That of `rocking._dimensional.response`, which imports this module."""
-
-REFINEMENT = 8
-"""Samples into which one is divided by band-limited interpolation, for the comparison of samplings."""
-
-SAMPLING_DIFFERENCE = 0.05
-"""Relative difference of the peaks of both samplings above which a warning is given [-]."""
-
-DRIFT = 0.1
-"""Velocity at the end of a record over its largest above which a warning is given [-]."""
-
-MAX_RESAMPLED = 400_000
-"""Most samples of the refined record; a longer one is not compared."""
+BodyResponse = Any  # that of `rocking._dimensional.response`, which imports this module
+REFINEMENT = 8  # samples into which one is divided by band-limited interpolation, for the comparison of samplings
+SAMPLING_DIFFERENCE = 0.05  # relative difference of the peaks of both samplings above which a warning is given [-]
+DRIFT = 0.1  # velocity at the end of a record over its largest above which a warning is given [-]
+MAX_RESAMPLED = 400_000  # most samples of the refined record; a longer one is not compared
 
 LARGEST_AMPLIFICATION = 1e4
 """Amplification above which a record does not determine the peak [-]: of samples with six digits it leaves two."""

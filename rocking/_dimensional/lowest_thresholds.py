@@ -30,8 +30,7 @@ Index = NDArray[np.intp]
 Solved = tuple[Array, NDArray[np.bool_], Array, NDArray[np.int32]]
 """Peak |theta|/alpha, whether the body overturns, margin of the outcome, and impacts."""
 
-HIGHEST = 100.0
-"""Largest peak acceleration searched over that of uplift [-]."""
+HIGHEST = 100.0  # largest peak acceleration searched over that of uplift [-]
 
 GRID = np.union1d(np.linspace(1.0 / HIGHEST, 1.0, 2001), np.geomspace(1.0 / HIGHEST, 1.0, 2001))[::-1]
 """1/a [-] of the nodes of `rocking.thresholds`, from uplift on."""
@@ -64,8 +63,7 @@ CLOSE, LAYERS = 32, 4
 Layers of outcomes lie close together there, the more of them the more flights there are.
 """
 
-AT_ONCE = 4
-"""Coarse nodes solved at a time, before the bodies that have overturned are left out."""
+AT_ONCE = 4  # coarse nodes solved at a time, before the bodies that have overturned are left out
 
 
 BALANCED = 1.0
@@ -121,31 +119,14 @@ def lowest_thresholds(
     resolution: float = SCAN_RESOLUTION,
     enough: float = 0.0,
 ) -> Array:
-    """The lowest peak acceleration of a motion that overturns each body of a problem, whose own one is not read.
+    """The lowest peak acceleration [m/s2] that overturns each body of a problem, whose own one is not read; else nan.
 
     Under a record as `rocking._boundary.scan.lowest_overturning`. Under a pulse the nodes of `rocking.thresholds` are
     searched from uplift on: every 128th one up to the first that overturns, then those between them where the body
     could overturn, see `COARSE`. The change of outcome is bracketed to `RESOLUTION` in 1/a, and both ends of the
-    bracket have been solved.
-
-    Parameters
-    ----------
-    problem : Problem
-        The bodies and the motion.
-    highest : float array
-        Highest peak acceleration searched, which broadcasts with the problem [m/s2]; under a pulse at most `HIGHEST`
-        times that of uplift is searched, under a record up to where the vertical acceleration reaches -g.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
-    resolution : float
-        Under a record: largest relative distance of the accelerations that are tried [-].
-    enough : float
-        Under a record: as of `lowest_overturning` [m/s2].
-
-    Returns
-    -------
-    float array
-        Peak acceleration at which the body overturns [m/s2], nan where none up to the highest was found.
+    bracket have been solved. `highest` [m/s2] broadcasts with the problem; under a pulse at most `HIGHEST` times that
+    of uplift is searched, under a record up to where the vertical acceleration reaches -g. Under a record: `resolution`
+    is the largest relative distance of the accelerations that are tried, `enough` as of `lowest_overturning` [m/s2].
     """
     motion = problem.motion
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
@@ -190,11 +171,6 @@ def record_range(problem: Problem) -> tuple[Array, Array]:
 
     Uplift of an edge is where the horizontal acceleration over g tan(alpha_s) of the other reaches 1 + w/g
     (`rocking._model.body`): at a sample, since all of them are linear between samples.
-
-    Parameters
-    ----------
-    problem : Problem
-        Bodies under a record at the factor 1.
     """
     record: Any = problem.motion
     resisted = problem.cells["slenderness"] * record.peak_acceleration  # g tan(alpha_s)

@@ -34,40 +34,21 @@ UNITS = {
 
 @dataclass(frozen=True, repr=False)
 class Margins:
-    """How far a block is from another outcome.
+    """How far a block is from another outcome."""
 
-    Attributes
-    ----------
-    nearest_acceleration : float or None
-        Peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found.
-    acceleration_factor : float or None
-        That over the peak acceleration of the problem [-].
-    nearest_period, period_factor : float or None
-        The same for the period [s], [-].
-    periods : tuple of Threshold
-        All periods at which the outcome changes, ascending [s].
-    periods_searched : (float, float)
-        Smallest and largest [s].
-    smallest_surviving_half_diagonal : float or None
-        Smallest R of this shape searched that survives this pulse [m]; a larger one may overturn.
-    surviving_from_half_diagonal : float or None
-        R from which every larger size searched survives [m]; None if the largest overturns.
-    sizes : tuple of Threshold
-        All half-diagonals of this shape at which the outcome changes, ascending [m].
-    sizes_searched : (float, float)
-        Smallest and largest half-diagonal [m].
-    """
-
+    # peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found
     nearest_acceleration: float | None
-    acceleration_factor: float | None
-    nearest_period: float | None
-    period_factor: float | None
-    periods: tuple[Threshold, ...]
-    periods_searched: tuple[float, float]
+    acceleration_factor: float | None  # that over the peak acceleration of the problem [-]
+    nearest_period: float | None  # the same for the period [s], [-]
+    period_factor: float | None  # the same for the period [s], [-]
+    periods: tuple[Threshold, ...]  # all periods at which the outcome changes, ascending [s]
+    periods_searched: tuple[float, float]  # smallest and largest [s]
+    # smallest R of this shape searched that survives this pulse [m]; a larger one may overturn
     smallest_surviving_half_diagonal: float | None
+    # r from which every larger size searched survives [m]; None if the largest overturns
     surviving_from_half_diagonal: float | None
-    sizes: tuple[Threshold, ...]
-    sizes_searched: tuple[float, float]
+    sizes: tuple[Threshold, ...]  # all half-diagonals of this shape at which the outcome changes, ascending [m]
+    sizes_searched: tuple[float, float]  # smallest and largest half-diagonal [m]
 
     def __repr__(self) -> str:
         """The nearest changes in words."""
@@ -106,18 +87,9 @@ def margins_of(
     stop: StopFlag | None = None,
     served: tuple[float, float] = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper),
 ) -> Margins:
-    """Nearest changes of outcome.
+    """Nearest changes of outcome of a block under a pulse, from those of `block_thresholds`.
 
-    Parameters
-    ----------
-    problem : Problem
-        The block and the pulse.
-    accelerations : iterable of Threshold
-        As `block_thresholds` finds them.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
-    served : (float, float)
-        Frequency ratios beyond which periods are not searched [-].
+    `served`: frequency ratios beyond which periods are not searched [-].
     """
     groups, block = problem.groups, problem.block
     omega = groups["frequency_ratio"]

@@ -34,23 +34,7 @@ FAR = 100.0
 
 
 def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[PolygonProperties, list[str]]:
-    """Edges, centre of mass and radius of gyration in the plane of a direction, in metres; what was repaired.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file; z is upwards.
-    direction : float
-        Angle from the x axis towards the y axis [rad].
-    unit : str
-        Of the lengths in the file.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, has a defect that cannot be repaired with certainty, encloses no volume, or does not
-        stand.
-    """
+    """Edges, centre of mass and radius of gyration in the plane of a direction [rad], in metres; what was repaired."""
     factor = UNITS["m"][one_of("unit", unit, UNITS["m"])]
     (mesh, remarks), along = _mesh(path), _horizontal(direction)
     across = np.cross([0.0, 0.0, 1.0], along)
@@ -78,12 +62,9 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
 
 
 def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.float64]:
-    """Convex outline in the plane of a direction, for drawings; arguments and errors as of `mesh_properties`.
+    """Convex outline in the plane of a direction [rad], for drawings; (points, 2) [m].
 
-    Returns
-    -------
-    float array (points, 2)
-        Distances from the centre of mass along the plane, and heights above the lowest point [m].
+    Distances from the centre of mass along the plane, and heights above the lowest point.
     """
     mesh, _ = _mesh(path)
     vertices = np.asarray(mesh.vertices)

@@ -16,13 +16,7 @@ _SOLID = re.compile(rb"^[ \t]*solid\b", re.MULTILINE | re.IGNORECASE)
 
 
 def with_few_parts(content: bytes, kind: str) -> bytes:
-    """The content of a mesh file of a kind such as "obj", without its materials, which divide a mesh at their seams.
-
-    Raises
-    ------
-    ValueError
-        If it has more than `MAX_PARTS` of something, or is no such file.
-    """
+    """The content of a mesh file of a kind such as "obj", without its materials, which divide a mesh at their seams."""
     if kind == "obj":
         return _MATERIAL.sub(b"", content)
     for what, count in _parts(content, kind):

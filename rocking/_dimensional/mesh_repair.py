@@ -17,8 +17,7 @@ Array = NDArray[np.float64]
 FLAT = 0.01
 """Distance of the edges of a hole from its plane times its area, over the volume, up to which it is filled [-]."""
 
-SHEET = 1e-6
-"""Volume of an open part over that of the largest part below which it encloses nothing [-]."""
+SHEET = 1e-6  # volume of an open part over that of the largest part below which it encloses nothing [-]
 
 
 class RepairedMesh(NamedTuple):

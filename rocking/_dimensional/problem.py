@@ -68,38 +68,19 @@ STRENGTHS = {one.name: one for one in (PEAK_ACCELERATION, PERIOD, SCALE)}
 
 @dataclass(frozen=True, eq=False)
 class Problem(EqualByValue):
-    """Bodies under a ground motion; floats for one block under one motion, otherwise arrays that broadcast.
+    """Bodies under a ground motion; floats for one block under one motion, otherwise arrays that broadcast."""
 
-    Attributes
-    ----------
-    body : AbstractBody
-        One body or an array of them.
-    motion : AbstractPulse or Record
-        The ground motion, a record without its factor.
-    peak_acceleration : float or float array [m/s2]
-        Largest horizontal acceleration, > 0; of a record times its factor.
-    period : float or float array [s]
-        T_p = 2 pi/omega_g of a pulse, > 0; 1 for a record. `duration` is how long the motion lasts.
-    restitution : float or float array, or None
-        eta of every impact [-], [0, 1]; None: by angular momentum, 0 where that is negative.
-    scale : float or float array
-        Factor of a record, of both its components [-]; 1 for a pulse.
-    arguments : mapping of str to array
-        The arguments that were given, before broadcasting, for the coordinates of exports; nothing for one block.
-    index : (name, labels) or None
-        Index of the last axis if an argument was a series (pandas).
-    unit_is_stated : bool
-        Whether the peak acceleration was no plain number.
-    """
-
-    body: AbstractBody
-    motion: AbstractPulse | Record
-    peak_acceleration: Any
-    period: Any
-    restitution: Any
-    scale: Any = 1.0
+    body: AbstractBody  # one body or an array of them
+    motion: AbstractPulse | Record  # the ground motion, a record without its factor
+    peak_acceleration: Any  # largest horizontal acceleration, > 0; of a record times its factor [m/s2]
+    period: Any  # T_p = 2 pi/omega_g of a pulse, > 0; 1 for a record. `duration` is how long the motion lasts [s]
+    restitution: Any  # eta of every impact [-], [0, 1]; None: by angular momentum, 0 where that is negative
+    scale: Any = 1.0  # factor of a record, of both its components [-]; 1 for a pulse
+    # the arguments that were given, before broadcasting, for the coordinates of exports; nothing for one block
     arguments: Mapping[str, Array] = field(default_factory=dict, compare=False, repr=False)
+    # index of the last axis if an argument was a series (pandas)
     index: Index | None = field(default=None, compare=False, repr=False)
+    # whether the peak acceleration was no plain number
     unit_is_stated: bool = field(default=True, compare=False, repr=False)
 
     @classmethod
@@ -117,12 +98,6 @@ class Problem(EqualByValue):
         """The checked problem; arguments as of `rocking.Block.response`.
 
         `flies`: the strength is not read, its vertical acceleration may reach -g.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast;
-            for one block, if the vertical acceleration times the factor reaches -g.
         """
         if isinstance(restitution, str) and restitution != "momentum":
             restitution = spread_restitution(body, restitution)
@@ -171,7 +146,7 @@ class Problem(EqualByValue):
         eta = np.shape(self.restitution)
         return np.broadcast_shapes(self.body.shape, np.shape(self.peak_acceleration), np.shape(self.period), eta)
 
-    @property
+    @cached_property
     def kinds(self) -> frozenset[str]:
         """The kinds of responses, as of `rocking._model.fields.KINDS`."""
         motion = "record" if isinstance(self.motion, Record) else "pulse"
@@ -212,13 +187,7 @@ class Problem(EqualByValue):
 
     @cached_property
     def groups(self) -> dict[str, Any]:
-        """Of one block: groups, restitution and alpha of the equation of motion, keyword arguments of `peak_response`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a group is out of range.
-        """
+        """Of one block: groups, restitution and alpha of the equation, keyword arguments of `peak_response`."""
         block = self.block
         eta = block.inelastic_restitution if self.restitution is None else self.restitution
         if isinstance(self.motion, Record):
@@ -232,13 +201,7 @@ class Problem(EqualByValue):
 
     @cached_property
     def cells(self) -> NDArray[np.void]:
-        """The cells `BODY_CELL` of the solver (size,), not to be changed.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If an edge or a ratio of frequencies is out of range, or the equation of motion is linear.
-        """
+        """The cells `BODY_CELL` of the solver (size,), not to be changed."""
         body, right, left = self.body, self.body.right, self.body.left
         if body.is_linear:
             allowed = "solved with numbers, not arrays: its equation of motion is linear"
@@ -386,13 +349,7 @@ def are_numbers(*arguments: Any) -> bool:
 
 
 def checked_restitution(restitution: Values, checked: Callable[..., Any] = RESTITUTION.convert) -> Any:
-    """The coefficient of restitution: None for "momentum", else an array; or one number by `RESTITUTION.number`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For any other text, several numbers where one is checked, and numbers outside [0, 1].
-    """
+    """The coefficient of restitution: None for "momentum", else an array; or one number by `RESTITUTION.number`."""
     if isinstance(restitution, str) and restitution == "momentum":
         return None
     try:
@@ -457,13 +414,9 @@ def uplift_scale(record: Record, block: AbstractBlock) -> float:
 
 
 def search_range(record: Record, block: AbstractBlock, highest: float | None) -> tuple[float, float, bool]:
-    """Factors of a record among which its outcomes are searched.
+    """Factors of a record among which its outcomes are searched: uplift, the highest (ten times that without one).
 
-    Returns
-    -------
-    (float, float, bool)
-        That of uplift; the highest, by default ten times that of uplift; and whether the latter is that at which the
-        vertical acceleration reaches -g.
+    And whether the latter is that at which the vertical acceleration reaches -g.
     """
     lowest = uplift_scale(record, block)
     top = min(10.0 * lowest, HIGHEST_SCALE) if highest is None else highest

@@ -49,11 +49,8 @@ Array = NDArray[np.float64]
 
 T = TypeVar("T")
 
-SEARCH_SECONDS = 12.0
-"""Time limit of the search along one line for one block [s]."""
-
-RELATIVE_OFFSET = 1e-9
-"""Relative distance below the lowest change of outcome at which the contact is judged [-]."""
+SEARCH_SECONDS = 12.0  # time limit of the search along one line for one block [s]
+RELATIVE_OFFSET = 1e-9  # relative distance below the lowest change of outcome at which the contact is judged [-]
 
 for _field in FIELDS:
     _cached = cached_property(partial(lambda found, about: found._value(about), about=_field))
@@ -143,7 +140,7 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def _sides(self) -> Any:
-        return np.moveaxis(np.asarray(self.edges).reshape(*self.shape, -1), -1, 0)
+        return np.moveaxis(np.asarray(self.edges).reshape(*self.problem.shape, -1), -1, 0)
 
     def _value(self, about: ResponseField) -> Any:
         """The values of a field; a number of one body, the code of an outcome as an `Outcome`."""
@@ -157,8 +154,8 @@ class BodyResponse(ResponseFields, EqualByValue):
         else:
             given = {name: getattr(problem, name) for name in ("peak_acceleration", "period", "scale")}
             value = about.derive(known, (problem.groups if problem.is_block else {}) | given, problem.motion, self.body)
-        if self.shape:
-            return np.array(np.broadcast_to(value, self.shape), about.dtype)
+        if self.problem.shape:
+            return np.array(np.broadcast_to(value, self.problem.shape), about.dtype)
         one = np.asarray(value, about.dtype).reshape(()).item()
         return Outcome(one) if about is OUTCOME else one
 
@@ -213,7 +210,7 @@ class BodyResponse(ResponseFields, EqualByValue):
     def _contact(self, name: str, **changed: float) -> ContactExtremes:
         self._need_one(name)
         found = contact_extremes(self.problem.body_motion(None, self.stop, 0, **changed))
-        return found if self.body.contact_is_known else found.without_forces()
+        return found if self.problem.body.contact_is_known else found.without_forces()
 
     @property
     def _of_record(self) -> bool:
@@ -278,7 +275,7 @@ class BodyResponse(ResponseFields, EqualByValue):
     def largest_surviving_friction_demand(self) -> float | None:
         """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
         below = self.contact_below
-        if below is None or not self._survives_below or not self.body.contact_is_known:
+        if below is None or not self._survives_below or not self.problem.body.contact_is_known:
             return None
         return below.largest_friction_demand
 
@@ -330,7 +327,7 @@ class BodyResponse(ResponseFields, EqualByValue):
     def to_dict(self) -> dict[str, Any]:
         """The fields of one body with numbers, and the outcome by its name; arrays of several."""
         values = {one.name: getattr(self, one.name) for one in self.fields}
-        return values if self.shape else values | {OUTCOME.name: self.outcome.name}
+        return values if self.problem.shape else values | {OUTCOME.name: self.outcome.name}
 
     def summary(self) -> dict[str, Any]:
         """The fields of one body and what is judged of it, `SHOWN`, as the command line and the service show them.
@@ -350,7 +347,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
         arguments = self.problem.arguments
-        names = axis_names(len(self.shape), arguments, ())
+        names = axis_names(len(self.problem.shape), arguments, ())
         variables: dict[str, Any] = {
             one.name: one.variable(names, np.asarray(getattr(self, one.name)))
             for one in self.fields
@@ -366,14 +363,14 @@ class BodyResponse(ResponseFields, EqualByValue):
         """The fields of one body as a series; of several as columns, one row each, with the axes of `to_xarray`."""
         import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
 
-        return self.to_xarray().to_dataframe() if self.shape else pd.Series({**self.motion, **self.to_dict()})
+        return self.to_xarray().to_dataframe() if self.problem.shape else pd.Series({**self.motion, **self.to_dict()})
 
     def __repr__(self) -> str:
         """What happened, in words and SI units; of a block under a record with the margin, for which it is assessed."""
-        return f"<rocking.BodyResponse{' ' if self.shape else ': '}{self._words()}>"
+        return f"<rocking.BodyResponse{' ' if self.problem.shape else ': '}{self._words()}>"
 
     def _repr_html_(self) -> str:
-        if self.shape:
+        if self.problem.shape:
             return f"<p>{escape(repr(self))}</p>{self.to_xarray()._repr_html_()}"
         rows = "".join(
             f"<tr><td>{escape(one.meaning)}</td><td>{escape(_text(value))}</td>"
@@ -385,10 +382,10 @@ class BodyResponse(ResponseFields, EqualByValue):
     def _words(self) -> str:
         problem, motion, doubt, margin = self.problem, self.problem.motion, "", ""
         under = motion.name or "a record"
-        if self.shape:
+        if self.problem.shape:
             counts = np.bincount(self.outcome.ravel(), minlength=len(Outcome))
             parts = [f"{count} {one.plural}" for one, count in zip(Outcome, counts.tolist(), strict=True) if count]
-            return f"under {under} of {' x '.join(map(str, self.shape))} bodies: {', '.join(parts)}"
+            return f"under {under} of {' x '.join(map(str, self.problem.shape))} bodies: {', '.join(parts)}"
         outcome = self.outcome
         happened, impacts = outcome.sentence, f"{self.impacts} impact{'' if self.impacts == 1 else 's'}"
         strength = f"{self.peak_acceleration:.4g} m/s2"
@@ -407,15 +404,14 @@ class BodyResponse(ResponseFields, EqualByValue):
         if outcome == Outcome.RECOVERS:
             peak = f"peak rotation {math.degrees(self.rotation):.4g} deg{doubt}"
             happened += f": {peak}, top displacement {self.displacement:.4g} m, {impacts}"
-        return f"{happened}{margin}; {self.body.description} under {under}"
+        return f"{happened}{margin}; {self.problem.body.description} under {under}"
 
     def _need_one(self, name: str) -> None:
-        if self.shape:
-            raise InvalidArgumentError(name, f"shape {self.shape}", "a response of one body under one motion")
+        if self.problem.shape:
+            raise InvalidArgumentError(name, f"shape {self.problem.shape}", "a response of one body under one motion")
 
 
-EDGE_NAMES = {1: "right", -1: "left", 0: None}
-"""Edges in words."""
+EDGE_NAMES = {1: "right", -1: "left", 0: None}  # edges in words
 
 _UNITS = {
     "peak_acceleration": "m s-2",

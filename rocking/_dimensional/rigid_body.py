@@ -14,24 +14,30 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number, positive
+from rocking._base.quantities import (
+    GRAVITY,
+    GYRATION,
+    HEIGHT,
+    INCLINATION,
+    LEFT,
+    MASS_HEIGHT,
+    OFFSET,
+    REBOUND,
+    RIGHT,
+    TOP_HEIGHT,
+    WIDTH,
+)
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rebound_of, rigid_edge
-from rocking._model.checks import check_lengths
-from rocking._model.labelled import broadcast_by_name, in_unit, index_of, is_labelled
+from rocking._model.checks import check_quantities
+from rocking._model.labelled import in_unit, index_of, is_labelled
 
 Array = NDArray[np.float64]
 
-RANGES = {
-    "gravity": (0.0, math.inf, "m/s2"),
-    "inclination": (-math.pi / 2, math.pi / 2, "rad"),
-    "rebound": (-math.ulp(0.0), math.nextafter(1.0, 2.0), "-"),
-}
-"""Open ranges and units of the arguments that are no lengths."""
-
-SIDES = "both", "left", "right"
-"""Edges about which a body rocks."""
+_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
+SIDES = "both", "left", "right"  # edges about which a body rocks
 
 
 @final
@@ -100,17 +106,18 @@ class RigidBody(RespondingBody):
             raise InvalidArgumentError("sides", sides, f"one of {', '.join(SIDES)}")
         if rebound is not None and sides == "both":
             raise InvalidArgumentError("rebound", rebound, 'nothing beside sides="both": impacts have a restitution')
-        arguments: dict[str, Any] = {
-            "left": left,
-            "right": right,
-            "height": height,
-            "gyration": gyration,
-            "top_height": top_height,
-            "gravity": gravity,
-            "inclination": inclination,
-            "rebound": rebound,
-        }
-        checked, labels, index = check_lengths(arguments, RANGES)
+        checked, labels, index = check_quantities(
+            {
+                LEFT: left,
+                RIGHT: right,
+                HEIGHT: height,
+                GYRATION: gyration,
+                TOP_HEIGHT: top_height,
+                GRAVITY: gravity,
+                INCLINATION: inclination,
+                REBOUND: rebound,
+            }
+        )
         vars(self).update(_given=checked, labels=labels, index=index, sides=sides)  # it is frozen
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
             if not np.all(edge.alpha > 0.0):
@@ -259,7 +266,7 @@ class RigidBody(RespondingBody):
         factor = in_unit("size", size, "-")
         checked = in_range("size", factor, 0.0, math.inf, closed="neither")
         given, factor = self._given | self.labels, factor if is_labelled(factor) else checked
-        return self.changed(**{name: value if name in RANGES else value * factor for name, value in given.items()})
+        return self.changed(**{name: value if name in _NO_LENGTHS else value * factor for name, value in given.items()})
 
     @classmethod
     def from_size(
@@ -299,13 +306,9 @@ class RigidBody(RespondingBody):
         >>> RigidBody.from_size("40 cm", "160 cm", offset="5 cm")
         <rocking.RigidBody: body on edges 0.25 m left and 0.15 m right of its mass at 0.8 m>
         """
-        lengths: dict[str, Any] = {"width": width, "height": height, "offset": offset, "mass_height": mass_height}
-        given = {name: in_unit(name, value, "m") for name, value in lengths.items() if value is not None}
-        broadcast_by_name({name: value for name, value in given.items() if is_labelled(value)})  # equal indexes
-        for name, value in given.items():
-            low = -math.inf if name == "offset" else 0.0
-            checked = in_range(name, value, low, math.inf, closed="neither", unit="m")
-            given[name] = value if is_labelled(value) else checked
+        lengths = {WIDTH: width, HEIGHT: height, OFFSET: offset, MASS_HEIGHT: mass_height}
+        checked, labels, _ = check_quantities(lengths)
+        given: dict[str, Any] = checked | labels
         w, h, e = given["width"], given["height"], given["offset"]
         half = 0.5 * w
         if not np.all(np.abs(e) < half):
@@ -401,14 +404,16 @@ def body_of_size(
     offset: Scalar = 0.0,
     mass_height: Scalar | None = None,
     gravity: Scalar = STANDARD_GRAVITY,
+    gyration: Scalar | None = None,
 ) -> Block | RigidBody:
-    """The block of this size, or the body if its centre of mass is elsewhere, at most at its height.
+    """The block of this size, or the body if its centre of mass or gyration differs; that is at most at its height.
 
     Arguments and errors are those of `RigidBody.from_size`.
     """
     if mass_height is not None:
-        highest = number("height", height, 0.0, math.inf, closed="neither", unit="m")
-        mass_height = number("mass_height", mass_height, 0.0, highest, closed="right", unit="m")
-    elif not number("offset", offset, -math.inf, math.inf, unit="m"):
+        mass_height = number("mass_height", mass_height, 0.0, HEIGHT.number(height), closed="right", unit="m")
+    elif gyration is None and not OFFSET.number(offset):
         return Block(width, height, gravity)
-    return RigidBody.from_size(width, height, offset=offset, mass_height=mass_height, gravity=gravity)
+    return RigidBody.from_size(
+        width, height, offset=offset, mass_height=mass_height, gyration=gyration, gravity=gravity
+    )

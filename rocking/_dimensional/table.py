@@ -29,32 +29,15 @@ _NEEDED = ("width", "height", "peak_acceleration", "period")
 
 @dataclass(frozen=True)
 class BlockTable:
-    """Blocks under one pulse.
+    """Blocks under one pulse."""
 
-    Attributes
-    ----------
-    problems : list of Problem
-        One for each row that could be read.
-    names : list of str
-        Labels, empty without a column `name`.
-    read : Table
-        The table that they were read from, with the rows that could not be read.
-    """
-
-    problems: list[Problem]
-    names: list[str]
+    problems: list[Problem]  # one for each row that could be read
+    names: list[str]  # labels, empty without a column `name`
+    # the table that they were read from, with the rows that could not be read
     read: Table[Problem] = field(default_factory=lambda: Table([]))
 
     def check(self) -> None:
-        """Refuse a table with a row that could not be read.
-
-        Raises
-        ------
-        InvalidArgumentError
-            With the row and the column.
-        SeveralArgumentsError
-            If there are several, with the first of each row.
-        """
+        """Refuse a table with a row that could not be read."""
         errors = [
             InvalidArgumentError(f"blocks, row {row}, {one.parameter}".removesuffix(", row"), one.value, one.allowed)
             for row, one in self.read.errors
@@ -85,23 +68,7 @@ def read_blocks(
 ) -> BlockTable:
     """Read a table of blocks from a file, CSV or a sheet; `-` is standard input.
 
-    Parameters
-    ----------
-    source : str or path
-        With a header such as `name,width [m],height [cm],peak_acceleration [g],period [s],restitution`.
-    pulse : str or AbstractPulse
-        The pulse.
-    restitution : float or "momentum"
-        For rows that state none.
-    peak_acceleration, period : float, optional
-        a_g [m/s2] and T_p [s] for rows that state none; the table needs these columns without them.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, a column is missing or without a unit, or a number is ambiguous.
-    ImportError
-        If the package for sheets is not installed, the extra `sheets`.
+    Restitution, a_g [m/s2] and T_p [s] are for rows that state none; the table needs these columns without them.
     """
     given = {"restitution": restitution, "peak_acceleration": peak_acceleration, "period": period}
     return _blocks(read_file(source, _schema(pulse, {name: one for name, one in given.items() if one is not None})))

@@ -23,14 +23,9 @@ from rocking._base.units import UNITS, unit_name
 
 Item = TypeVar("Item")
 
-HEADER_ROWS = 12
-"""The header is searched in this many rows at the top."""
-
-MAX_COLUMNS = 1000
-"""Most columns of a table."""
-
-MAX_NAME = 200
-"""Longest name of a column with its unit [characters]."""
+HEADER_ROWS = 12  # the header is searched in this many rows at the top
+MAX_COLUMNS = 1000  # most columns of a table
+MAX_NAME = 200  # longest name of a column with its unit [characters]
 
 EMPTY = {
     *("", "-", "--", "\u2013", "\u2014", "?", "n/a", "na", "n.a.", "#n/a", "none", "null", "nan", "nil"),
@@ -76,91 +71,50 @@ _UNUSED = ("unused", "not used")
 
 @dataclass(frozen=True)
 class Schema(Generic[Item]):
-    """What a table holds.
+    """What a table holds."""
 
-    Attributes
-    ----------
-    argument : str
-        What errors call the table.
-    columns : tuple of Quantity
-        The columns that are read; others are passed through.
-    required : tuple of tuple of str
-        Quantitys that the header has; one of each group.
-    make : callable
-        The item of a row, from its number, the values of the cells that are not empty: texts as they stand, numbers in
-        SI units; and the cells of all other columns, texts that are read included, by their headers. It raises
-        `InvalidArgumentError`, with the name of a column.
-    every_length : bool
-        Whether a length in a column that is not read refuses its row.
-    renamed : mapping of str to str
-        Names of columns that replace those of the header, whose units remain.
-    """
-
-    argument: str
-    columns: tuple[Quantity, ...]
-    required: tuple[tuple[str, ...], ...]
+    argument: str  # what errors call the table
+    columns: tuple[Quantity, ...]  # the columns that are read; others are passed through
+    required: tuple[tuple[str, ...], ...]  # quantitys that the header has; one of each group
+    # the item of a row, from its number, the values of the cells that are not empty: texts as they stand,
+    # numbers in SI units; and the cells of all other columns, texts that are read included, by their headers.
+    # It raises `InvalidArgumentError`, with the name of a column
     make: Callable[[int, dict[str, Any], dict[str, str]], Item]
-    every_length: bool = False
+    every_length: bool = False  # whether a length in a column that is not read refuses its row
+    # names of columns that replace those of the header, whose units remain
     renamed: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class HeaderLine:
-    """A line that may be the header.
+    """A line that may be the header."""
 
-    Attributes
-    ----------
-    number : int
-        From 0.
-    cells, labels, texts : list of str
-        Its cells; completed by the line above, with their number where one is empty or not the first; completed, under
-        the names that were given to them.
-    columns : dict of int to (Quantity, str)
-        Quantities that are read, with their units.
-    grouped : set of int
-        Quantitys in a group of lengths that are not read.
-    complete : bool
-        Whether it has all columns that a header needs.
-    error : InvalidArgumentError or None
-        Its first unit that is not understood.
-    """
-
-    number: int
+    number: int  # from 0
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
     cells: list[str]
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
     labels: list[str]
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
     texts: list[str]
-    columns: dict[int, tuple[Quantity, str]]
-    grouped: set[int]
-    complete: bool
-    error: InvalidArgumentError | None
+    columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units
+    grouped: set[int]  # quantitys in a group of lengths that are not read
+    complete: bool  # whether it has all columns that a header needs
+    error: InvalidArgumentError | None  # its first unit that is not understood
 
 
 @dataclass(frozen=True)
 class Header:
-    """What the header says.
+    """What the header says."""
 
-    Attributes
-    ----------
-    last : int
-        Its last line.
-    labels : list of str
-        Its cells as they stand, with their number where one is empty or not the first.
-    texts : list of str
-        Its cells, under the names that were given to them.
-    columns : dict of int to (Quantity, str)
-        Quantities that are read, with their units, "" in the cells.
-    units : dict of int to int
-        Quantity with the units of a column, by the place of that.
-    lengths : dict of int to bool
-        Quantitys that are not read and may hold a length; whether it says so by its unit.
-    """
-
-    last: int
-    labels: list[str]
-    texts: list[str]
-    columns: dict[int, tuple[Quantity, str]]
-    units: dict[int, int]
-    lengths: dict[int, bool]
+    last: int  # its last line
+    labels: list[str]  # its cells as they stand, with their number where one is empty or not the first
+    texts: list[str]  # its cells, under the names that were given to them
+    columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units, "" in the cells
+    units: dict[int, int]  # quantity with the units of a column, by the place of that
+    lengths: dict[int, bool]  # quantitys that are not read and may hold a length; whether it says so by its unit
 
 
 def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[HeaderLine]:
@@ -267,12 +221,7 @@ def _assigned(
 def _joined(upper: str, own: str, lower: str, known: Mapping[str, Quantity]) -> tuple[str, bool]:
     """The name of a column from two lines, and whether it is in a group of lengths.
 
-    Parameters
-    ----------
-    upper, own, lower : str
-        Cell of the upper line, or the one of the group to its left; that cell itself; cell of the lower line.
-    known : mapping
-        Quantitys by their names.
+    `upper` is the cell of the upper line or of the group to its left, `own` that cell itself.
     """
     if not lower.strip():
         return own, False

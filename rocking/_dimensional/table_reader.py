@@ -50,11 +50,8 @@ Item = TypeVar("Item")
 
 DELIMITERS = ",;\t|"
 
-SHEETS = (".xlsx", ".ods")
-"""Endings of files that are not text."""
-
-MAX_CHARACTERS = 20_000_000
-"""Longest table that is read."""
+SHEETS = (".xlsx", ".ods")  # endings of files that are not text
+MAX_CHARACTERS = 20_000_000  # longest table that is read
 
 EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 """Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
@@ -68,8 +65,7 @@ _TOTAL = re.compile(
 
 _PLAIN = re.compile(r"-?(?:0|[1-9][0-9]{0,14})(?:[.,][0-9]{1,15})?")
 
-MARK = "\ufeff"
-"""What some programs put before a text of UTF-8."""
+MARK = "\ufeff"  # what some programs put before a text of UTF-8
 
 
 class TooManyRowsError(InvalidArgumentError):
@@ -78,24 +74,12 @@ class TooManyRowsError(InvalidArgumentError):
 
 @dataclass(frozen=True)
 class BadRow:
-    """A row that was not read.
+    """A row that was not read."""
 
-    Attributes
-    ----------
-    row : int
-        Its number in the table, from 1.
-    column : str
-        Name of the column, "" for the whole row.
-    reason : str
-        What was found and what is allowed.
-    cells : dict of str to str
-        The row as it stands, by the headers of the table.
-    """
-
-    row: int
-    column: str
-    reason: str
-    cells: dict[str, str] = field(default_factory=dict)
+    row: int  # its number in the table, from 1
+    column: str  # name of the column, "" for the whole row
+    reason: str  # what was found and what is allowed
+    cells: dict[str, str] = field(default_factory=dict)  # the row as it stands, by the headers of the table
 
     def __str__(self) -> str:
         return f"row {self.row}{f', {self.column}' if self.column else ''}: {self.reason}"
@@ -103,30 +87,19 @@ class BadRow:
 
 @dataclass(frozen=True)
 class Table(Generic[Item]):
-    """The rows of a table.
+    """The rows of a table."""
 
-    Attributes
-    ----------
-    items : list
-        One for each row that was read.
-    cells : dict of str to list of str
-        Every column of the table as it stands, by the text of its header, with its number where that is empty or not
-        the first; for the rows that were read.
-    columns : dict of str to str
-        The name of the quantity in each of these columns that is read.
-    units : dict of str to str
-        The unit of each quantity that is read: of the header, or of the first cell with one, otherwise "".
-    errors : list of (int, InvalidArgumentError)
-        Number of each row that was not read, and why; the parameter is the column, "row" the whole row.
-    unread : list of dict of str to str
-        The cells of each of these rows.
-    """
-
-    items: list[Item]
+    items: list[Item]  # one for each row that was read
+    # every column of the table as it stands, by the text of its header, with its number where that is empty or
+    # not the first; for the rows that were read
     cells: dict[str, list[str]] = field(default_factory=dict)
+    # the name of the quantity in each of these columns that is read
     columns: dict[str, str] = field(default_factory=dict)
+    # the unit of each quantity that is read: of the header, or of the first cell with one, otherwise ""
     units: dict[str, str] = field(default_factory=dict)
+    # number of each row that was not read, and why; the parameter is the column, "row" the whole row
     errors: list[tuple[int, InvalidArgumentError]] = field(default_factory=list)
+    # the cells of each of these rows
     unread: list[dict[str, str]] = field(default_factory=list)
 
     @property
@@ -143,13 +116,7 @@ class Table(Generic[Item]):
 
 
 def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
-    """The content of a file; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it cannot be read.
-    """
+    """The content of a file; `-` is standard input."""
     try:
         return sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
     except OSError as error:
@@ -157,15 +124,7 @@ def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
 
 
 def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
-    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the file cannot be read, its header lacks a column, or the decimal sign of a number is not certain.
-    ImportError
-        If the package for sheets is not installed, the extra `sheets`.
-    """
+    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input."""
     raw = read_bytes(source, schema.argument)
     if Path(source).suffix.lower() in SHEETS:
         return read_rows(rows_of_sheet(raw, schema.argument), schema)
@@ -412,7 +371,8 @@ def _values(row: Sequence[str], header: Header, decimal: str, schema: Schema[Any
             del values[one.name]
     if schema.every_length and "name" not in values and not _has_text(row, header):
         raise InvalidArgumentError("row", "numbers only", "a name or another text, which totals lack")
-    if not any(one.unit not in ("", "-", "kg") and one.name in values for one, _ in header.columns.values()):
+    dimensions = (one for one, _ in header.columns.values() if one.unit not in ("", "-", "kg") or one.name == "body")
+    if not any(one.name in values for one in dimensions):
         raise InvalidArgumentError("row", "no dimension", "one or more in each row")
     return values
 
@@ -445,13 +405,7 @@ def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
 
 
 def _check_lengths(row: Sequence[str], header: Header) -> None:
-    """Refuse a row with a length in a column that is not read.
-
-    Raises
-    ------
-    InvalidArgumentError
-        Of that column.
-    """
+    """Refuse a row with a length in a column that is not read."""
     for place, text in enumerate(header.texts[: len(row)]):
         cell = row[place].strip()
         if place in header.columns or place in header.units.values() or cell.lower() in EMPTY:

@@ -17,18 +17,10 @@ MARGIN = 0.05
 
 @dataclass(frozen=True)
 class Threshold:
-    """A value at which the outcome changes.
+    """A value at which the outcome changes."""
 
-    Attributes
-    ----------
-    value : float
-        Peak acceleration [m/s2], period [s], half-diagonal [m], or factor of a record [-].
-    overturns_above : bool
-        True: the block overturns just above and survives just below; False: the reverse.
-    """
-
-    value: float
-    overturns_above: bool
+    value: float  # peak acceleration [m/s2], period [s], half-diagonal [m], or factor of a record [-]
+    overturns_above: bool  # true: the block overturns just above and survives just below; False: the reverse
 
     def __str__(self) -> str:
         """What happens above the value, such as `overturns above 4.70006`."""

@@ -40,11 +40,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-HIGHEST = 100.0, 10.0
-"""Largest strength searched over that of uplift [-]: of pulses, and of records."""
-
-BEYOND = 10.0, 2.0
-"""That for a block over its own strength [-], where it is larger."""
+HIGHEST = 100.0, 10.0  # largest strength searched over that of uplift [-]: of pulses, and of records
+BEYOND = 10.0, 2.0  # that for a block over its own strength [-], where it is larger
 
 WORDS = {
     "peak_acceleration": ("peak acceleration", " m/s2", "a peak acceleration of {} m/s2", " m/s2"),
@@ -163,18 +160,8 @@ def thresholds_of(
 ) -> BodyThresholds:
     """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
 
-    Under a pulse as `rocking.thresholds`; under a record as `scale_thresholds`.
-
-    Parameters
-    ----------
-    problem : Problem
-        The bodies and the motion.
-    highest : float, optional
-        Highest strength searched, in its unit; by default 100 times that of uplift under a pulse, 10 under a record.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
-    resolution : float
-        As of `scale_thresholds`.
+    Under a pulse as `rocking.thresholds`; under a record as `scale_thresholds`. `highest`: in the unit of the strength;
+    by default `HIGHEST` times that of uplift.
     """
     motion, shape = problem.motion, problem.shape
     by_record = isinstance(motion, Record)
@@ -226,20 +213,7 @@ def _pulse_changes(
 def block_thresholds(
     problem: Problem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
 ) -> BodyThresholds:
-    """Every strength at which the outcome for a block changes.
-
-    Parameters
-    ----------
-    problem : Problem
-        The block and the motion.
-    highest : float, optional
-        Highest peak acceleration [m/s2] or factor [-] searched; by default as `thresholds_of`, or 10 times the peak
-        acceleration of the problem, twice its factor, where that is more.
-    stop : StopFlag, optional
-        Cancels the work, which then raises `StoppedError`.
-    resolution : float
-        As of `scale_thresholds`.
-    """
+    """As `thresholds_of`, for one block; by default up to `BEYOND` times the strength of the problem at least."""
     block, motion, groups = problem.block, problem.motion, dict(problem.groups)
     if isinstance(motion, Record):
         if highest is None:

@@ -78,12 +78,7 @@ HELD_SHARE = 0.95  # share of the first peak below which the body is taken as re
 
 
 def identify_free_rocking(
-    time: ArrayLike,
-    rotation: ArrayLike,
-    *,
-    edges: int = 1,
-    confidence: Scalar = 0.95,
-    stop: StopFlag | None = None,
+    time: ArrayLike, rotation: ArrayLike, *, edges: int = 1, confidence: Scalar = 0.95, stop: StopFlag | None = None
 ) -> xr.Dataset:
     """Restitution, slenderness angle and frequency parameter from the trace of a body that rocks freely.
 
@@ -403,10 +398,7 @@ def _described(
             "drift_lower": variable((), fit.x[1] - reach[1], "rad s-1", f"{about}, end of the interval"),
             "drift_upper": variable((), fit.x[1] + reach[1], "rad s-1", f"{about}, end of the interval"),
             "noise": variable(
-                (),
-                math.sqrt(2.0 * fit.cost / (model.size - fit.x.size)),
-                "rad",
-                "standard deviation of the residual",
+                (), math.sqrt(2.0 * fit.cost / (model.size - fit.x.size)), "rad", "standard deviation of the residual"
             ),
             "sample_noise": variable((), noise, "rad", "standard deviation of independent errors of the samples"),
         },

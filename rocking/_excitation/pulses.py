@@ -3,21 +3,20 @@
 The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; a positive one starts a
 rotation in the negative direction. Those of the catalogue are of two families: sums of sinusoids, for which the slender
 block has exact arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low
-frequencies. To add a pulse, define it here and append it to `_FACTORIES`; `register` adds one at run time, of these
+frequencies. To add a pulse, define it here and append it to `_KINDS`; `register` adds one at run time, of these
 families or of one's own (`SmoothPulse`).
 
 A text names a pulse, mirrors it and states its parameters, with their units: "-mavroeidis_papageorgiou(phase=90 deg)".
 """
 
-import inspect
 import math
-import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import cache, lru_cache
-from typing import Annotated, get_type_hints
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from typing import Annotated
 
-from rocking._base.errors import InvalidArgumentError, one_of, plain_number
+from rocking._base.errors import InvalidArgumentError, one_of
+from rocking._base.kinds import Kind, split_kind
 from rocking._base.quantity import Quantity
 from rocking._base.units import Scalar
 from rocking._excitation.shapes import AbstractPulse
@@ -142,9 +141,9 @@ def mavroeidis_papageorgiou(
     return SinusoidalPulse.of_unit_peak("mavroeidis_papageorgiou", -end, end, raw)
 
 
-_FACTORIES: dict[str, Callable[..., AbstractPulse]] = {
-    factory.__name__: factory
-    for factory in (
+_KINDS: dict[str, Kind[AbstractPulse]] = {
+    make.__name__: Kind(make)
+    for make in (
         sine,
         cosine,
         half_sine,
@@ -157,7 +156,7 @@ _FACTORIES: dict[str, Callable[..., AbstractPulse]] = {
     )
 }
 
-PULSE_NAMES: tuple[str, ...] = tuple(_FACTORIES)
+PULSE_NAMES: tuple[str, ...] = tuple(_KINDS)
 """Names of the pulses of this package; a leading minus mirrors one. Files store their places: append only."""
 
 
@@ -195,32 +194,13 @@ def pulse_number(name: str) -> int:
 
 
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
-    """The pulse itself, or the one of that name.
-
-    Raises `InvalidArgumentError` for anything else.
-    """
+    """The pulse itself, or the one of that name; anything else is refused."""
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
 
 
-@dataclass(frozen=True)
-class PulseParameter:
-    """A parameter of a named pulse, and its default in the unit of the declaration."""
-
-    declared: Quantity
-    default: float
-
-
-@cache
-def pulse_parameters(name: str) -> Mapping[str, PulseParameter]:
-    """The parameters of a named pulse without its sign, by name; of a registered one there are none."""
-    factory = _FACTORIES.get(name)
-    if factory is None:
-        return {}
-    hints = get_type_hints(factory, include_extras=True)
-    return {
-        key: PulseParameter(hints[key].__metadata__[0], one.default)
-        for key, one in inspect.signature(factory).parameters.items()
-    }
+def pulse_parameters(name: str) -> Mapping[str, Quantity]:
+    """The parameters of a named pulse without its sign, with their defaults; of a registered one there are none."""
+    return _KINDS[name].fields if name in _KINDS else {}
 
 
 def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
@@ -245,7 +225,7 @@ def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
         For an unknown name or parameter, or a parameter out of range.
     """
     text: object = name
-    parts = _parts(str(text)) if isinstance(text, str) else None
+    parts = split_kind(text, "pulse") if isinstance(text, str) else None
     if parts is None:
         allowed = "a pulse such as SinusoidalPulse, or one of " + ", ".join(pulse_names())
         raise InvalidArgumentError("pulse", name, allowed)
@@ -256,13 +236,10 @@ def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
     registered = _REGISTERED.get(base)
     if registered is not None and not given:
         return registered.mirrored() if sign else registered
-    known = pulse_parameters(base if base in PULSE_NAMES else one_of("pulse", base, pulse_names()))
-    for key, value in given.items():
-        if key not in known:
-            raise InvalidArgumentError(key, value, f"for {base}: {' and '.join(known) or 'no parameters'}")
-        if key in written and known[key].declared.unit == "-":
-            given[key] = plain_number(key, written[key])
-    return _build_pulse(sign, base, **{key: known[key].declared.number(value) for key, value in given.items()})
+    if base not in _KINDS:
+        one_of("pulse", base, pulse_names())
+        raise InvalidArgumentError(next(iter(given)), next(iter(given.values())), f"for {base}: no parameters")
+    return _build_pulse(sign, base, **(_KINDS[base].read(given) if given else {}))
 
 
 def split_pulses(text: str) -> list[str]:
@@ -276,24 +253,6 @@ def split_pulses(text: str) -> list[str]:
     return [*found, text[start:].strip()]
 
 
-_TEXT = re.compile(r"(-?)([A-Za-z_]\w{0,99})(?:\s*\(([^()]{0,200})\))?")
-
-
-@lru_cache(maxsize=256)
-def _parts(text: str) -> tuple[str, str, Mapping[str, str]] | None:
-    """The sign, the name and the parameters of a pulse; None if the text has another form."""
-    found = _TEXT.fullmatch(text)
-    if found is None:
-        return None
-    parameters: dict[str, str] = {}
-    for part in filter(str.strip, (found[3] or "").split(",")):
-        key, equals, value = (one.strip() for one in part.partition("="))
-        if not equals or key in parameters:
-            raise InvalidArgumentError("pulse", text, "each parameter once, as name=value")
-        parameters[key] = value
-    return found[1], found[2], parameters
-
-
 def _digits(value: float) -> str:
     """The shortest text of a number that reads the same."""
     short = f"{value:g}"
@@ -302,9 +261,9 @@ def _digits(value: float) -> str:
 
 @lru_cache(maxsize=256)
 def _build_pulse(sign: str, base: str, **parameters: float) -> AbstractPulse:
-    made = _FACTORIES[base](**parameters)
+    made = _KINDS[base].make(**parameters)
     changed = [
-        f"{key}={_digits(parameters[key])}{one.declared.unit.removeprefix('-')}"
+        f"{key}={_digits(parameters[key])}{one.unit.removeprefix('-')}"
         for key, one in pulse_parameters(base).items()
         if parameters.get(key, one.default) != one.default
     ]

@@ -71,11 +71,7 @@ class SampledPulse(AbstractPulse):
     values: NDArray[np.float64]
 
     def __init__(
-        self,
-        acceleration: ArrayLike,
-        time: ArrayLike | None = None,
-        period: float | None = None,
-        name: str = "sampled",
+        self, acceleration: ArrayLike, time: ArrayLike | None = None, period: float | None = None, name: str = "sampled"
     ) -> None:
         samples = in_range(
             "acceleration", getattr(acceleration, "magnitude", acceleration), -np.inf, np.inf, closed="neither"
@@ -116,7 +112,7 @@ class SampledPulse(AbstractPulse):
         inner = sloped[1:][np.diff(rises[sloped]) != 0.0]
         fields = {"name": name, "start": 0.0, "end": float(phases[-1]), "stationary": tuple(phases[inner].tolist())}
         for key, value in (fields | {"phases": phases, "values": values}).items():
-            object.__setattr__(self, key, value)
+            vars(self)[key] = value
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], period: float | None = None) -> SampledPulse:

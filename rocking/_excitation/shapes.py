@@ -63,7 +63,7 @@ class AbstractPulse(ABC):
             )
         if len(found) >= MAX_PIECES:
             raise InvalidArgumentError("stationary", found, f"fewer than {MAX_PIECES} phases: a shorter window")
-        object.__setattr__(self, "stationary", given or found)
+        vars(self)["stationary"] = given or found
         peak = peak_amplitude(self.shape, start, end, found)
         if not abs(peak - 1.0) <= PEAK_TOLERANCE:
             raise InvalidArgumentError("max |f|", peak, "1: divide the coefficients by it")
@@ -73,7 +73,7 @@ class AbstractPulse(ABC):
         if not (self.name and isinstance(self.name, str)):
             raise InvalidArgumentError("name", self.name, "a string that is not empty")
         for name, value in zip(("start", "end"), checked_window(self.start, self.end), strict=True):
-            object.__setattr__(self, name, value)
+            vars(self)[name] = value
 
     @abstractmethod
     def shape(self, phi: ArrayLike) -> Array:

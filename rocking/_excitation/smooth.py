@@ -89,7 +89,7 @@ class SmoothPulse(AbstractPulse):
         numbers = np.append(polynomials.ends, polynomials.coefficients)
         digest = hashlib.sha256(numbers.astype("<f8").tobytes()).hexdigest()
         for name, value in (values | {"polynomials": polynomials, "digest": digest}).items():
-            object.__setattr__(self, name, value)
+            vars(self)[name] = value
 
     def shape(self, phi: ArrayLike) -> Array:
         return np.asarray(self.curve(float_array("phi", phi, unit="rad")) / self.peak)

@@ -76,8 +76,8 @@ class WaveletPulse(AbstractPulse):
         if not 1 <= len(polynomial) <= MAX_POLYNOMIAL:
             raise InvalidArgumentError("polynomial", polynomial, f"1 to {MAX_POLYNOMIAL} coefficients")
         spread = checked_number("spread", self.spread, low=1e-6, unit="rad2")
-        object.__setattr__(self, "polynomial", polynomial)
-        object.__setattr__(self, "spread", spread)
+        vars(self)["polynomial"] = polynomial
+        vars(self)["spread"] = spread
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:

@@ -29,7 +29,7 @@ MAX_STEP = 0.02
 """Largest step between samples of a moving block, in tau and, while the pulse acts, in its phase [-, rad]."""
 
 MAX_STEPS = 250_000
-"""Number of steps during the ground motion, and after it, from which on they are longer than `MAX_STEP` [-]."""
+"""Most steps during the ground motion, and after it [-]: longer motions have longer steps than `MAX_STEP`."""
 
 LAST_FLIGHT = 100.0
 """Longest flight of free rocking [tau]: within a rounding of the unstable equilibrium it lasts 2 ln(2/1e-16) = 75."""
@@ -51,22 +51,12 @@ COLUMNS = {
 """Variables that `add_contact` adds to a time history, with their meanings."""
 
 ATTRIBUTES = (
-    "largest_friction_demand",
-    "largest_friction_demand_over_slope",
-    "smallest_normal_reaction",
-    "impulse_ratio",
+    *("largest_friction_demand", "largest_friction_demand_over_slope"),
+    *("smallest_normal_reaction", "impulse_ratio"),
 )
 """Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
-
-FORCES = (
-    "largest_friction_demand",
-    "largest_friction_demand_over_slope",
-    "friction_time",
-    "smallest_normal_reaction",
-    "normal_time",
-    "impulse_ratio",
-)
+FORCES = (*ATTRIBUTES, "friction_time", "normal_time")
 """Fields of `ContactExtremes` that depend on the contact forces."""
 
 
@@ -74,36 +64,17 @@ FORCES = (
 class ContactExtremes:
     """Extremes during a motion, impacts excluded; of a block that overturns, until it exceeds alpha permanently.
 
-    Attributes
-    ----------
-    largest_friction_demand : float [-]
-        Largest |H|/N; infinite if the block lifts off, 0 in the slender limit.
-    largest_friction_demand_over_slope : float [-]
-        The same over tan(alpha), at least 1 for every block that rocks.
-    friction_time : float [-]
-        tau at which it occurs.
-    smallest_normal_reaction : float [-]
-        Smallest N/(m g).
-    normal_time : float [-]
-        tau at which it occurs.
-    impulse_ratio : float [-]
-        Horizontal over vertical impulse at the impacts; 0 if there are none.
-    chatters : bool
-        Whether impacts accumulate to rest while the pulse acts.
-    outcome : Outcome
-        Final outcome of the motion.
-
     The forces are nan where they are not known; sliding and lifting off are then not assessed.
     """
 
-    largest_friction_demand: float
-    largest_friction_demand_over_slope: float
-    friction_time: float
-    smallest_normal_reaction: float
-    normal_time: float
-    impulse_ratio: float
-    chatters: bool
-    outcome: Outcome
+    largest_friction_demand: float  # largest |H|/N; infinite if the block lifts off, 0 in the slender limit [-]
+    largest_friction_demand_over_slope: float  # the same over tan(alpha), at least 1 for every block that rocks [-]
+    friction_time: float  # tau at which it occurs [-]
+    smallest_normal_reaction: float  # smallest N/(m g) [-]
+    normal_time: float  # tau at which it occurs [-]
+    impulse_ratio: float  # horizontal over vertical impulse at the impacts; 0 if there are none [-]
+    chatters: bool  # whether impacts accumulate to rest while the pulse acts
+    outcome: Outcome  # final outcome of the motion
 
     def without_forces(self) -> ContactExtremes:
         """The same without the forces, for structures of which only the motion is known."""

@@ -15,14 +15,7 @@ from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as GroundMotion
 from rocking._excitation.records.vertical import check_one_vertical_scale
 from rocking._excitation.shapes import MAX_PIECES
-from rocking._history.sampling import (
-    ROTATION,
-    TAU,
-    VELOCITY,
-    sample_flights,
-    sample_free_rocking,
-    sample_record,
-)
+from rocking._history.sampling import ROTATION, TAU, VELOCITY, sample_flights, sample_free_rocking, sample_record
 from rocking._model.checks import check_one_alpha
 from rocking._model.fields import END_ROTATION, END_VELOCITY, SOLVED_FIELDS
 from rocking._model.reactions import INERTIA_RATIO, ContactGeometry
@@ -31,7 +24,7 @@ from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES, peak_response
+from rocking._solver.peak_response import NO_EDGES, peak_response
 from rocking._solver.records import state as samples_state
 from rocking._solver.records.record_response import frequency_parameter_range, pulse_rows
 from rocking._solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
@@ -193,7 +186,8 @@ class BodyMotion(ABC):
             impact_times,
             self._flag,
         )
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return int(written)
 
     @cached_property
@@ -204,10 +198,6 @@ class BodyMotion(ABC):
     @cached_property
     def _flag(self) -> NDArray[np.uint8]:
         return flag_array(self.stop)
-
-    def _check_stop(self) -> None:
-        if self._flag[0]:
-            check_stop(self.stop)
 
 
 def overturned(record: Record) -> bool:
@@ -260,7 +250,8 @@ class PulseMotion(BodyMotion):
             self._set_response(record)
             at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return record, written
 
     @cached_property
@@ -272,15 +263,13 @@ class PulseMotion(BodyMotion):
     def _flights(self) -> tuple[NDArray[np.void], Record]:
         """The flights under the pulse by Taylor steps, and the state of the solver after them."""
         cell, state = self.cell, np.repeat(pulse_state(self.pulse), LANES)
-        followed, edges = np.empty(MAX_FLIGHTS, FOLLOWED_FLIGHT), np.empty((1, EDGE_COLUMNS))
-        values = cell["slenderness"][0], cell["rate"], cell["eta"][0], cell["alpha"]
-        groups = [np.array([value]) for value in values]
+        followed, response = np.empty(MAX_FLIGHTS, FOLLOWED_FLIGHT), np.empty(1, RESPONSE_RECORD)
         equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
         equal = equal and cell["slenderness"][0] == cell["slenderness"][1]
-        bodies = NO_BODIES if equal else np.array([cell])
-        response = np.empty(1, RESPONSE_RECORD)
-        count = solve_batch(*groups, bodies, state, step_state(state[0]), self._flag, response, edges, followed)
-        self._check_stop()
+        edges = NO_EDGES if equal else np.empty((1, EDGE_COLUMNS))
+        count = solve_batch(np.array([cell]), state, step_state(state[0]), self._flag, response, edges, followed)
+        if self._flag[0]:
+            check_stop(self.stop)
         return followed[:count].copy(), state[0]
 
     def _set_response(self, record: Record) -> None:
@@ -343,7 +332,8 @@ class SamplesMotion(BodyMotion):
         steps = samples_state.step_state(self.samples, self.cell)
         rest = self.max_rotation, history, impact_times, self._flag
         written = sample_record(self.samples, self.cell, state, start, steps, *rest)
-        self._check_stop()
+        if self._flag[0]:
+            check_stop(self.stop)
         return state, int(written)
 
 

@@ -37,12 +37,7 @@ REST_VELOCITY = 1e-7  # velocity after an impact [-] below which free rocking is
 
 @light_entry
 def sample_flights(
-    followed: Record,
-    flight: Record,
-    steps: Record,
-    max_rotation: float,
-    history: FloatArray,
-    stop: FloatArray,
+    followed: Record, flight: Record, steps: Record, max_rotation: float, history: FloatArray, stop: FloatArray
 ) -> None:
     """Repeat the flights of a body under a pulse by the Taylor steps of `rocking._solver.kernels.batch.solve_batch`.
 
@@ -139,13 +134,7 @@ def sample_step(steps: Record, sign: float, start: float, end: float, history: F
 
 @kernel
 def sample_steps(
-    flight: Record,
-    steps: Record,
-    start: float,
-    end: float,
-    max_rotation: float,
-    history: FloatArray,
-    filled: int,
+    flight: Record, steps: Record, start: float, end: float, max_rotation: float, history: FloatArray, filled: int
 ) -> tuple[int, float, float]:
     """Repeat a flight, at most to z = `max_rotation`; returns the times passed, last z, w."""
     set_edge_lane(steps, 0, flight, flight.side)
@@ -179,12 +168,7 @@ def flight_by_taylor_steps(block: Record, samples: FloatArray, steps: Record) ->
 
 @kernel
 def sample_pieces(
-    start: Record,
-    samples: FloatArray,
-    end: float,
-    max_rotation: float,
-    history: FloatArray,
-    filled: int,
+    start: Record, samples: FloatArray, end: float, max_rotation: float, history: FloatArray, filled: int
 ) -> tuple[int, float, float]:
     """Repeat a flight of the slender block, piece by piece, from the state at its start.
 
@@ -212,13 +196,7 @@ def sample_pieces(
 
 @kernel
 def sample_piece_steps(
-    start: Record,
-    samples: FloatArray,
-    steps: Record,
-    end: float,
-    max_rotation: float,
-    history: FloatArray,
-    filled: int,
+    start: Record, samples: FloatArray, steps: Record, end: float, max_rotation: float, history: FloatArray, filled: int
 ) -> tuple[int, float, float]:
     """`sample_pieces` for any body by Taylor steps; `start` is changed."""
     pieces.start_steps(start, samples, steps, 0)

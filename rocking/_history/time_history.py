@@ -12,14 +12,7 @@ from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import add_contact
-from rocking._history.motion import (
-    BodyMotion,
-    Floats,
-    SamplesMotion,
-    build_motion,
-    build_record_motion,
-    overturned,
-)
+from rocking._history.motion import BodyMotion, Floats, SamplesMotion, build_motion, build_record_motion, overturned
 from rocking._model.checks import known_restitution
 from rocking._model.labelled import variable
 from rocking._model.response import Outcome

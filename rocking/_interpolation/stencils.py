@@ -35,13 +35,7 @@ class Mesh(NamedTuple):
 
     @classmethod
     def of(cls, slenderness: Array, frequency_ratio: Array) -> Mesh:
-        """The mesh of the axes of a cube.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If an axis has fewer than four nodes.
-        """
+        """The mesh of the axes of a cube, of at least four nodes each."""
         shape = slenderness.size, frequency_ratio.size
         if min(shape) < STENCIL_SIZE:
             raise InvalidArgumentError("nodes", shape, f"axes of at least {STENCIL_SIZE} nodes")

@@ -54,14 +54,8 @@ class CubeCollection:
     def slice_at(self, pulse: str, restitution: float, may_read: bool = True) -> CubeSlice | None:
         """The cube of a pulse and a restitution, None if there is none; without `may_read` it is not read.
 
-        A mirrored pulse has the same peaks and outcomes, hence the same cube.
-
-        Raises
-        ------
-        DatasetError
-            If the file is damaged, cannot be read, or does not contain the cube that its name states.
-        UnreadError
-            If it has to be read.
+        A mirrored pulse has the same peaks and outcomes, hence the same cube. Raises `DatasetError` if the file is
+        damaged, cannot be read, or does not contain the cube that its name states; `UnreadError` if it has to be read.
         """
         key = pulse.removeprefix("-"), restitution
         known = self._slices.current(key)
@@ -154,13 +148,7 @@ class CubeCollection:
         return result.reshape(shape), tuple(one.sha256 for one in used)
 
     def problem(self, name: str) -> str | None:
-        """Description of the problem of a data set; None if it is intact.
-
-        Raises
-        ------
-        UnknownDatasetError
-            If there is no data set of that name.
-        """
+        """Description of the problem of a data set; None if it is intact."""
         try:
             with self.catalogue.open(name) as file:
                 return self.problem_of(file)

@@ -51,13 +51,7 @@ class Points:
 
     @classmethod
     def of(cls, *groups: ArrayLike | None) -> tuple[Points, tuple[int, ...]]:
-        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is out of range, or the shapes do not broadcast.
-        """
+        """The checked, broadcast and flattened arguments, in the order of the fields, and the broadcast shape."""
         given = dict(zip(cls.__dataclass_fields__, groups, strict=True))
         s, w, eta, alpha = check_groups(**given).values()
         if not (s.ndim or w.ndim or eta.ndim or alpha.ndim):  # one block, in a fraction of the time
@@ -89,21 +83,11 @@ class UnreadError(RuntimeError):
 
 
 class Window(NamedTuple):
-    """The slices from which points are interpolated.
+    """The slices from which points are interpolated."""
 
-    Attributes
-    ----------
-    slices : list of CubeSlice
-        Ascending.
-    lower : int
-        The one at or below the points.
-    levels : float array
-        Their restitutions [-].
-    """
-
-    slices: list[CubeSlice]
-    lower: int
-    levels: Array
+    slices: list[CubeSlice]  # ascending
+    lower: int  # the one at or below the points
+    levels: Array  # their restitutions [-]
 
     def arguments(self, alpha: Array, may_read: bool) -> tuple[Any, ...]:
         """What the kernel needs for points at some angles [rad], which are read if they are not."""

@@ -41,18 +41,11 @@ class Layers:
     """The nodes of a cube, read angle by angle when they are first needed.
 
     Of the ten angles of an atlas, 12 MB each, a response needs one or up to four: memory of the others is not touched.
-
-    Parameters
-    ----------
-    shape : (int, int, int)
-        Of the nodes: angles, n, m.
-    read : callable
-        Returns the nodes (n, m) of an angle by its index; the file then is the one that was checked.
+    `read` gives the nodes (n, m) of an angle by its index, from the version of the file that was checked.
     """
 
     def __init__(self, shape: tuple[int, ...], read: Callable[[int], Nodes]) -> None:
-        self._nodes = np.empty(shape, NODE)
-        self._missing = set(range(shape[0]))
+        self._kept = np.empty(shape, NODE), set(range(shape[0]))  # the nodes, and the angles that are not read
         self._read = read
         self._lock = Lock()
 
@@ -62,70 +55,49 @@ class Layers:
     @property
     def nbytes(self) -> int:
         """Memory of all nodes that may be kept [bytes]."""
-        return min(self._nodes.nbytes, MAX_LAYER_BYTES)
-
-    def lacks(self, angles: Collection[int]) -> bool:
-        """Whether some angles are not read."""
-        return not self._missing.isdisjoint(angles)
+        return min(self._kept[0].nbytes, MAX_LAYER_BYTES)
 
     @property
     def complete(self) -> bool:
         """Whether all angles are read."""
-        return not self._missing
+        return not self._kept[1]
+
+    def lacks(self, angles: Collection[int]) -> bool:
+        """Whether some angles are not read."""
+        return not self._kept[1].isdisjoint(angles)
 
     def at(self, angles: Collection[int]) -> Nodes:
         """The nodes (angles, n, m), of which those of some angles are read; the others are undefined.
 
-        Raises
-        ------
-        DatasetError
-            If the file was replaced or removed.
+        Raises `DatasetError` if the file was replaced or removed.
         """
-        if self._missing.isdisjoint(angles):
-            return self._nodes
+        nodes, missing = self._kept
+        if missing.isdisjoint(angles):
+            return nodes
         with self._lock:
-            layer, wanted = self._nodes[0].nbytes, self._missing.intersection(angles)
-            if (len(self._nodes) - len(self._missing) + len(wanted)) * layer > MAX_LAYER_BYTES and len(wanted) < len(
-                self._nodes
-            ):  # who holds the former array keeps its nodes
-                self._nodes, self._missing = np.empty(self._nodes.shape, NODE), set(range(len(self._nodes)))
-                wanted = self._missing.intersection(angles)
-            for angle in sorted(wanted):
-                self._nodes[angle] = self._read(angle)
-            self._missing -= wanted
-            return self._nodes
+            nodes, missing = self._kept
+            many = len(nodes) - len(missing.difference(angles))
+            if many * nodes[0].nbytes > MAX_LAYER_BYTES and many > len(angles):  # others keep the former array
+                nodes, missing = self._kept = np.empty(nodes.shape, NODE), set(range(len(nodes)))
+            for angle in missing.intersection(angles):
+                nodes[angle] = self._read(angle)
+            missing.difference_update(angles)
+            return nodes
 
 
 @dataclass(frozen=True, eq=False)
 class CubeSlice:
-    """The cube of one restitution.
+    """The cube of one restitution."""
 
-    Attributes
-    ----------
-    pulse : str or SampledPulse
-        Name of the pulse, or the pulse made again from the samples in the file.
-    restitution : float
-        eta of this cube [-].
-    restitutions : float array
-        eta of the cubes from which the interval above this one is interpolated [-], ascending.
-    axes : mapping of str to float array
-        alpha [rad], slenderness [-] and frequency_ratio [-].
-    mesh, angles : Mesh, AngleAxis
-        The same for the kernel.
-    layers : Layers
-        The variables, an array (angles, n, m) of `NODE`.
-    sha256 : str
-        Digest of the file, the version of the data.
-    """
-
-    pulse: str | SampledPulse
-    restitution: float
-    restitutions: Array
-    axes: Mapping[str, Array]
+    pulse: str | SampledPulse  # name of the pulse, or the pulse made again from the samples in the file
+    restitution: float  # eta of this cube [-]
+    restitutions: Array  # eta of the cubes from which the interval above this one is interpolated [-], ascending
+    axes: Mapping[str, Array]  # alpha [rad], slenderness [-] and frequency_ratio [-]
+    # mesh, angles: the same for the kernel
     mesh: Mesh
     angles: AngleAxis
-    layers: Layers
-    sha256: str
+    layers: Layers  # the variables
+    sha256: str  # digest of the file, the version of the data
 
     def fits(self, other: CubeSlice) -> bool:
         """True if the axes of both are equal."""
@@ -140,24 +112,16 @@ class CubeSlice:
 def open_slice(path: Path | str) -> CubeSlice:
     """A spectrum cube of a file, which is checked; its variables are read when they are first needed.
 
-    Raises
-    ------
-    DatasetError
-        If the file is missing, damaged, or not a spectrum cube.
+    Raises `DatasetError` if the file is missing, damaged, or not a spectrum cube.
     """
     version = version_of(Path(path))
     return decode_slice(read_content(path), path, Path(path), version)
 
 
 def decode_slice(content: bytes, name: Path | str, path: Path, version: FileVersion | None) -> CubeSlice:
-    """The same from the bytes of a version of a file; messages have its `name`.
+    """`open_slice` from the bytes of a version of a file; messages have its `name`.
 
     The digest at the end of the file covers all bytes: that of the values is not compared as well.
-
-    Raises
-    ------
-    DatasetError
-        If the bytes are damaged or not those of a spectrum cube, or the file was replaced.
     """
     with open_checked(content, name) as cube:
         check_spectrum(cube, name)
@@ -191,13 +155,7 @@ def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:
 
 
 def slice_of(cube: xr.Dataset, sha256: str = "", read: Callable[[int], Nodes] | None = None) -> CubeSlice:
-    """A spectrum cube; `sha256` is the digest of its file, and `read` that of `Layers`, if it has one.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an axis has fewer than four nodes, or the samples of the pulse are none.
-    """
+    """A spectrum cube of at least four nodes along each axis; of a file its `sha256`, and `read` as of `Layers`."""
     restitution = restitution_of(cube)
     axes = {name: cube[name].values for name in AXES}
     layers = Layers(cube["peak_rotation"].shape, read or partial(_layer, cube))

@@ -11,9 +11,10 @@ import numpy as np
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
 from rocking._base.errors import number, positive
+from rocking._base.quantities import GRAVITY, HEIGHT, WIDTH
 from rocking._base.units import Scalar, Values
 from rocking._model.body import AbstractBody, Array, Edge
-from rocking._model.checks import check_lengths
+from rocking._model.checks import check_quantities
 from rocking._model.reactions import INERTIA_RATIO
 
 Number = Any  # a float; of an array of blocks an array of them
@@ -23,21 +24,8 @@ Number = Any  # a float; of an array of blocks an array of them
 class AbstractBlock(AbstractBody):
     """What rocks like a rectangular block; its properties are those of the rectangle unless a subclass has others.
 
-    All arguments may be arrays, which broadcast: an array of blocks, of which the properties are arrays.
-
-    Parameters
-    ----------
-    width : float
-        2b of the rectangular block of this alpha and p [m], > 0.
-    height : float
-        2h of the same [m], > 0.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a length or gravity is not finite and positive.
+    `width`, `height`: 2b and 2h of the rectangular block of this alpha and p [m]. All arguments may be arrays, which
+    broadcast: an array of blocks, of which the properties are arrays.
     """
 
     width: Number
@@ -45,8 +33,7 @@ class AbstractBlock(AbstractBody):
     gravity: Number = STANDARD_GRAVITY
 
     def __init__(self, width: Values, height: Values, gravity: Values = STANDARD_GRAVITY) -> None:
-        arguments = {"width": width, "height": height, "gravity": gravity}
-        values, labels, index = check_lengths(arguments, {"gravity": (0.0, math.inf, "m/s2")})
+        values, labels, index = check_quantities({WIDTH: width, HEIGHT: height, GRAVITY: gravity})
         one = not any(value.ndim for value in values.values())
         vars(self).update({name: float(value) if one else value for name, value in values.items()})  # it is frozen
         if labels or index:

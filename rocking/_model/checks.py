@@ -1,6 +1,5 @@
 """Checks of the parameters against their declared ranges."""
 
-import math
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -19,23 +18,15 @@ Array = NDArray[np.float64]
 _GROUPS = {parameter.name: parameter for parameter in (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION)}
 
 
-def check_lengths(
-    arguments: Mapping[str, Any], others: Mapping[str, tuple[float, float, str]]
-) -> tuple[dict[str, Array], dict[str, Any], Index | None]:
+def check_quantities(arguments: Mapping[Quantity, Any]) -> tuple[dict[str, Array], dict[str, Any], Index | None]:
     """What bodies are made from: arrays by name, those of them that are labelled, and the index of a series.
 
-    `arguments`: numbers, texts, quantities or arrays, also labelled ones, by name; None is left out. `others`: open
-    ranges and units of those that are no lengths > 0.
+    Numbers, texts, quantities or arrays, also labelled ones, which broadcast; None is left out.
     """
-    ranges = {name: others.get(name, (0.0, math.inf, "m")) for name in arguments}
-    given = {name: in_unit(name, value, ranges[name][2]) for name, value in arguments.items() if value is not None}
+    given = {one.name: in_unit(one.name, value, one.unit) for one, value in arguments.items() if value is not None}
     labels = {name: value for name, value in given.items() if is_labelled(value)}
     given |= broadcast_by_name(labels)
-    checked = {
-        name: in_range(name, value, low, high, closed="neither", unit=unit)
-        for name, value in given.items()
-        for low, high, unit in [ranges[name]]
-    }
+    checked = {one.name: one.convert(given[one.name]) for one in arguments if one.name in given}
     broadcast(given, list(checked.values()))
     return checked, labels, index_of(*arguments.values())
 
@@ -125,7 +116,5 @@ def spread_impact(momentum: Any, share: float) -> Any:
 
 
 def check_groups(**given: Any) -> dict[str, Array]:
-    """The groups `slenderness`, `frequency_ratio`, `restitution` and `alpha`, those that are given, as float64 arrays
-    of their shapes; alpha = None is 0.
-    """
+    """The given of `slenderness`, `frequency_ratio`, `restitution` and `alpha` as float64 arrays; alpha = None is 0."""
     return {name: check_alpha(one) if name == "alpha" else _GROUPS[name].convert(one) for name, one in given.items()}

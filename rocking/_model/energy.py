@@ -14,17 +14,13 @@ def residual_energy(
 ) -> Array:
     """Kinetic and potential energy at the end of the pulse over the potential energy at alpha, both from rest [-].
 
-    Free rocking conserves w^2 - X^2 between impacts, with z = |theta|/alpha, w = dz/dtau and
-    X(z) = (2/alpha) sin(alpha (1 - z)/2), so that the ratio is (w^2 + X(0)^2 - X(z)^2)/X(0)^2, (3.11). From |theta|
-    below alpha the block can overturn only if it is at least 1; each impact multiplies it by eta^2, (3.16).
+    Free rocking conserves w^2 - X^2 between impacts, with z = |theta|/alpha, w = dz/dtau and X(z) = (2/alpha) sin(alpha
+    (1 - z)/2), so that the ratio is (w^2 + X(0)^2 - X(z)^2)/X(0)^2, (3.11). From |theta| below alpha the block can
+    overturn only if it is at least 1; each impact multiplies it by eta^2, (3.16).
 
-    Parameters
-    ----------
-    fields : mapping
-        `end_rotation` and `end_velocity`, z and w [-].
-    groups : mapping
-        `alpha`, the angle of a block with equal edges [rad], 0: slender. The fields do not tell about which edge a body
-        rotates: where the edges differ there is no `alpha`, and the result is nan.
+    From the fields `end_rotation` and `end_velocity`, z and w, and the group `alpha` of a block with equal edges [rad],
+    0: slender. The fields do not tell about which edge a body rotates: where the edges differ there is no `alpha`, and
+    the result is nan.
     """
     z, w = fields["end_rotation"], fields["end_velocity"]
     if "alpha" not in groups:

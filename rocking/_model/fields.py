@@ -8,6 +8,7 @@ classes with them.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from inspect import cleandoc
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
@@ -45,7 +46,7 @@ class ResponseField:
     # its name on the command line and over HTTP, where it differs; angles are in degrees there, with the ending _deg
     shown: str = ""
 
-    @property
+    @cached_property
     def label(self) -> str:
         """Its name on the command line and over HTTP."""
         return self.shown or (f"{self.name}_deg" if self.unit == "rad" else self.name)

@@ -67,12 +67,8 @@ class FourBarLinkage:
     def rotations(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Counterclockwise rotations of the links: first and second derivatives with respect to theta [-].
 
-        The links AB, BC and DC close a polygon: AB exp(i r1) + BC exp(i r2) - DC exp(i r3) is constant.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If B, C and D lie on a line, where the first link cannot move.
+        The links AB, BC and DC close a polygon: AB exp(i r1) + BC exp(i r2) - DC exp(i r3) is constant. Raises
+        `InvalidArgumentError` if B, C and D lie on a line, where the first link cannot move.
         """
         a, b, c, d = self.hinges
         ab, bc, dc = b - a, c - b, c - d

@@ -40,23 +40,8 @@ class Mechanism(NamedTuple):
 class MasonryArch:
     """A circular arch of equal voussoirs without tension or sliding in the joints.
 
-    Parameters
-    ----------
-    radius : float
-        Radius of the centre line [m], [1e-3, 1e6].
-    thickness : float
-        [m], from 1e-6 to below 2 times the radius.
-    embrace : float
-        Angle between the springings [rad], (0, pi].
-    voussoirs : int
-        Their number, 4 to 24.
-    gravity : float
-        g [m/s2], > 0.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
+    `radius` of the centre line and `thickness` [m], `embrace`: angle between the springings [rad], (0, pi]; in `RADII`
+    and from `THINNEST` to below 2 radii, 4 to `MOST_VOUSSOIRS` voussoirs.
     """
 
     radius: float
@@ -76,7 +61,7 @@ class MasonryArch:
             "gravity": positive("gravity", gravity, "m/s2"),
         }
         for name, value in checked.items():
-            object.__setattr__(self, name, value)  # a frozen dataclass
+            vars(self)[name] = value  # a frozen dataclass
 
     def angle(self, joint: float) -> float:
         """Direction from the centre of the circle to a joint, or between two [rad]."""
@@ -93,9 +78,8 @@ class MasonryArch:
         return [Link(mass, cmath.rect(distance, self.angle(n + 0.5)), inertia) for n in range(self.voussoirs)]
 
     def mechanism(self) -> Mechanism:
-        """The mechanism of least uplift acceleration that opens under a ground acceleration of one direction.
-
-        Raises `InvalidArgumentError` if the arch is too thin to stand under its weight, or does not open.
+        """The mechanism of least uplift acceleration that opens under a ground acceleration of one direction, if
+        any.
         """
         quadruples = itertools.combinations(range(self.voussoirs + 1), 4)
         found = [one for joints in quadruples for face in (-1, 1) if (one := self._opening(joints, face))]

@@ -90,27 +90,10 @@ def reactions(
 def impulse_ratio(restitution: float, alpha: float, other_alpha: float | None = None) -> float:
     """Horizontal over vertical impulse of the ground at an impact, (1 - eta)/((1 + eta) tan(alpha)) [-].
 
-    With edges that differ (1 - eta)/(tan(alpha) + eta tan(alpha')), alpha' of the new edge.
-
-    Parameters
-    ----------
-    restitution : float
-        eta [-], [0, 1].
-    alpha : float
-        Slenderness angle of the edge that is left [rad], [0, pi/2).
-    other_alpha : float, optional
-        That of the new edge; the same without it.
-
-    Returns
-    -------
-    float
-        Coefficient of friction required at an impact for (2.3) to hold without sliding: infinite in the slender limit
-        unless eta = 1. With the eta of (2.4) it is 3 sin(alpha) cos(alpha)/(4 - 3 sin^2(alpha)), less than tan(alpha).
-
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range.
+    With edges that differ (1 - eta)/(tan(alpha) + eta tan(alpha')), alpha of the edge that is left, alpha' of the new
+    one [rad], [0, pi/2). It is the coefficient of friction required at an impact for (2.3) to hold without sliding:
+    infinite in the slender limit unless eta = 1. With the eta of (2.4) it is 3 sin(alpha) cos(alpha)/(4 - 3
+    sin^2(alpha)), less than tan(alpha).
     """
     eta = RESTITUTION.number(restitution)
     slope = math.tan(check_one_alpha(alpha))

@@ -72,10 +72,7 @@ class StopFlag:
 
 
 def run_with_timeout(work: Callable[[StopFlag], T], seconds: float, stop: StopFlag) -> T | None:
-    """Run a part of the work of this thread with a time limit [s]; None if the limit was exceeded.
-
-    Raises `StoppedError` if `stop`, the flag of the whole work, was set.
-    """
+    """Part of the work of this thread with a time limit [s], None beyond it; `StoppedError` if `stop` was set."""
     with stop.child() as part:
         timer = threading.Timer(seconds, part.set)
         timer.daemon = True

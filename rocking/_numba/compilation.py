@@ -3,11 +3,12 @@
 `kernel` marks a function that other kernels call; `entry` marks one that is called from Python. Only entries are kept
 on disk (`rocking._numba.kernel_cache`), each with all the kernels that it calls, and each entry has one signature.
 
-There are two ways, which no kernel can tell apart (`rocking._numba.way`): the faster one compiles in a third of the
-time by private names of numba (`rocking._numba.internals`), the plain one by its public interface alone.
+Kernels compile in one of two ways, which give the same results (`rocking._numba.way`): the faster one takes a third of
+the time by private names of numba (`rocking._numba.internals`), the plain one uses its public interface alone.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numba
@@ -40,7 +41,11 @@ def _plain(function: Callable[..., Any], *, cache: bool = False) -> Any:
     return numba.njit(cache=cache, **_OPTIONS)(function)
 
 
-def _kernel(function: Callable[..., Any], *, arrays: bool = False, specialised: bool = False) -> Callable[..., Any]:
+def kernel(function: Callable[..., Any], *, arrays: bool = False, specialised: bool = False) -> Callable[..., Any]:
+    """Compile `function`, which creates no arrays, for entries that call it.
+
+    Calls from Python compile it in each process.
+    """
     made: Callable[..., Any]
     if INTERNALS is None:
         made = _plain(function)
@@ -49,7 +54,24 @@ def _kernel(function: Callable[..., Any], *, arrays: bool = False, specialised: 
     return made
 
 
-def _entry(function: Callable[..., Any], *, arrays: bool = False, light: bool = False) -> Callable[..., Any]:
+specialised_kernel = partial(kernel, specialised=True)
+"""`kernel` compiled for each constant that is passed to it, where branches that cost time depend on it."""
+
+array_kernel = partial(kernel, arrays=True)  # `kernel` that may create arrays, with reference counts
+
+
+def jitable(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Let kernels call `function`, which remains an ordinary function in Python."""
+    made: Callable[..., Any] = register_jitable(**_ARITHMETIC)(function)
+    return made
+
+
+def entry(function: Callable[..., Any], *, arrays: bool = False, light: bool = False) -> Callable[..., Any]:
+    """Compile `function`, which creates no arrays, and keep the machine code on disk.
+
+    It is called from Python, with arrays as `contiguous_array` returns them.
+    """
+
     def make(*, cache: bool) -> Any:
         if INTERNALS is None:
             return _plain(function, cache=cache)
@@ -59,46 +81,8 @@ def _entry(function: Callable[..., Any], *, arrays: bool = False, light: bool = 
     return made
 
 
-def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile `function`, which creates no arrays, for entries that call it.
-
-    Calls from Python compile it in each process.
-    """
-    return _kernel(function)
-
-
-def specialised_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`kernel` compiled for each constant that is passed to it, where branches that cost time depend on it."""
-    return _kernel(function, specialised=True)
-
-
-def array_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`kernel` that may create arrays, with reference counts."""
-    return _kernel(function, arrays=True)
-
-
-def jitable(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Let kernels call `function`, which remains an ordinary function in Python."""
-    made: Callable[..., Any] = register_jitable(**_ARITHMETIC)(function)
-    return made
-
-
-def entry(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile `function`, which creates no arrays, and keep the machine code on disk.
-
-    It is called from Python, with arrays as `contiguous_array` returns them.
-    """
-    return _entry(function)
-
-
-def light_entry(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`entry` that LLVM optimises less, where it was measured to be no slower for it: a first response waits less."""
-    return _entry(function, light=True)
-
-
-def array_entry(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`entry` that may create arrays, with reference counts."""
-    return _entry(function, arrays=True)
+light_entry = partial(entry, light=True)  # `entry` that LLVM optimises less, and no slower: a first response waits less
+array_entry = partial(entry, arrays=True)  # `entry` that may create arrays, with reference counts
 
 
 def contiguous_array(array: NDArray[Any]) -> NDArray[Any]:

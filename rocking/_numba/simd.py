@@ -141,10 +141,6 @@ def _element_address(builder: Any, array: Any, index: Any) -> Any:
     return builder.gep(builder.bitcast(array, ir.DoubleType().as_pointer()), [index])
 
 
-def _load_elements(builder: Any, array: Any, start: Any) -> Any:
-    return builder.load(builder.bitcast(_element_address(builder, array, start), _LLVM_VECTOR.as_pointer()), align=8)
-
-
 def _gather(builder: Any, array: Any, places: Any) -> Any:
     vector = ir.Constant(_LLVM_VECTOR, ir.Undefined)
     for i in range(LANES):
@@ -203,9 +199,6 @@ load = instruction(
 )
 """load(array, row): a row of an array (rows, LANES); row 0 of an array (LANES,)."""
 
-load_elements = instruction(_load_elements, _VECTOR_TYPE, None, types.intp)
-"""load_elements(array, start): the elements from `start` on of an array (cells,)."""
-
 gather = instruction(_gather, _VECTOR_TYPE, None, None)
 """gather(array, places): element `places[i]` of an array (cells,) in lane i."""
 
@@ -218,20 +211,10 @@ store = instruction(
 splat = instruction(_splat, _VECTOR_TYPE, types.float64)  # splat(number): the number in every lane
 absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)  # absolute(x), lane by lane
 
-maximum = instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y),
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-)
+maximum = instruction(lambda builder, x, y: builder.select(builder.fcmp_ordered(">", x, y), x, y), *[_VECTOR_TYPE] * 3)
 """maximum(x, y), lane by lane."""
 
-minimum = instruction(
-    lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y),
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-    _VECTOR_TYPE,
-)
+minimum = instruction(lambda builder, x, y: builder.select(builder.fcmp_ordered("<", x, y), x, y), *[_VECTOR_TYPE] * 3)
 """minimum(x, y), lane by lane."""
 
 approx_log2 = instruction(_approx_log2, _VECTOR_TYPE, _VECTOR_TYPE)
@@ -315,33 +298,23 @@ def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
     lower_builtin(operation, _MASK_TYPE, _MASK_TYPE)(lambda _, builder, __, masks: generate(builder, *masks))
 
 
-for _operator, _name in (
-    (operator.add, "fadd"),
-    (operator.iadd, "fadd"),
-    (operator.sub, "fsub"),
-    (operator.isub, "fsub"),
-    (operator.mul, "fmul"),
-    (operator.imul, "fmul"),
-    (operator.truediv, "fdiv"),
-):
-    _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
+_ARITHMETIC = {
+    "fadd": (operator.add, operator.iadd),
+    "fsub": (operator.sub, operator.isub),
+    "fmul": (operator.mul, operator.imul),
+    "fdiv": (operator.truediv,),
+}
+for _name, _operators in _ARITHMETIC.items():
+    for _operator in _operators:
+        _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
 
-for _operator, _name in (
-    (operator.lt, "<"),
-    (operator.le, "<="),
-    (operator.gt, ">"),
-    (operator.ge, ">="),
-    (operator.eq, "=="),
-):
+_COMPARISONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq}
+for _name, _operator in _COMPARISONS.items():
     _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
 
-for _operator, _name in (
-    (operator.and_, "and_"),
-    (operator.iand, "and_"),
-    (operator.or_, "or_"),
-    (operator.ior, "or_"),
-):
-    _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
+for _name, _operators in {"and_": (operator.and_, operator.iand), "or_": (operator.or_, operator.ior)}.items():
+    for _operator in _operators:
+        _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
 
 
 @type_callable(operator.invert)

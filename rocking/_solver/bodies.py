@@ -31,13 +31,10 @@ def solve_motion(
     if motion.samples is not None:
         return solve_bodies_under_pulse(motion, cells, threads, stop, each_side=True)
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, EDGE_COLUMNS))
-    omega = cells["rate"].copy()  # kernels need contiguous arrays
 
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-        unused = omega[part]
         state = solver_state.of_steps(motion, FULL_PRECISION)
-        groups = unused, omega[part], unused, unused
-        solve_batch(*groups, cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
+        solve_batch(cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
 
     cores = threads or AVAILABLE_CORES
     fill_chunks(fill, cells.size, min(max(math.ceil(cells.size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)

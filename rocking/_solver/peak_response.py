@@ -28,11 +28,11 @@ from rocking._solver.records.record_response import record_response, solve_pulse
 from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.state import StageState, stage_state
 from rocking._solver.state import (
-    BODY_CELL,
     EDGE_COLUMNS,
     FOLLOWED_FLIGHT,
     FULL_PRECISION,
     RESPONSE_RECORD,
+    block_cells,
     pulse_state,
     step_state,
 )
@@ -52,7 +52,7 @@ NEAR_BOUNDARY_MARGIN = 1e-3
 """Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
 
 
-NO_BODIES, NO_EDGES = np.empty(0, BODY_CELL), np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges
+NO_EDGES = np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges
 NO_FLIGHTS = np.empty(0, FOLLOWED_FLIGHT)  # where only responses are wanted
 
 
@@ -215,11 +215,7 @@ def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> ND
 
 
 def solve_cells(
-    pulse: AbstractPulse,
-    cells: list[NDArray[np.float64]],
-    precision: float,
-    threads: int | None,
-    stop: StopFlag | None,
+    pulse: AbstractPulse, cells: list[NDArray[np.float64]], precision: float, threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
     """Response records (size,) of cells, distributed over threads; the searches call it directly, without the checks.
 
@@ -289,7 +285,9 @@ def _solve_by_steps(
     records: NDArray[np.void],
 ) -> None:
     state = solver_state.of_steps(pulse, precision)
-    solve_batch(*_with_alpha(cells), NO_BODIES, *state, flag, records, NO_EDGES, NO_FLIGHTS)
+    slenderness, omega, eta, alpha = _with_alpha(cells)
+    bodies = block_cells(omega, slenderness, eta, alpha)
+    solve_batch(bodies, *state, flag, records, NO_EDGES, NO_FLIGHTS)
 
 
 def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

@@ -53,14 +53,6 @@ def set_edge(state: Record, side: int, slenderness: float, eta: float, ratio: fl
 
 
 @kernel
-def set_block(state: Record, slenderness: float, eta: float, alpha: float) -> None:
-    """Set a body with equal edges; alpha = 0 is the slender limit."""
-    state.alpha, state.pull[0], state.each_side, state.turn = alpha, 0.0, 0, -1.0
-    set_edge(state, 0, slenderness, eta, 1.0, 1.0)
-    set_edge(state, 1, slenderness, eta, 1.0, 1.0)
-
-
-@kernel
 def set_body(state: Record, cell: Record, each_side: bool) -> None:
     """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
     differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]

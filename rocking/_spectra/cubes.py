@@ -26,14 +26,7 @@ from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
 from rocking._solver.rules import IMPACT_LIMIT
-from rocking._spectra.layer import (
-    CELL_CENTRE,
-    DIRECT,
-    UNKNOWN,
-    Cells,
-    GridLayer,
-    largest_in_neighbourhood,
-)
+from rocking._spectra.layer import CELL_CENTRE, DIRECT, UNKNOWN, Cells, GridLayer, largest_in_neighbourhood
 from rocking._spectra.level_interval import LevelInterval
 
 Array = NDArray[np.float64]

@@ -54,16 +54,8 @@ class LevelInterval:
     def errors(self, share: float, cells: Cells, place: tuple[float, float], peak: Array) -> Array:
         """Absolute errors [-] at a share of the interval, in cells in which all blocks survive.
 
-        Parameters
-        ----------
-        share : float
-            Where in the interval [-].
-        cells : tuple of int arrays
-            Rows and columns of the cells.
-        place : tuple of float
-            The point in each cell, as fractions of it [-].
-        peak : float array (cells,)
-            Peaks of the solver there [-], nan where a block overturns.
+        `cells`: rows and columns; `place`: the point in each cell, as fractions of it; `peak` (cells,): peaks of the
+        solver there, nan where a block overturns.
         """
         x, levels = self.level(share) ** self.power, self.levels**self.power
         weights = [lagrange_weight(levels, 0, levels.size, k, x) for k in range(levels.size)]

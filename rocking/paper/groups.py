@@ -79,8 +79,8 @@ class Problem(EqualByValue):
             ("peak_acceleration", peak_acceleration, np.inf, "m/s2"),
             ("pulse_frequency", pulse_frequency, np.inf, "rad/s"),
         ):
-            object.__setattr__(self, name, in_range(name, value, 0.0, high, closed="neither", unit=unit))
-        object.__setattr__(self, "gravity", positive("gravity", gravity, "m/s2"))
+            vars(self)[name] = in_range(name, value, 0.0, high, closed="neither", unit=unit)
+        vars(self)["gravity"] = positive("gravity", gravity, "m/s2")
 
     def __repr__(self) -> str:
         """The arguments, with units."""
@@ -109,9 +109,9 @@ class Groups(EqualByValue):
 
     def __init__(self, frequency_ratio: ArrayLike, slenderness: ArrayLike, cos_alpha: ArrayLike | None = None) -> None:
         for name, value in (("frequency_ratio", frequency_ratio), ("slenderness", slenderness)):
-            object.__setattr__(self, name, in_range(name, value, 0.0, np.inf, closed="neither"))
+            vars(self)[name] = in_range(name, value, 0.0, np.inf, closed="neither")
         cosine = None if cos_alpha is None else in_range("cos_alpha", cos_alpha, 0.0, 1.0, closed="neither")
-        object.__setattr__(self, "cos_alpha", cosine)
+        vars(self)["cos_alpha"] = cosine
 
     def __repr__(self) -> str:
         """The groups."""

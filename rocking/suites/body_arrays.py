@@ -39,7 +39,7 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     different edges. Axes of unlabelled arrays are dim_0, dim_1, ...; the result is lazy, in the chunks of the
     arguments, where one of them is backed by dask. A dimension of the body must not be one of the result.
     """
-    labels, equal = body.labels, _has_equal_edges(body)
+    labels, equal = body.labels, has_equal_edges(body)
     plain = {name: value for name, value in body.parameters.items() if name not in labels}
     # a variable of the name of a dimension would become its coordinate
     given = xr.Dataset({f"of body: {name}": value for name, value in broadcast_by_name(labels).items()})
@@ -51,7 +51,7 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
         with without_place():
             bodies = body.changed(**plain, **{name: chunk[f"of body: {name}"] for name in labels})
         names = tuple(chunk.dims) if labels else tuple(f"dim_{axis}" for axis in range(len(bodies.shape)))
-        found = _over(analyse(_blocks_of(bodies) if equal else _in_a_row(bodies)), names, bodies.shape).assign_coords(
+        found = _over(analyse(blocks_of(bodies) if equal else _in_a_row(bodies)), names, bodies.shape).assign_coords(
             chunk.coords
         )
         return with_index(found, names[-1], body.index) if names else found
@@ -63,7 +63,8 @@ def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
     return xr.map_blocks(part, given, template=template.chunk(given.chunksizes))
 
 
-def _has_equal_edges(bodies: RigidBody) -> bool:
+def has_equal_edges(bodies: RigidBody) -> bool:
+    """Whether all bodies have two equal edges."""
     edge = bodies.right
     return bodies.sides == "both" and bool(
         np.all((bodies.left.alpha == edge.alpha) & (bodies.left.frequency_parameter == edge.frequency_parameter))
@@ -77,7 +78,7 @@ def _in_a_row(bodies: RigidBody) -> RigidBody:
     )
 
 
-def _blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
+def blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
     """Bodies with equal edges as blocks, in C order: rectangles where all are, else blocks of the same alpha and p."""
     edge, shape = bodies.right, bodies.shape
     uniform = np.hypot(bodies.width, bodies.top_height) / math.sqrt(12.0)

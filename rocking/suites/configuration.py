@@ -17,10 +17,13 @@ from numpy.typing import NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._base.quantities import RESTITUTION
+from rocking._dimensional.body_kinds import body
+from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
-from rocking._model.block import RectangularBlock
+from rocking._model.block import AbstractBlock
+from rocking.suites.body_arrays import blocks_of, has_equal_edges
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES
@@ -109,7 +112,7 @@ class SuiteConfiguration(EqualByValue):
 
     name: str
     records: RecordFiles
-    blocks: tuple[RectangularBlock, ...]
+    blocks: tuple[AbstractBlock, ...]
     restitution: str | float
     measure: str
     intensity: Array
@@ -200,16 +203,24 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
     )
 
 
-def _blocks(given: Any) -> tuple[RectangularBlock, ...]:
+def _blocks(given: Any) -> tuple[AbstractBlock, ...]:
     if not isinstance(given, list) or not given:
-        raise InvalidArgumentError("blocks", given, "a list of width and height [m]")
+        raise InvalidArgumentError("blocks", given, "a list of bodies, such as their width and height [m]")
     return tuple(_block(f"blocks[{place}]", item) for place, item in enumerate(given))
 
 
-def _block(section: str, given: Any) -> RectangularBlock:
-    """A block of its width and height."""
-    _keys(section, given, ("width", "height"))
-    return RectangularBlock(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
+def _block(section: str, given: Any) -> AbstractBlock:
+    """A body with equal edges from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
+    try:
+        made = body(given)
+    except InvalidArgumentError as error:
+        place = section if error.parameter == "body" else f"{section}.{error.parameter}"
+        raise InvalidArgumentError(place, error.value, error.allowed) from None
+    if isinstance(made, AbstractBlock):
+        return made
+    if not (isinstance(made, RigidBody) and has_equal_edges(made)):
+        raise InvalidArgumentError(section, given, "a body with equal edges")
+    return blocks_of(made)[0]
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:

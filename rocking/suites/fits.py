@@ -64,38 +64,20 @@ _SENTENCES = {
 
 @dataclass(frozen=True)
 class CurveFit:
-    """A fitted fragility curve. Ends of intervals are 0 or infinite where the data do not bound them.
+    """A fitted fragility curve. Ends of intervals are 0 or infinite where the data do not bound them."""
 
-    Attributes
-    ----------
-    status : FitStatus
-        Whether there is a curve; the numbers below are nan where there is none.
-    median : float
-        Intensity of probability 1/2, in the unit of the intensity.
-    median_interval : (float, float)
-        Its confidence interval. Without a fitted curve it is the distribution-free one: the median is above the levels
-        at which the binomial interval is below 1/2, and below those at which it is above.
-    dispersion : float
-        Standard deviation of the logarithm of the intensity at which the limit state is reached [-]: beta of the
-        lognormal curve, s pi/sqrt(3) of the logistic one. 0 for a step.
-    dispersion_interval : (float, float)
-        Its confidence interval.
-    log_likelihood : float
-        ln of the likelihood of all outcomes, taken as independent [-].
-    deviance : float
-        Twice what ln of the likelihood lacks of that of the observed fractions [-], >= 0.
-    largest_deviation : float
-        Largest difference of the curve from the observed fraction at a level [-].
-    """
-
-    status: FitStatus
-    median: float
+    status: FitStatus  # whether there is a curve; the numbers below are nan where there is none
+    median: float  # intensity of probability 1/2, in the unit of the intensity
+    # its confidence interval. Without a fitted curve it is the distribution-free one: the median is above the
+    # levels at which the binomial interval is below 1/2, and below those at which it is above
     median_interval: tuple[float, float]
+    # standard deviation of the logarithm of the intensity at which the limit state is reached [-]: beta of the
+    # lognormal curve, s pi/sqrt(3) of the logistic one. 0 for a step
     dispersion: float
-    dispersion_interval: tuple[float, float]
-    log_likelihood: float
-    deviance: float
-    largest_deviation: float
+    dispersion_interval: tuple[float, float]  # its confidence interval
+    log_likelihood: float  # ln of the likelihood of all outcomes, taken as independent [-]
+    deviance: float  # twice what ln of the likelihood lacks of that of the observed fractions [-], >= 0
+    largest_deviation: float  # largest difference of the curve from the observed fraction at a level [-]
 
 
 def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple[Array, Array]:
@@ -116,7 +98,7 @@ def counted(
 ) -> dict[str, tuple[NDArray[Any], str]]:
     """Number and fraction of the motions, the last axis, that do something, with interval; each with its meaning.
 
-    `signs` motions after each other are one record; the interval is that of so many fewer independent trials.
+    `signs` consecutive motions are one record and count as one independent trial of the interval.
     """
     count, trials = reached.sum(axis=-1), reached.shape[-1]
     low, high = binomial_interval(count / signs, trials // signs, confidence)

@@ -140,10 +140,7 @@ def fragility(
 
 
 def fragility_of_outcomes(
-    outcomes: xr.Dataset,
-    demand: Sequence[str | float] = ("overturning",),
-    confidence: float = 0.95,
-    signs: int = 1,
+    outcomes: xr.Dataset, demand: Sequence[str | float] = ("overturning",), confidence: float = 0.95, signs: int = 1
 ) -> xr.Dataset:
     """Counts, intervals and fitted curves from the result of `suite_outcomes`, as `fragility` describes them.
 

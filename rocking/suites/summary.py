@@ -38,20 +38,11 @@ def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
 
 
 def rotation_quantiles(outcomes: xr.Dataset) -> xr.DataArray:
-    """The peak rotation |theta|/alpha that a share of the records does not exceed, at each level.
+    """The peak rotation |theta|/alpha that a share of the records does not exceed, at each level: (quantile, block,
+    intensity).
 
-    A record that overturns the block exceeds every rotation. A quantile is the smallest peak of the sample that at
-    least this share of the records does not exceed: nothing is interpolated.
-
-    Parameters
-    ----------
-    outcomes : xarray.Dataset
-        As for `record_margins`.
-
-    Returns
-    -------
-    xarray.DataArray
-        (quantile, block, intensity) [-]; nan where too many records overturn the block.
+    A record that overturns the block exceeds every rotation: nan where too many do. A quantile is the smallest peak of
+    the sample that at least this share of the records does not exceed: nothing is interpolated.
     """
     dims = ("block", "intensity", "record")
     overturned = outcomes["overturned"].transpose(*dims).values.astype(bool)

@@ -14,14 +14,8 @@ LEVEL_COLUMNS = ("exceedances", "fraction", "fraction_lower", "fraction_upper", 
 """Variables over (demand, block, intensity) that the table of levels holds."""
 
 CURVE_COLUMNS = (
-    "median_intensity",
-    "median_intensity_lower",
-    "median_intensity_upper",
-    "dispersion",
-    "dispersion_lower",
-    "dispersion_upper",
-    "largest_deviation",
-    "first_median_intensity",
+    *("median_intensity", "median_intensity_lower", "median_intensity_upper"),
+    *("dispersion", "dispersion_lower", "dispersion_upper", "largest_deviation", "first_median_intensity"),
 )
 """Variables over (demand, block, model) that the table of curves holds."""
 

@@ -88,31 +88,16 @@ FAMILIES = {
 
 @dataclass(frozen=True, eq=False)
 class VelocityPulse(EqualByValue):
-    """A fitted pulse.
+    """A fitted pulse."""
 
-    Attributes
-    ----------
-    family : str
-        Name of its family.
-    period : float
-        T_p [s].
-    centre : float
-        t_0 [s] from the first sample.
-    cycles, phase : float
-        gamma [-] and nu [rad], (-pi, pi], of Mavroeidis & Papageorgiou; nan for the others.
-    amplitude : float
-        Of the velocity [m/s]; positive with a phase, of either sign without.
-    explained : float
-        Share of the sum of squares of the velocity, zero before and after the record, that the pulse takes away [-],
-        [0, 1].
-    """
-
-    family: str
-    period: float
-    centre: float
+    family: str  # name of its family
+    period: float  # T_p [s]
+    centre: float  # t_0 [s] from the first sample
+    # cycles, phase: gamma [-] and nu [rad], (-pi, pi], of Mavroeidis & Papageorgiou; nan for the others
     cycles: float
     phase: float
-    amplitude: float
+    amplitude: float  # of the velocity [m/s]; positive with a phase, of either sign without
+    # share, 0 to 1, of the sum of squares of the velocity, zero before and after the record, that the pulse takes away
     explained: float
 
     def velocity(self, time: Array) -> Array:

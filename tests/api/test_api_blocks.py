@@ -5,7 +5,7 @@ import io
 import math
 
 import pytest
-from rocking_api.routers import blocks
+from rocking_api.models import blocks
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
@@ -26,6 +26,9 @@ QUERY = {
 
 def get_response(client, **changes):
     return client.get("/v1/blocks/response", params=QUERY | changes)
+
+
+LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with its unit, such as 0.5 s, 500 ms"
 
 
 def test_the_response_equals_the_solver_in_si_units(client):
@@ -217,10 +220,22 @@ def test_all_wrong_numbers_of_a_json_body_are_named_with_units(client):
     response = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [row, row | {"height": 1.6}]})
     problem = assert_problem(response, 422, "blocks[0].height")
     assert problem["errors"] == [
-        {"name": "blocks[0].height", "value": "tall", "allowed": "a number [m]"},
-        {"name": "blocks[0].period", "value": "short", "allowed": "a number [s]"},
-        {"name": "blocks[1].period", "value": "short", "allowed": "a number [s]"},
+        {"name": "blocks[0].height", "value": "tall", "allowed": LENGTH},
+        {"name": "blocks[0].period", "value": "short", "allowed": TIME},
+        {"name": "blocks[1].period", "value": "short", "allowed": TIME},
     ]
+
+
+def test_a_text_may_state_another_unit(client):
+    stated = {"width": "40 cm", "height": "1600mm", "peak_acceleration": "0.5 g", "period": "500 ms"}
+    found = client.get("/v1/blocks/response", params={"pulse": "sine", "mass_height": "80 cm"} | stated).json()
+    same = {"width": 0.4, "height": 1.6, "peak_acceleration": 0.5 * 9.80665, "period": 0.5}
+    assert (
+        found["query"]
+        == client.get("/v1/blocks/response", params={"pulse": "sine", "mass_height": 0.8} | same).json()["query"]
+    )
+    many = client.post("/v1/blocks/response", json={"pulse": "sine", "blocks": [stated]}).json()
+    assert many["width"] == [0.4]
 
 
 def test_every_row_of_a_table_with_an_error_is_named(client):

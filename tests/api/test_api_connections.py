@@ -1,6 +1,7 @@
 """A server with slow and malformed clients, and its shutdown."""
 
 import json
+import re
 import socket
 import threading
 import time
@@ -134,13 +135,11 @@ def test_the_start_takes_less_than_two_seconds_and_opens_no_cube(results, tmp_pa
     assert took < 6  # two on a quiet machine: `python -m benchmarks.cost.service` measures it
 
 
-def test_each_line_of_the_log_is_json(server):
+def test_every_request_is_a_line_in_the_log(server):
     httpx2.get(server.address + POINT + "&alpha_deg=0")
     time.sleep(0.1)
-    lines = [json.loads(line) for line in server.log.read_text().splitlines()]
-    (ours,) = [line for line in lines if line.get("path", "").endswith("&alpha_deg=0")]
-    assert (ours["logger"], ours["method"], ours["status"]) == ("uvicorn.access", "GET", 200)
-    assert {"time", "level", "client"} <= ours.keys()
+    (ours,) = [line for line in server.log.read_text().splitlines() if "&alpha_deg=0" in line]
+    assert re.fullmatch(r"[-0-9:, ]+ INFO uvicorn.access: 127.0.0.1:\d+ - \"GET /v1/response\?\S+ HTTP/1.1\" 200", ours)
 
 
 @pytest.mark.parametrize("path", ["/health", POINT, "/nowhere", "/static/"])

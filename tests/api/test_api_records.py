@@ -193,7 +193,7 @@ def test_units_are_stated_and_all_wrong_parameters_named(client):
     problem = assert_problem(post(client, height="x", scale=0.0, unit="feet", baseline_order="y"), 422)
     found = {one["name"]: one["allowed"] for one in problem["errors"]}
     assert found == {
-        "height": "a number [m]",
+        "height": "a number with its unit, such as 0.3 m, 30 cm",
         "baseline_order": "an integer",
         "scale": "[1e-06, 1e+06] [-]",
         "unit": "one of " + ", ".join(UNITS),

@@ -71,7 +71,11 @@ def test_sets_of_words_and_objects_are_named_and_every_content_has_a_schema(docu
             for one in part:
                 visit(one, place)
         elif isinstance(part, dict):
-            if len(place) > 3 and ("enum" in part or part.get("type") == "object" or "title" in part):
+            if (
+                len(place) > 3
+                and place[-1] != "properties"
+                and ("enum" in part or part.get("type") == "object" or "title" in part)
+            ):
                 inline.append(place)
             if "anyOf" in part and _CONSTRAINTS & part.keys():
                 inline.append(place)

@@ -1,6 +1,5 @@
 """Metrics, request ids, log lines and cache headers."""
 
-import json
 import logging
 
 import httpx2
@@ -8,7 +7,6 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.app import create_app
-from rocking_api.json_log import JsonFormatter
 from rocking_api.settings import Settings
 
 from tests.api.conftest import assert_problem, client_of
@@ -67,8 +65,7 @@ def test_several_workers_are_one_service(results, tmp_path):
         metrics = httpx2.get(f"{server.address}/metrics", timeout=120).text
         assert server.stop(120) == 0
     assert 'rocking_points_total{source="cube"} 1.0' in metrics
-    lines = [json.loads(line) for line in server.log.read_text().splitlines()]
-    assert {line["logger"] for line in lines} <= {"uvicorn.error", "uvicorn.access", "rocking.service"}
+    assert " ERROR " not in server.log.read_text()
 
 
 def test_an_error_leaves_its_traceback_and_its_id_in_the_log(results, caplog):
@@ -80,9 +77,8 @@ def test_an_error_leaves_its_traceback_and_its_id_in_the_log(results, caplog):
 
     with TestClient(app) as client, caplog.at_level(logging.ERROR, "rocking.service"):
         assert_problem(client.get("/broken", headers={"X-Request-ID": "mine"}), 500)
-    line = json.loads(JsonFormatter().format(caplog.records[-1]))
-    assert line["request_id"] == "mine"
-    assert "ZeroDivisionError" in line["traceback"]
+    assert "request mine, path /broken" in caplog.text
+    assert "ZeroDivisionError" in caplog.text
 
 
 def test_responses_may_be_stored_for_a_minute_and_are_revalidated(client):

@@ -12,10 +12,12 @@ from rocking._numba.simd import (
     gather_rows,
     lane_bits,
     load,
-    load_elements,
+    maximum,
+    minimum,
     scatter_rows,
     select,
     splat,
+    square_root,
     store,
 )
 from rocking._numba.simd_error_function import scaled_erfc
@@ -74,16 +76,24 @@ def exchange(source, places, columns, target):
 
 @kernel
 def take(source, places, found):
-    store(found, 0, load_elements(source, places[0]))
-    store(found, 1, gather(source, places))
+    store(found, 0, gather(source, places))
 
 
-def test_elements_are_taken_in_a_row_and_from_places():
+def test_elements_are_taken_from_places():
     source, places = np.random.default_rng(3).random(60), np.random.default_rng(4).permutation(40)[:LANES]
-    found = np.zeros((2, LANES))
+    found = np.zeros((1, LANES))
     take(source, places, found)
-    np.testing.assert_array_equal(found[0], source[places[0] : places[0] + LANES])
-    np.testing.assert_array_equal(found[1], source[places])
+    np.testing.assert_array_equal(found[0], source[places])
+
+
+@kernel
+def of_numbers(x, y):
+    return select(x < y, maximum(x, y), minimum(x, y)), square_root(x)
+
+
+def test_rules_of_vectors_hold_for_numbers():
+    assert of_numbers(2.0, 3.0) == (3.0, np.sqrt(2.0))
+    assert of_numbers(3.0, 2.0) == (2.0, np.sqrt(3.0))
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -523,7 +523,7 @@ TWO_ENDS = [
     ("arguments", "option", "allowed"),
     [
         (["response", *GROUPS[:-1], "1.5"], "--restitution", "[0, 1]"),
-        (["response", *GROUPS[:-1], "bouncy"], "--restitution", "momentum for a block"),
+        (["response", *GROUPS[:-1], "bouncy"], "--restitution", "momentum, or a number"),
         (["response", "--pulse", "sinus", *GROUPS[2:]], "--pulse", "one of sine"),
         (["response", *GROUPS[:3], "nan", *GROUPS[4:]], "--slenderness", "[1e-12, inf)"),
         (["response", *GROUPS[:4], "--restitution", "0.85"], "--frequency-ratio", "a number"),

@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from typer.testing import CliRunner
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
+from rocking._cli.app import app
 from rocking._dimensional.fields import FIELDS, SHOWN
 
 ROOT = str(Path(rocking.__file__).parent)
@@ -41,10 +43,15 @@ def assessed():
     return found.sentence, found.margin
 
 
+def command():
+    sizes = "--width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s"
+    assert CliRunner().invoke(app, ["response", "--pulse", "sine", *sizes.split()]).exit_code == 0
+
+
 @pytest.mark.parametrize(
     ("work", "most", "files"),
-    [(lambda: BLOCK.response("sine", **MOTION), 80, 12), (assessed, 900, 30)],
-    ids=["response", "sentence and margin"],
+    [(lambda: BLOCK.response("sine", **MOTION), 60, 12), (assessed, 800, 30), (command, 1600, 45)],
+    ids=["response", "sentence and margin", "command of the readme"],
 )
 def test_one_response_is_little_work(work, most, files):
     found = calls(work)

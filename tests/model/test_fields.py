@@ -10,7 +10,7 @@ import xarray as xr
 
 import rocking
 from rocking._model import fields
-from rocking._model.fields import BOUNDED_FIELDS, COLUMN_FIELDS, RESPONSE_FIELDS, SOLVED_FIELDS
+from rocking._model.fields import BOUNDED_FIELDS, SOLVED_FIELDS
 from rocking._model.outcome import Outcome
 from rocking._model.outcome_code import SURVIVES, decode_outcomes, outcome_codes
 from rocking._solver.bounded_response import BoundedResponse
@@ -28,16 +28,6 @@ def test_annotated_fields_are_the_declared_ones(kind, declared):
     assert names[: len(declared)] == [field.name for field in declared]
     for field in declared:
         assert TYPES[field.dtype].__name__ in str(hints[field.name])
-
-
-def test_notation_page_contains_the_table():
-    rows = ["| field | type | unit | equation | meaning |", "|---|---|---|---|---|"]
-    for field in dict.fromkeys((*RESPONSE_FIELDS, *COLUMN_FIELDS)):
-        kind = {"?": "bool", "U": "text", "i1": "int8", "i4": "int32", "f8": "float64"}[field.dtype]
-        unit = "-" if field.unit == "1" else field.unit
-        meaning = field.description("nan").replace(" [-]", "").replace("|theta|", "abs(theta)")
-        rows.append(f"| `{field.name}` | {kind} | {unit} | ({field.equation}) | {meaning} |")
-    assert "\n".join(rows) in NOTATION.read_text()
 
 
 def test_description_tells_what_a_missing_number_looks_like():

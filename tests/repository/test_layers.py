@@ -27,7 +27,7 @@ LAYERS = (
     ("rocking/_solver", "rocking/paper", "rocking/standards"),
     ("rocking/_model", "rocking/_excitation"),
     ("rocking/_numba",),
-    ("rocking/_base/cells", "rocking/_base/quantities"),
+    ("rocking/_base/cells", "rocking/_base/kinds", "rocking/_base/quantities"),
     ("rocking/_base/quantity",),
     ("rocking/_base/errors", "rocking/_base/equality"),
     ("rocking/_base/units",),

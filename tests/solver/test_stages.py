@@ -9,10 +9,10 @@ import rocking
 from rocking import Outcome
 from rocking._excitation.pulses import SinusoidalPulse
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_BODIES, NO_EDGES, NO_FLIGHTS, solver_state
+from rocking._solver.peak_response import NO_EDGES, NO_FLIGHTS, solver_state
 from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.state import BLOCK_SIZE, stage_state
-from rocking._solver.state import FULL_PRECISION, RESPONSE_RECORD, pulse_state
+from rocking._solver.state import FULL_PRECISION, RESPONSE_RECORD, block_cells, pulse_state
 from tests.sampling import number
 
 SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.pulse(name).series.has_exact_arcs]
@@ -52,8 +52,8 @@ def by_event_loop(pulse, s, w, eta):
     """The event loop that serves all bodies and pulses."""
     found = np.zeros(s.size, RESPONSE_RECORD)
     state = solver_state.of_steps(pulse, FULL_PRECISION)
-    groups = s, w, eta, np.zeros(s.size)
-    solve_batch(*groups, NO_BODIES, *state, np.zeros(1, np.uint8), found, NO_EDGES, NO_FLIGHTS)
+    cells = block_cells(w, s, eta, np.zeros(s.size))
+    solve_batch(cells, *state, np.zeros(1, np.uint8), found, NO_EDGES, NO_FLIGHTS)
     return found
 
 

@@ -14,6 +14,7 @@ import pytest
 import yaml
 
 import rocking
+from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.cube import read_dataset
 from rocking.suites.configuration import SuiteConfiguration, suite_configuration
 from tests.workflow_fixtures import PROJECT, snakemake
@@ -152,6 +153,22 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(
     assert [*problems(copy)] == []
 
 
+def test_sizes_of_blocks_are_in_metres_or_with_units() -> None:
+    configuration = yaml.safe_load(CONFIGURATION.read_text())["suite"]
+    same = [
+        {"width": 0.5, "height": 2.0},
+        {"width": "50cm", "height": 2.0},
+        {"width": 0.5, "height": "2 m"},
+        "rectangle(width=50cm, height=2m)",
+    ]
+    kinds = [{"width": 0.5, "height": 2.0, "wall": "3 cm"}, "frame(width=50cm, height=4m, mass_ratio=2)"]
+    found = suite_configuration(configuration | {"blocks": same + kinds}, CONFIGURATION.parent).blocks
+    assert len(found) == 6
+    assert len(set(found)) == 3
+    with pytest.raises(InvalidArgumentError, match="equal edges"):
+        suite_configuration(configuration | {"blocks": [same[0] | {"offset": "5 cm"}]}, CONFIGURATION.parent)
+
+
 @pytest.mark.parametrize(
     ("place", "value", "message"),
     [
@@ -161,8 +178,8 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(
         ("records/pattern", "../*.csv", "suite.records.pattern = '../*.csv'"),
         ("records/unit", "feet", "suite.records.unit = 'feet': allowed: one of m/s2"),
         ("records/baseline_order", 1.5, "suite.records.baseline_order = 1.5: allowed: null, or an integer"),
-        ("blocks", [], "suite.blocks = []: allowed: a list of width and height"),
-        ("blocks", [{"width": 0.4}], "suite.blocks[0] = 'no height'"),
+        ("blocks", [], "suite.blocks = []: allowed: a list of bodies"),
+        ("blocks", [{"width": 0.4}], "suite.blocks[0].height = None: allowed: required for rectangle"),
         (
             "blocks",
             [{"width": 0.4, "height": -2.0}],

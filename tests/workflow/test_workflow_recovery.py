@@ -176,32 +176,6 @@ def test_one_command_remakes_what_is_missing_damaged_or_replaced_after_killed_ru
     assert [*problems(folder)] == []
 
 
-COUNT_PASSES = """
-import atexit, time
-from snakemake.scheduling.job_scheduler import JobScheduler
-from workflow import run
-passes, start, select = [], time.monotonic(), JobScheduler.job_selector
-JobScheduler.job_selector = lambda scheduler, jobs: passes.append(jobs) or select(scheduler, jobs)
-atexit.register(lambda: print(len(passes), time.monotonic() - start))
-run.main(["--cores", "1", "--quiet", "all", "--directory", "."])
-"""
-
-
-def test_waiting_jobs_are_looked_at_once_a_second_and_when_a_job_ends(tmp_path: Path) -> None:
-    """Snakemake alone does it twice as often in this run, and more often the more jobs have ended."""
-    jobs = 12
-    rule = "    output: 'made/{number}'\n    shell: 'sleep 0.4; touch {output}'\n"
-    (tmp_path / "Snakefile").write_text(
-        f"rule all:\n    input: expand('made/{{number}}', number=range({jobs}))\nrule one:\n{rule}"
-    )
-    environment = {**os.environ, "PYTHONPATH": str(PROJECT)}
-    command = [sys.executable, "-c", COUNT_PASSES]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert len([*(tmp_path / "made").iterdir()]) == jobs, done.stderr
-    passes, seconds = done.stdout.split()
-    assert int(passes) <= jobs + float(seconds) + 2
-
-
 def test_temporary_files_of_jobs_lie_in_the_folder_of_the_run_and_are_deleted_by_the_next_run(tmp_path: Path) -> None:
     job = "import tempfile; print(tempfile.mkstemp()[1])"
     (tmp_path / "Snakefile").write_text(f"rule all:\n    shell: {f'{sys.executable} -c {job!r}'!r}\n")

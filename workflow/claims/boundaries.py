@@ -20,9 +20,7 @@ CASES = {
 
 
 def exact_curves(boundaries: Sequence[xr.Dataset]) -> Iterator[Claim]:
-    """(3.10), (3.18) and (3.20) with (3.21) against the traced points of their own mode, of slender blocks under the
-    sine.
-    """
+    """(3.10), (3.18), (3.20) with (3.21) against the traced points of their own mode: slender blocks, sine."""
     worst = dict.fromkeys(CASES, 0.0)
     count = dict.fromkeys(CASES, 0)
     for curves in boundaries:

@@ -51,7 +51,7 @@ def verdict_of(share: float) -> str:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """A share as text, with so many significant digits; 100 % and 0 % for these only."""
+    """A share as text with `digits` significant digits; 100 % and 0 % are exact."""
     if 0.0 < share < 1.0:
         text = f"{100 * share:.{digits}g}"
         while float(text) == 100.0:

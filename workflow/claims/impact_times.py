@@ -119,7 +119,7 @@ class Curve(NamedTuple):
         return np.isfinite(self.amplitude)
 
     def holds_from(self, good: Flags) -> float:
-        """The frequency ratio from which on all known points are good, nan if the last is not."""
+        """The frequency ratio above which all known points are good, nan if the last is not."""
         failing = (self.known & ~good).any(axis=0)
         kept = self.known.any(axis=0) & ~np.logical_or.accumulate(failing[::-1])[::-1]
         return float(self.frequency_ratio[kept].min()) if kept.any() else np.nan

@@ -8,9 +8,7 @@ from numpy.typing import NDArray
 
 
 def steps_between(breaks: Sequence[float], steps: Sequence[float]) -> list[int]:
-    """Number of steps from each break to the next one, with one step size for each interval, which is a multiple of
-    it.
-    """
+    """Number of steps from each break to the next one; each interval is a multiple of its own step."""
     if len(steps) != len(breaks) - 1:
         raise ValueError(f"{len(steps)} steps for {len(breaks) - 1} stretches between breaks {list(breaks)}")
     counts = []

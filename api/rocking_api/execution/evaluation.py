@@ -36,17 +36,7 @@ BYTES_PER_POINT = sum(np.dtype(dtype).itemsize for dtype in FIELDS.values()) + 1
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Responses of many points.
-
-    Attributes
-    ----------
-    fields : arrays by name, shape (points,)
-        Those of `FIELDS`.
-    from_cube : bool array, shape (points,)
-        Whether a point comes from a data set; one byte rather than 24 for the name.
-    versions : tuple of str
-        sha256 of each data set used.
-    """
+    """Responses of many points: arrays (points,) of `FIELDS`, whether from a data set, sha256 of each data set used."""
 
     fields: dict[str, NDArray[Any]]
     from_cube: NDArray[np.bool_]
@@ -61,15 +51,7 @@ def evaluate(
     *,
     may_read: bool = True,
 ) -> tuple[BoundedResponse, tuple[str, ...]]:
-    """Responses of checked points (points,), and the sha256 of each data set that gave some of them.
-
-    Raises
-    ------
-    OutsideCubeError, DatasetError, UnreadError
-        As `Cube.evaluate` and `CubeCollection.cube`.
-    StoppedError
-        If `stop` was set.
-    """
+    """Responses of checked points (points,), and the sha256 of each data set that gave some of them."""
     cube = cubes.cube(options.pulse, options.method, may_read)
     found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
     return found, tuple([one.sha256 for one in used])

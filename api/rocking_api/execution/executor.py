@@ -40,15 +40,7 @@ class BusyError(RuntimeError):
 
 
 class TimeLimitError(RuntimeError):
-    """The work exceeds the time limit.
-
-    Parameters
-    ----------
-    seconds : float
-        The limit [s].
-    advice : str
-        What to ask instead.
-    """
+    """The work exceeds the time limit."""
 
     def __init__(self, seconds: float, advice: str = "reduce it") -> None:
         super().__init__(f"the request exceeds the time limit of {seconds:g} s; {advice}")
@@ -72,18 +64,8 @@ class _Job:
 class BoundedExecutor:
     """Threads for heavy work. All methods are called by the event loop.
 
-    Parameters
-    ----------
-    workers : int
-        Number of threads.
-    queue : int
-        Requests that may wait for one.
-    seconds : float
-        Time limit of a request, waiting included [s].
-    on_change : callable, optional
-        Called with the executor after `running` or `waiting` has changed.
-    trials : bool
-        Whether one more thread gives trials; the work must then raise `StoppedError` when it is stopped.
+    `seconds` is the limit of a request, waiting included; `on_change` is called after `running` or `waiting` changed.
+    With `trials` one more thread gives trials, and the work must raise `StoppedError` when it is stopped.
     """
 
     def __init__(
@@ -118,25 +100,9 @@ class BoundedExecutor:
     async def run(self, work: Work[T], request: Request | None = None, cost: int = 0, *, is_long: bool = False) -> T:
         """Run work in a thread; given the request, its body read, stop when the client disconnects.
 
-        Parameters
-        ----------
-        work : callable
-            Function of a `StopFlag`.
-        request : Request, optional
-            Names the client.
-        cost : int
-            Less is served first among the requests of a client, such as the size of a body [bytes].
-        is_long : bool
-            Whether the work is known to be longer than a trial: it has none, and is served after what may be short.
-
-        Raises
-        ------
-        BusyError
-            If the queue is full, of which a client with fewer requests than another one takes the place.
-        TimeLimitError
-            If the time limit is exceeded.
-        ClientDisconnect
-            If the client has disconnected.
+        Of the requests of a client that with the least cost is served first, such as the size of a body [bytes]; what
+        `is_long` has no trial, and is served after what may be short. Raises `BusyError` if the queue is full, of which
+        a client with fewer requests than another one takes the place.
         """
         client = getattr(request, "client", None)
         answer = asyncio.get_running_loop().create_future()

@@ -32,18 +32,7 @@ def compile_command() -> list[str] | None:
 
 
 class Kernels:
-    """State of the kernels.
-
-    Parameters
-    ----------
-    seconds : float
-        How long a request waits for them [s].
-
-    Attributes
-    ----------
-    is_loaded : bool
-        Whether nothing is being compiled or loaded.
-    """
+    """State of the kernels."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
@@ -57,20 +46,14 @@ class Kernels:
             if (command := compile_command()) is not None:
                 compiled = await anyio.run_process(command, check=False)
                 if compiled.returncode:
-                    LOG.warning("the compiler failed", extra={"fields": {"stderr": compiled.stderr.decode()}})
+                    LOG.warning("the compiler failed: %s", compiled.stderr.decode())
             await anyio.to_thread.run_sync(load_kernels, abandon_on_cancel=True)
         finally:
             self.is_loaded = True
             self._loading.cancel()  # waiting requests continue, and meet the same error if there is one
 
     async def wait(self) -> None:
-        """Return once they are loaded; usually at once.
-
-        Raises
-        ------
-        NotReadyError
-            After the time limit.
-        """
+        """Return once they are loaded; usually at once."""
         if self._loading is None or self.is_loaded:
             return
         await asyncio.wait({self._loading}, timeout=self._seconds)

@@ -40,13 +40,7 @@ class Reservation:
         self.held = 0
 
     def replace(self, count: int) -> None:
-        """Set the number of bytes; `RequestLog` sets 0 at the end of the request.
-
-        Raises
-        ------
-        BusyError
-            If it grows, and exceeds the limit together with the bytes of other requests.
-        """
+        """Set the number of bytes; `RequestLog` sets 0 at the end of the request."""
         budget = self._budget
         others = budget.held - self.held
         if count > self.held and others and others + count > budget.limit:
@@ -56,13 +50,7 @@ class Reservation:
 
 
 def body_form(request: Request, accepted: Sequence[Form]) -> Form:
-    """Format of the body by its Content-Type; JSON without one.
-
-    Raises
-    ------
-    UnsupportedBodyError
-        For a type that is not accepted.
-    """
+    """Format of the body by its Content-Type; JSON without one."""
     declared = request.headers.get("content-type", MEDIA_TYPES["json"]).split(";")[0].strip().lower()
     for form in accepted:
         if declared in (MEDIA_TYPES[form], "application/netcdf" if form == "nc" else MEDIA_TYPES[form]):
@@ -78,15 +66,6 @@ async def limited_body(
 
     Beyond `TURN_BYTES` bodies arrive in turns: one connection is read in each iteration of the event loop. A body that
     exceeds the bytes in flight is read to its end and dropped, also in turns, before it is refused.
-
-    Raises
-    ------
-    TooLargeError, SlowBodyError
-        If it is larger, or takes longer.
-    UnsupportedBodyError
-        If it is compressed: a few bytes could expand to any number.
-    BusyError
-        If the bytes in flight exceed their limit.
     """
     limit, meaning = allowed
     coding = request.headers.get("content-encoding", "identity")

@@ -7,8 +7,8 @@ netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and requ
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Literal, Protocol
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -39,18 +39,12 @@ CONTENT: dict[int | str, dict[str, Any]] = {
 """For the OpenAPI description: the other formats of a response."""
 
 
-class Column(Protocol):
-    """One value per point: an array, or a lazily converted one."""
-
-    def __len__(self) -> int: ...
-
-    def __getitem__(self, points: slice, /) -> NDArray[Any]: ...
+Column = Callable[[slice], list[Any]]
+"""The values of a column at some points, of which no list is made before they are sent."""
 
 
 ROWS = 5_000
 """Points of a batch that are written and sent at once [-]: up to half a megabyte, some milliseconds."""
-
-_SOURCES = ["cube", "solver"]
 
 _WEIGHT = re.compile(r"0(\.[0-9]{0,3})?|1(\.0{0,3})?")  # RFC 9110, 12.4.2; another is ignored
 
@@ -114,37 +108,37 @@ def text_response(text: str, name: str, form: Form = "csv", headers: Mapping[str
     return Response(text, media_type=MEDIA_TYPES[form], headers={**_file(f"{name}.{suffix}"), **(headers or {})})
 
 
-def csv_stream(columns: Mapping[str, Column], name: str) -> Response:
-    """Arrays (points,) as CSV, written while it is sent: the text of a million points takes 100 MB."""
+def columns_as_they_are(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Column]:
+    """Columns of arrays (points,)."""
+    return {name: lambda part, values=values: values[part].tolist() for name, values in arrays.items()}  # type: ignore[misc]
+
+
+def csv_stream(columns: Mapping[str, Column], points: int, name: str) -> Response:
+    """Columns as CSV, written while it is sent: the text of a million points takes 100 MB."""
 
     def parts() -> Iterator[bytes]:
         yield csv_header(columns).encode()
-        for start in range(0, _points(columns), ROWS):
-            rows = {key: column[start : start + ROWS].tolist() for key, column in columns.items()}
-            yield csv_rows(rows).encode()
+        for start in range(0, points, ROWS):
+            yield csv_rows({key: column(slice(start, start + ROWS)) for key, column in columns.items()}).encode()
 
-    return _streamed(parts(), _points(columns), MEDIA_TYPES["csv"], _file(f"{name}.csv"))
+    return _streamed(parts(), points, MEDIA_TYPES["csv"], _file(f"{name}.csv"))
 
 
-def json_stream(answer: Answer, request: Request, columns: Mapping[str, Column]) -> Response:
-    """As `json_response`, after columns, arrays (points,), that the answer lacks; written while it is sent."""
+def json_stream(answer: Answer, request: Request, columns: Mapping[str, Column], points: int) -> Response:
+    """As `json_response`, after columns that the answer lacks; written while it is sent."""
     answer.url = url_of(request)
 
     def parts() -> Iterator[bytes]:
         opening = b"{"
         for key, column in columns.items():
             opening += to_json(key) + b":["
-            for start in range(0, len(column), ROWS):
-                yield opening + to_json(column[start : start + ROWS].tolist(), inf_nan_mode="null")[1:-1]
+            for start in range(0, points, ROWS):
+                yield opening + to_json(column(slice(start, start + ROWS)), inf_nan_mode="null")[1:-1]
                 opening = b","
-            opening = (b"" if len(column) else opening) + b"],"
+            opening = (b"" if points else opening) + b"],"
         yield opening + answer.model_dump_json().encode()[1:]
 
-    return _streamed(parts(), _points(columns), MEDIA_TYPES["json"], {})
-
-
-def _points(columns: Mapping[str, Column]) -> int:
-    return len(next(iter(columns.values())))
+    return _streamed(parts(), points, MEDIA_TYPES["json"], {})
 
 
 def _streamed(parts: Iterator[bytes], points: int, media_type: str, headers: dict[str, str]) -> Response:
@@ -160,21 +154,24 @@ def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
     return Response(content, media_type=MEDIA_TYPES["nc"], headers=_file(f"{name}.nc"))
 
 
+def solved_variable(name: str, dimensions: Any, values: NDArray[Any]) -> tuple[Any, NDArray[Any], dict[str, Any]]:
+    """A field of responses with the type and the attributes that it has in the data sets."""
+    dtype, about = VARIABLES[name]
+    kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
+    return dimensions, values.astype(dtype, copy=False), MODEL_RESULT | kept
+
+
 def dataset_of(
     groups: Mapping[str, NDArray[np.float64]], result: BatchResult, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Groups and results over one dimension `point`, with the attributes of the data sets."""
     variables: dict[str, Any] = {name: ("point", values, {"units": "1"}) for name, values in groups.items()}
-    for name in FIELDS:
-        if name in VARIABLES:
-            dtype, about = VARIABLES[name]
-            kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
-            kept |= {"_FillValue": np.int32(UNKNOWN_IMPACTS)} if name == IMPACTS.name else {}
-            variables[name] = ("point", result.fields[name].astype(dtype, copy=False), MODEL_RESULT | kept)
+    variables |= {name: solved_variable(name, "point", result.fields[name]) for name in FIELDS if name in VARIABLES}
+    variables[IMPACTS.name][2]["_FillValue"] = np.int32(UNKNOWN_IMPACTS)
     for field in DERIVED_FIELDS:
         variables[field.name] = ("point", result.fields[field.name], MODEL_RESULT | field.attributes)
     bound = {"units": ERROR_BOUND.unit, **ERROR_BOUND.attributes}
-    source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": " ".join(_SOURCES)}
+    source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": "cube solver"}
     variables["error_bound"] = ("point", result.fields["error_bound"], bound)
     variables["source"] = ("point", (~result.from_cube).astype("i1"), {"long_name": "source", **source})
     return xr.Dataset(variables, attrs={"Conventions": "CF-1.11", **attributes})

@@ -8,7 +8,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from http import HTTPMethod, HTTPStatus
+from http import HTTPMethod
+from http import HTTPStatus as S
 from typing import Any
 
 from fastapi import FastAPI, Request, Response
@@ -42,13 +43,7 @@ class SlowBodyError(InvalidArgumentError):
 
 
 class DamagedDatasetsError(DatasetError):
-    """Data sets exist and cannot be used.
-
-    Parameters
-    ----------
-    damaged : mapping of str to str
-        What is wrong, by name.
-    """
+    """Data sets exist and cannot be used."""
 
     def __init__(self, damaged: Mapping[str, str]) -> None:
         super().__init__(damaged)
@@ -57,20 +52,10 @@ class DamagedDatasetsError(DatasetError):
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of error.
-
-    Attributes
-    ----------
-    name : str
-        The anchor of its `type` on the page of kinds.
-    status : HTTPStatus
-        Of the response.
-    meaning : str
-        When it occurs and what to do, in one sentence.
-    """
+    """A kind of error."""
 
     name: str
-    status: HTTPStatus
+    status: S
     meaning: str
 
     @property
@@ -84,49 +69,32 @@ PROBLEMS = "/problems"
 
 KINDS: dict[type[Exception], Kind] = {
     InvalidArgumentError: Kind(  # OutsideCubeError is one
-        "invalid-parameter",
-        HTTPStatus.UNPROCESSABLE_ENTITY,
+        "invalid-parameter", S.UNPROCESSABLE_ENTITY,
         "A parameter is missing, unknown, given twice, not of its type or out of range; `errors` lists all of them.",
     ),
-    MalformedBodyError: Kind(
-        "malformed-json", HTTPStatus.BAD_REQUEST, "The body is not JSON; `value` says what is wrong in which place."
-    ),
+    MalformedBodyError: Kind("malformed-json", S.BAD_REQUEST, "The body is not JSON; `value` says what and where."),
     TooLargeError: Kind(
-        "too-large", HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "The request exceeds a limit of the service: divide it."
+        "too-large", S.REQUEST_ENTITY_TOO_LARGE, "The request exceeds a limit of the service: divide it."
     ),
-    TooManyRowsError: Kind(
-        "too-many-rows", HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "The table has too many rows: divide it."
-    ),
+    TooManyRowsError: Kind("too-many-rows", S.REQUEST_ENTITY_TOO_LARGE, "The table has too many rows: divide it."),
     UnsupportedBodyError: Kind(
-        "unsupported-body",
-        HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-        "The body has a media type that the route does not read, or is compressed.",
+        "unsupported-body", S.UNSUPPORTED_MEDIA_TYPE, "The route does not read this media type, or it is compressed."
     ),
-    UnknownDatasetError: Kind(
-        "unknown-data-set", HTTPStatus.NOT_FOUND, "No data set has this name; /v1/datasets lists them."
-    ),
-    SlowBodyError: Kind("slow-body", HTTPStatus.REQUEST_TIMEOUT, "The body did not arrive in time."),
-    DatasetError: Kind(
-        "damaged-data-set", HTTPStatus.SERVICE_UNAVAILABLE, "A data set exists and cannot be used; it was logged."
-    ),
-    BusyError: Kind(
-        "busy", HTTPStatus.SERVICE_UNAVAILABLE, "Queue or memory are full: repeat the request after `Retry-After`."
-    ),
-    NotReadyError: Kind(
-        "not-ready", HTTPStatus.SERVICE_UNAVAILABLE, "The solver is being loaded: repeat after `Retry-After`."
-    ),
-    TimeLimitError: Kind(
-        "time-limit", HTTPStatus.GATEWAY_TIMEOUT, "The work exceeds the time limit of a request: reduce it."
-    ),
-}
+    UnknownDatasetError: Kind("unknown-data-set", S.NOT_FOUND, "No data set has this name; /v1/datasets lists them."),
+    SlowBodyError: Kind("slow-body", S.REQUEST_TIMEOUT, "The body did not arrive in time."),
+    DatasetError: Kind("damaged-data-set", S.SERVICE_UNAVAILABLE, "A data set cannot be used; it was logged."),
+    BusyError: Kind("busy", S.SERVICE_UNAVAILABLE, "Queue or memory are full: repeat it after `Retry-After`."),
+    NotReadyError: Kind("not-ready", S.SERVICE_UNAVAILABLE, "The solver is being loaded: repeat after `Retry-After`."),
+    TimeLimitError: Kind("time-limit", S.GATEWAY_TIMEOUT, "The work exceeds the time limit of a request: reduce it."),
+}  # fmt: skip
 """Kinds of errors by exception."""
 
 OTHERS = (
-    Kind("bad-request", HTTPStatus.BAD_REQUEST, "A header is missing, given twice or malformed: Host, Range."),
-    Kind("not-found", HTTPStatus.NOT_FOUND, "There is nothing at this address, or no longer this version of it."),
-    Kind("method-not-allowed", HTTPStatus.METHOD_NOT_ALLOWED, "The route has other methods, which `Allow` lists."),
-    Kind("range", HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE, "The Range is outside the file."),
-    Kind("internal", HTTPStatus.INTERNAL_SERVER_ERROR, "A fault of the service, not of the request; it was logged."),
+    Kind("bad-request", S.BAD_REQUEST, "A header is missing, given twice or malformed: Host, Range."),
+    Kind("not-found", S.NOT_FOUND, "There is nothing at this address, or no longer this version of it."),
+    Kind("method-not-allowed", S.METHOD_NOT_ALLOWED, "The route has other methods, which `Allow` lists."),
+    Kind("range", S.REQUESTED_RANGE_NOT_SATISFIABLE, "The Range is outside the file."),
+    Kind("internal", S.INTERNAL_SERVER_ERROR, "A fault of the service, not of the request; it was logged."),
 )
 """Those without an exception, by their status codes."""
 
@@ -176,7 +144,7 @@ class Problem(BaseModel):
 
 
 RESPONSES: dict[int | str, dict[str, Any]] = {
-    int(status): {"description": HTTPStatus(status).phrase, "content": {MEDIA_TYPE: {"schema": schema}}}
+    int(status): {"description": S(status).phrase, "content": {MEDIA_TYPE: {"schema": schema}}}
     for schema in [{"$ref": "#/components/schemas/Problem"}]
     for status in sorted({kind.status for kind in (*KINDS.values(), *OTHERS)} - {416})
 }
@@ -187,7 +155,7 @@ def problem_response(kind: Kind | int, detail: str, headers: Mapping[str, str] |
     """An error response of a kind, or of one of `OTHERS` by its status; `parts` are other fields of `Problem`."""
     if not isinstance(kind, Kind):
         status = kind
-        kind = next((one for one in OTHERS if one.status == status), Kind("other", HTTPStatus(status), ""))
+        kind = next((one for one in OTHERS if one.status == status), Kind("other", S(status), ""))
     parts = {name: _text(part) if isinstance(part, str) else part for name, part in parts.items()}
     parts["value"] = plain(parts.get("value"))
     content = Problem(type=kind.type, title=kind.status.phrase, status=kind.status, detail=_text(detail), **parts)
@@ -196,9 +164,7 @@ def problem_response(kind: Kind | int, detail: str, headers: Mapping[str, str] |
 
 def internal_error() -> Response:
     """The response to an internal error, without details."""
-    return problem_response(
-        HTTPStatus.INTERNAL_SERVER_ERROR, "internal error, not caused by the request; it was logged"
-    )
+    return problem_response(S.INTERNAL_SERVER_ERROR, "internal error, not caused by the request; it was logged")
 
 
 def add_handlers(app: FastAPI) -> None:
@@ -257,7 +223,7 @@ def refusal(text: str, parameter: str, value: Any, allowed: str) -> InvalidArgum
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     headers = error.headers
-    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED and (methods := _methods(request)):
+    if error.status_code == S.METHOD_NOT_ALLOWED and (methods := _methods(request)):
         headers = {"Allow": ", ".join(methods)}
     return problem_response(error.status_code, str(error.detail), headers)
 

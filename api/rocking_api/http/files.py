@@ -38,15 +38,6 @@ class VersionedFileResponse(FileResponse):
     The bytes come from the open descriptor, so that replacing the file has no effect. A file that is written to while
     it is sent is hashed again before more of it is sent. Refusals (400 for a malformed Range, 416 for one outside the
     file) are problem+json.
-
-    Parameters
-    ----------
-    file : DataFile
-        File to send and close.
-    sha256 : str
-        Digest of its bytes.
-    **options
-        Of `FileResponse`.
     """
 
     def __init__(self, file: DataFile, sha256: str, **options: Any) -> None:

@@ -66,13 +66,7 @@ class ParamsRoute(APIRoute):
 
 
 def query_parameters(request: Request) -> dict[str, str]:
-    """The query parameters.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If one is given more than once.
-    """
+    """The query parameters."""
     given = parse_qsl(request.scope["query_string"].decode("latin-1"), keep_blank_values=True)
     parameters = dict(given)
     if len(parameters) < len(given):
@@ -83,13 +77,7 @@ def query_parameters(request: Request) -> dict[str, str]:
 
 
 def read_query(kind: type[P], query: Mapping[str, str]) -> P:
-    """The parameters in a query.
-
-    Raises
-    ------
-    SeveralArgumentsError
-        If some are missing, unknown or no values of their types; those out of range are then named as well.
-    """
+    """The parameters in a query."""
     try:
         return kind.model_validate_strings(query)
     except ValidationError as error:
@@ -106,15 +94,7 @@ def _number(text: str) -> float | str:
 
 
 def check_json(body: bytes, stop: StopFlag) -> None:
-    """Refuse a body that is not JSON, or whose objects have a key twice.
-
-    Raises
-    ------
-    MalformedBodyError
-        With line and column.
-    InvalidArgumentError
-        As `reject_repeated_keys`.
-    """
+    """Refuse a body that is not JSON, or whose objects have a key twice."""
     try:
         from_json(body, cache_strings="none")
     except ValueError as error:
@@ -123,15 +103,7 @@ def check_json(body: bytes, stop: StopFlag) -> None:
 
 
 def reject_repeated_keys(body: bytes, stop: StopFlag) -> None:
-    """Refuse JSON with an object that has two values of one key, of which parsers take the last one in silence.
-
-    Raises
-    ------
-    InvalidArgumentError
-        Of the key.
-    StoppedError
-        If `stop` was set.
-    """
+    """Refuse JSON with an object that has two values of one key, of which parsers take the last one in silence."""
     objects: list[set[bytes]] = []
     for token in _TOKEN.finditer(body):
         text, colon, end = token.groups()
@@ -149,17 +121,7 @@ def reject_repeated_keys(body: bytes, stop: StopFlag) -> None:
 
 
 def read_json(kind: type[P], body: bytes, query: Mapping[str, str], options: type[Params], stop: StopFlag) -> P:
-    """The parameters in a JSON body, and those of `options` that are in the query.
-
-    Raises
-    ------
-    MalformedBodyError
-        If it is not JSON, with line and column.
-    InvalidArgumentError
-        If they do not fit `kind`, one is given twice, or the query has others, or other values than the body.
-    StoppedError
-        If `stop` was set.
-    """
+    """The parameters in a JSON body, and those of `options` that are in the query."""
     for name, value in query.items():
         if name not in options.model_fields:
             raise InvalidArgumentError(name, value, f"one of {', '.join(options.model_fields)}, in the query")
@@ -196,12 +158,14 @@ def _of_validation(error: ErrorDetails, source: str, names: Collection[str]) -> 
     name = where[0] if where else "body"  # the rest is the position in an array
     if len(place) > 2 and isinstance(place[1], int):  # in an array of objects
         name = f"{name}[{place[1]}].{place[2]}"
+    own = context.get("error")
     if where[:2] == ["pulse", "samples"]:  # the second is the tag of the alternative
         name = "pulse" + "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place[2:])
-        own = context.get("error")
         if isinstance(own, InvalidArgumentError):
             name += f".{own.parameter}" + "".join(f"[{index}]" for index in own.index)
             return InvalidArgumentError(name, own.value, own.allowed)
+    if isinstance(own, InvalidArgumentError):  # of a quantity
+        return InvalidArgumentError(name, own.value, own.allowed)
     if kind == "missing":
         return refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
     if kind == "extra_forbidden":

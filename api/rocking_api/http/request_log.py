@@ -64,8 +64,7 @@ class RequestLog:
         except ClientDisconnect:
             status = 499  # client closed the request; the usual code in logs
         except Exception:
-            fields = {"request_id": request_id.decode(), "path": scope["path"]}
-            ERRORS.exception("error of the service", extra={"fields": fields})
+            ERRORS.exception("error of the service, request %s, path %s", request_id.decode(), scope["path"])
             if not status:
                 await internal_error()(scope, receive, watched)
             elif not whole:

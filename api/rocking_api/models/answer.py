@@ -13,10 +13,11 @@ from pydantic import BaseModel, Field, GetJsonSchemaHandler, computed_field
 from pydantic_core import core_schema
 
 from rocking_api.models.params import ListParams, Params
+from rocking_api.models.quantity import said
 
 VERSION = version("rocking")
 
-QUERY = Field(description="parameters of the request, defaults included; empty without any")
+QUERY = said("parameters of the request, defaults included; empty without any")
 
 _UNIT = re.compile(r"(\w*) \[([^]]+)\]")
 
@@ -43,13 +44,10 @@ ECHO = Echo()
 class Answer(BaseModel):
     """Base of the models of all routes that answer in JSON; a route with parameters declares its own `query`."""
 
-    query: Params = Field(default=Params(), description=QUERY.description)
+    query: Params = said(QUERY.description, Params())
     warnings: list[str] = Field(default_factory=list, description="where the answer is in doubt")
-    version: str = Field(default=VERSION, description="version of the package")
-    url: str = Field(
-        default="",
-        description="path and query string that repeat the question; POST and a blank before them: with the body",
-    )
+    version: str = said("version of the package", VERSION)
+    url: str = said("path and query string that repeat the question; POST and a blank before them: with the body", "")
 
     @computed_field(  # type: ignore[prop-decorator]
         description="unit of each number by its field, 1 for a plain number; names of nested fields are joined by dots"
@@ -63,9 +61,7 @@ class ListAnswer(Answer):
     """Base of the models of lists."""
 
     query: ListParams = QUERY
-    next_cursor: str | None = Field(
-        None, description="`cursor` of the request for the next entries; null: there are no more"
-    )
+    next_cursor: str | None = said("`cursor` of the request for the next entries; null: there are no more", None)
 
 
 @cache

@@ -45,15 +45,7 @@ class Batch:
 
 
 def batch_of(options: LookupOptions, columns: Columns, given: Mapping[str, Any], max_points: int) -> Batch:
-    """The points of the columns of a body, and of the groups that are given beside it: numbers or lists, or None.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a group is missing or given twice, the groups differ in length, or a value is out of range.
-    TooLargeError
-        For more than `max_points` points.
-    """
+    """The points of the columns of a body, and of the groups that are given beside it: numbers or lists, or None."""
     groups = dict(columns)
     for name in GROUPS:
         if given.get(name) is not None:
@@ -76,17 +68,7 @@ def batch_of(options: LookupOptions, columns: Columns, given: Mapping[str, Any],
 
 
 def parse_csv(body: bytes, max_points: int, stop: StopFlag) -> Columns:
-    """The columns of a CSV body with a header line; decoded line by line, as the text would take five times its memory.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it cannot be parsed, or a column is not a group.
-    TooLargeError
-        For more than `max_points` lines.
-    StoppedError
-        If `stop` was set; it is looked at every `CHUNK_LINES` lines.
-    """
+    """The columns of a CSV body with a header line; by line, as the whole text would take five times its memory."""
     lines = _lines(io.TextIOWrapper(io.BytesIO(body), encoding="utf-8-sig", newline="\n"))
     tables: list[NDArray[np.float64]] = []
     first, points = 2, 0
@@ -129,15 +111,7 @@ def _group_names(names: Iterator[str]) -> list[str]:
 
 
 def parse_netcdf(body: bytes, max_points: int) -> Columns:
-    """Variables of any dimensions broadcast by dimension name; points follow in C order of the dimensions.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is damaged, or a variable is not a group.
-    TooLargeError
-        For more than `max_points` points.
-    """
+    """Variables of any dimensions broadcast by dimension name; points follow in C order of the dimensions."""
     if not body.startswith((b"CDF\x01", b"CDF\x02")):
         raise InvalidArgumentError("body", repr(body[:4]), "netCDF-3, as written by Dataset.to_netcdf(engine='scipy')")
     try:

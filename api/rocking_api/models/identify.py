@@ -6,10 +6,10 @@ from typing import Annotated
 
 from pydantic import Field
 
-from rocking._excitation.records.record import TIME_STEP
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import Params, TableFormat
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import TableFormat, TimeStep, between, said, with_intervals
 
 MAX_SAMPLES = 20_000
 """Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
@@ -20,21 +20,11 @@ Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 class IdentifyParams(Params):
     """How a trace is read and fitted."""
 
-    edges: int = Field(
-        1,
-        description="1 for a body with equal edges, 2 for one with a right and a left edge [-]",
-        json_schema_extra={"minimum": 1, "maximum": 2},
-    )
-    degrees: bool = Field(
-        False, description="the rotations are in degrees, not in radians, where the header of CSV states no unit"
-    )
-    time_step: float | None = Field(
-        None,
-        description="time between the rows where CSV counts them in place of times [s]",
-        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
-    )
-    confidence: float = Field(
-        0.95, description="confidence of the intervals [-]", json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
+    edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
+    degrees: bool = said("the rotations are in degrees, not in radians, where the header of CSV states no unit", False)
+    time_step: TimeStep = said("time between the rows where CSV counts them in place of times [s]", None)
+    confidence: float = said(
+        "confidence of the intervals [-]", 0.95, json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
     )
     format: TableFormat = None
 
@@ -42,35 +32,29 @@ class IdentifyParams(Params):
 class Trace(IdentifyParams):
     """A trace in a JSON body, and how it is read and fitted."""
 
-    time: Samples = Field(description="times, ascending [s]")
-    rotation: Samples = Field(description="rotation; positive values turn on the right edge [rad]")
+    time: Samples = said("times, ascending [s]")
+    rotation: Samples = said("rotation; positive values turn on the right edge [rad]")
 
 
+@with_intervals(
+    restitution=(list[float], "eta of the impacts after which it turns on the edge", "-"),
+    alpha=(list[float], "slenderness angle", "rad"),
+    frequency_parameter=(list[float], "p", "rad/s"),
+    drift=(float, "drift of the sensor", "rad/s"),
+)
 class IdentifyResponse(Answer):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
     query: IdentifyParams = QUERY
-    edge: list[str] = Field(description="both, or right and left")
-    restitution: list[float] = Field(description="eta of the impacts after which it turns on the edge [-]")
-    restitution_lower: list[float] = Field(description="lower end of its interval [-]")
-    restitution_upper: list[float] = Field(description="upper end of its interval [-]")
-    alpha: list[float] = Field(description="slenderness angle [rad]")
-    alpha_lower: list[float] = Field(description="lower end of its interval [rad]")
-    alpha_upper: list[float] = Field(description="upper end of its interval [rad]")
-    frequency_parameter: list[float] = Field(description="p [rad/s]")
-    frequency_parameter_lower: list[float] = Field(description="lower end of its interval [rad/s]")
-    frequency_parameter_upper: list[float] = Field(description="upper end of its interval [rad/s]")
-    impact_time: list[float] = Field(description="times of the impacts of the fit [s]")
-    offset: float = Field(description="rotation at rest, at the first impact [rad]")
-    drift: float = Field(description="drift of the sensor [rad/s]")
-    drift_lower: float = Field(description="lower end of its interval [rad/s]")
-    drift_upper: float = Field(description="upper end of its interval [rad/s]")
-    noise: float = Field(description="standard deviation of the residual [rad]")
-    sample_noise: float = Field(description="standard deviation of independent errors of the samples [rad]")
-    time: list[float] = Field(description="times of the samples [s]")
-    rotation: list[float] = Field(description="rotation as given [rad]")
-    fitted: list[float | None] = Field(description="rotation of the block [rad]; null where nothing is fitted")
-    warnings: list[str] = Field(description="why the intervals are wider than the samples alone would have them")
+    edge: list[str] = said("both, or right and left")
+    impact_time: list[float] = said("times of the impacts of the fit [s]")
+    offset: float = said("rotation at rest, at the first impact [rad]")
+    noise: float = said("standard deviation of the residual [rad]")
+    sample_noise: float = said("standard deviation of independent errors of the samples [rad]")
+    time: list[float] = said("times of the samples [s]")
+    rotation: list[float] = said("rotation as given [rad]")
+    fitted: list[float | None] = said("rotation of the block [rad]; null where nothing is fitted")
+    warnings: list[str] = said("why the intervals are wider than the samples alone would have them")
     metadata_url: str = METADATA_URL_FIELD
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel
 
 from rocking_api.models.answer import Answer
+from rocking_api.models.quantity import said
 
 ASSUMPTIONS = (
     "The block is rigid, rectangular and of uniform density.",
@@ -29,9 +30,9 @@ REFERENCE = (
 class Equation(BaseModel):
     """An equation of the model, with its number in the reference."""
 
-    number: str = Field(description="number in the reference")
-    formula: str = Field(description="formula in plain text")
-    meaning: str = Field(description="what it states")
+    number: str = said("number in the reference")
+    formula: str = said("formula in plain text")
+    meaning: str = said("what it states")
 
 
 EQUATIONS = (
@@ -53,11 +54,11 @@ EQUATIONS = (
 class Metadata(BaseModel):
     """Model, assumptions and limits of use."""
 
-    model: str = Field(description="model in one line")
-    equations: list[Equation] = Field(description="equations that were solved")
-    assumptions: list[str] = Field(description="assumptions, one sentence each")
-    disclaimer: str = Field(description="limits of use")
-    reference: str = Field(description="publication whose equation numbers are used")
+    model: str = said("model in one line")
+    equations: list[Equation] = said("equations that were solved")
+    assumptions: list[str] = said("assumptions, one sentence each")
+    disclaimer: str = said("limits of use")
+    reference: str = said("publication whose equation numbers are used")
 
 
 class MetadataResponse(Metadata, Answer):
@@ -91,6 +92,6 @@ GROUPS_METADATA = METADATA.model_copy(
 
 METADATA_URL = "/v1/metadata"
 
-METADATA_URL_FIELD = Field(METADATA_URL, description="path of model, assumptions and limits of use")
+METADATA_URL_FIELD = said("path of model, assumptions and limits of use", METADATA_URL)
 
-METADATA_FIELD = Field(METADATA, description="model, assumptions and limits of use")
+METADATA_FIELD = said("model, assumptions and limits of use", METADATA)

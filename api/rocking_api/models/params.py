@@ -6,22 +6,15 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
-from rocking._base.quantities import ALPHA, RESTITUTION
-from rocking._base.quantities import FREQUENCY_RATIO as ANY_FREQUENCY_RATIO
-from rocking._base.quantities import SLENDERNESS as ANY_SLENDERNESS
-from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
+from rocking._base.quantities import RESTITUTION
+from rocking._excitation.pulses import PULSE_NAMES, as_pulse
 from rocking._model.checks import impact_share
-
-# Ranges of the service, far outside of practice and inside those of the library: searches around a point, and points
-# shifted by rounding for the error bound, stay in the latter.
-SLENDERNESS = ANY_SLENDERNESS.restricted(1e-9, math.inf)
-FREQUENCY_RATIO = ANY_FREQUENCY_RATIO.restricted(1e-6, 1e6)
-ALPHA_DEG = ALPHA.in_degrees().restricted(1e-6, 89.9)
+from rocking_api.models import quantity as q
 
 GROUPS = ("slenderness", "frequency_ratio", "restitution")
 
@@ -37,68 +30,6 @@ MAX_DURATION = 1e9
 """Duration of a history, tau = p t [-]."""
 
 
-def _list_pulses(schema: dict[str, Any]) -> None:
-    """Add the names of all pulses, those that were registered until the schema is made among them."""
-    names = pulse_names()
-    varied = "|".join(name for name in names if pulse_parameters(name))
-    schema["anyOf"] = [
-        {"title": "Pulse_name", "type": "string", "enum": [*names, *(f"-{name}" for name in names)]},
-        {"type": "string", "pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
-    ]
-
-
-PulseName = Annotated[
-    str,
-    Field(
-        description="pulse, with its parameters in brackets if it has any; a leading minus mirrors it",
-        examples=["sine", "mavroeidis_papageorgiou(cycles=3, phase=90deg)"],
-        json_schema_extra=_list_pulses,
-    ),
-]
-Slenderness = Annotated[
-    float,
-    Field(
-        description=f"{SLENDERNESS.help}; from 1 on the block does not uplift",
-        examples=[0.4],
-        json_schema_extra=SLENDERNESS.limits,
-    ),
-]
-FrequencyRatio = Annotated[
-    float, Field(description=FREQUENCY_RATIO.help, examples=[5.0], json_schema_extra=FREQUENCY_RATIO.limits)
-]
-Restitution = Annotated[
-    float, Field(description=RESTITUTION.help, examples=[0.85], json_schema_extra=RESTITUTION.limits)
-]
-AlphaDeg = Annotated[
-    float | None,
-    Field(description="slenderness angle alpha [deg]; absent or 0: the slender limit", examples=[0.0]),
-]
-Method = Annotated[
-    Literal["auto", "cube", "solver"],
-    Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
-]
-AbsoluteTolerance = Annotated[
-    float,
-    Field(description="largest absolute error of an interpolated peak_rotation [-]", json_schema_extra={"minimum": 0}),
-]
-Format = Annotated[
-    Literal["json", "csv", "nc"] | None,
-    Field(description="format of the response; absent: by the Accept header, else JSON (nc: netCDF-3)"),
-]
-BodyFormat = Annotated[
-    Literal["json", "csv", "nc"] | None,
-    Field(description="format of the response; absent: by the Accept header, else that of the body (nc: netCDF-3)"),
-]
-TableFormat = Annotated[
-    Literal["json", "csv"] | None,
-    Field(description="format of the response; absent: by the Accept header, else that of the body"),
-]
-FileFormat = Annotated[
-    Literal["csv", "nc"] | None,
-    Field(description="format of the response; absent: by the Accept header, else nc, which is netCDF-3"),
-]
-
-
 class Params(BaseModel):
     """Base of all parameter models. Unknown parameters are refused."""
 
@@ -109,13 +40,7 @@ class Params(BaseModel):
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
-        """Refuse a value that is out of the range that the schema of its field states, whatever the others are.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If it is.
-        """
+        """Refuse a value that is out of the range that the schema of its field states, whatever the others are."""
         check = _checks_of(cls).get(name)
         if check is not None and value is not None:
             check(value)
@@ -132,13 +57,7 @@ class Params(BaseModel):
         return found
 
     def check(self) -> None:
-        """Refuse values out of range, before any work is queued.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If some are; `SeveralArgumentsError` if several are.
-        """
+        """Refuse values out of range, before any work is queued."""
         errors = self.out_of_range(self)
         if errors:
             raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
@@ -147,15 +66,8 @@ class Params(BaseModel):
 class ListParams(Params):
     """A part of a list."""
 
-    limit: int | None = Field(
-        None,
-        description="most entries [-]; absent: all",
-        examples=[10],
-        json_schema_extra={"minimum": 1, "maximum": 10_000},
-    )
-    cursor: str | None = Field(
-        None, description="where the list goes on: `next_cursor` of the answer before; absent: at its start"
-    )
+    limit: int | None = q.between(1, 10_000, "most entries [-]; absent: all", default=None, examples=[10])
+    cursor: str | None = q.said("`next_cursor` of the answer before; absent: the start of the list", None)
 
     def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
         """The names of this part, of ascending names, and the cursor of the next one; None at the end."""
@@ -168,101 +80,96 @@ class ListParams(Params):
 class LookupOptions(Params):
     """Options of a lookup."""
 
-    pulse: PulseName
-    alpha_deg: AlphaDeg = None
-    method: Method = "auto"
-    absolute_tolerance: AbsoluteTolerance = 1e-4
+    pulse: q.PulseName
+    alpha_deg: q.AlphaDeg = None
+    method: q.Method = "auto"
+    absolute_tolerance: q.AbsoluteTolerance = 1e-4
 
 
 class ResponseParams(LookupOptions):
     """One block."""
 
-    slenderness: Slenderness
-    frequency_ratio: FrequencyRatio
-    restitution: Restitution
+    slenderness: q.Slenderness
+    frequency_ratio: q.FrequencyRatio
+    restitution: q.Restitution
 
 
 class BatchOptions(LookupOptions):
     """Options of many blocks."""
 
-    format: BodyFormat = None
+    format: q.BodyFormat = None
 
 
 class TableParams(BatchOptions):
     """The same, and those of the groups that a table does not hold."""
 
-    slenderness: Slenderness | None = None
-    frequency_ratio: FrequencyRatio | None = None
-    restitution: Restitution | None = None
+    slenderness: q.Slenderness | None = None
+    frequency_ratio: q.FrequencyRatio | None = None
+    restitution: q.Restitution | None = None
 
 
 class BatchParams(BatchOptions):
     """Many blocks: numbers, or arrays of one length."""
 
-    slenderness: Slenderness | Annotated[list[Slenderness], _FAIL_FAST] = Field(description=SLENDERNESS.help)
-    frequency_ratio: FrequencyRatio | Annotated[list[FrequencyRatio], _FAIL_FAST] = Field(
-        description=FREQUENCY_RATIO.help
-    )
-    restitution: Restitution | Annotated[list[Restitution], _FAIL_FAST] = Field(description=RESTITUTION.help)
+    slenderness: q.Slenderness | Annotated[list[q.Slenderness], _FAIL_FAST] = q.said(q.SLENDERNESS.help)
+    frequency_ratio: q.FrequencyRatio | Annotated[list[q.FrequencyRatio], _FAIL_FAST] = q.said(q.FREQUENCY_RATIO.help)
+    restitution: q.Restitution | Annotated[list[q.Restitution], _FAIL_FAST] = q.said(RESTITUTION.help)
+
+
+class ShapeParams(Params):
+    """A pulse and blocks of one shape and restitution."""
+
+    pulse: q.PulseName
+    restitution: q.Restitution
+    alpha_deg: q.AlphaDeg = None
+
+
+class BlockInGroups(ShapeParams):
+    """A pulse without amplitude, and a block."""
+
+    frequency_ratio: q.FrequencyRatio
 
 
 class SpectrumParams(LookupOptions):
     """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
 
-    slenderness: Slenderness
-    restitution: Restitution
-    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
-    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
-    points: int = Field(200, description="points of the curve [-]", json_schema_extra={"minimum": 2})
-    format: Format = None
+    slenderness: q.Slenderness
+    restitution: q.Restitution
+    frequency_ratio_min: q.FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: q.FrequencyRatio = Field(12.0, examples=[12.0])
+    points: int = q.between(2, math.inf, "points of the curve [-]", default=200)
+    format: q.Format = None
 
 
-class OverturningParams(Params):
+class OverturningParams(ShapeParams):
     """Boundary curves of overturning."""
 
-    pulse: PulseName
-    restitution: Restitution
-    alpha_deg: AlphaDeg = None
-    format: Format = None
+    format: q.Format = None
 
 
-class HistoryParams(Params):
+class HistoryParams(BlockInGroups):
     """The motion of one block."""
 
-    pulse: PulseName
-    slenderness: Slenderness
-    frequency_ratio: FrequencyRatio
-    restitution: Restitution
-    alpha_deg: AlphaDeg = None
-    duration: float | None = Field(
+    slenderness: q.Slenderness
+    duration: float | None = q.said(
+        "length tau = p t [-]; absent: the pulse and some free rocking",
         None,
-        description="length tau = p t [-]; absent: the pulse and some free rocking",
         json_schema_extra={"exclusiveMinimum": 0, "maximum": MAX_DURATION},
     )
-    samples: int = Field(
-        400,
-        description="uniform samples [-]; the events are added",
-        json_schema_extra={"minimum": 2, "maximum": 1_000_000},
-    )
-    contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
-    format: Format = None
+    samples: int = q.between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)
+    contact: q.Contact = False
+    format: q.Format = None
 
 
 def alpha_of(alpha_deg: float | None) -> float | None:
-    """Slenderness angle [rad], None for the slender limit.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is neither 0 nor in the range of `ALPHA_DEG`.
-    """
-    return math.radians(float(ALPHA_DEG.convert(alpha_deg))) if alpha_deg else None
+    """Slenderness angle [rad], None for the slender limit."""
+    return math.radians(float(q.ALPHA_DEG.convert(alpha_deg))) if alpha_deg else None
 
 
 _CHECKS: dict[str, Callable[[Any], object]] = {
     "pulse": as_pulse,
-    "slenderness": SLENDERNESS.convert,
-    "frequency_ratio": FREQUENCY_RATIO.convert,
+    "slenderness": q.SLENDERNESS.convert,
+    "frequency_ratio": q.FREQUENCY_RATIO.convert,
     "restitution": lambda value: impact_share(value) is not None or RESTITUTION.convert(value),
     "alpha_deg": alpha_of,
 }
@@ -291,19 +198,13 @@ def _checks_of(kind: type[Params]) -> dict[str, Callable[[Any], object]]:
 
 
 def check_point(params: ResponseParams) -> None:
-    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond.
-
-    Raises
-    ------
-    InvalidArgumentError
-        As `Params.check`, which is slower.
-    """
+    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond."""
     if not (
         params.pulse in _KNOWN
-        and SLENDERNESS.lower <= params.slenderness < SLENDERNESS.upper
-        and FREQUENCY_RATIO.lower <= params.frequency_ratio <= FREQUENCY_RATIO.upper
+        and q.SLENDERNESS.lower <= params.slenderness < q.SLENDERNESS.upper
+        and q.FREQUENCY_RATIO.lower <= params.frequency_ratio <= q.FREQUENCY_RATIO.upper
         and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
-        and (not params.alpha_deg or ALPHA_DEG.lower <= params.alpha_deg <= ALPHA_DEG.upper)
+        and (not params.alpha_deg or q.ALPHA_DEG.lower <= params.alpha_deg <= q.ALPHA_DEG.upper)
         and 0.0 <= params.absolute_tolerance < math.inf
     ):
         params.check()

@@ -18,7 +18,8 @@ from pydantic import (
 )
 
 from rocking._excitation.sampled import SampledPulse
-from rocking_api.models.params import Params, PulseName
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import PulseName, said
 
 P = TypeVar("P", bound=Params)
 
@@ -36,14 +37,13 @@ class PulseSamples(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    acceleration: Samples = Field(description="ground acceleration at the samples, in any unit")
-    time: Samples | None = Field(None, description="their times, ascending, in any unit; absent: equidistant")
-    period: float | None = Field(
+    acceleration: Samples = said("ground acceleration at the samples, in any unit")
+    time: Samples | None = said("their times, ascending, in any unit; absent: equidistant", None)
+    period: float | None = said(
+        "T_p in the unit of the times, of frequency_ratio and period; absent: from the first sample to the last",
         None,
-        description="T_p in the unit of the times, which frequency_ratio and period refer to; absent: the time "
-        "from the first sample to the last",
     )
-    name: str = Field("sampled", description="name that the response repeats", min_length=1, max_length=200)
+    name: str = said("name that the response repeats", "sampled", min_length=1, max_length=200)
 
 
 def _made(samples: PulseSamples) -> SampledPulse:
@@ -58,7 +58,7 @@ GivenPulse = Annotated[
     Annotated[PulseName, Tag("name")] | Annotated[PulseSamples, AfterValidator(_made), Tag("samples")],
     Discriminator(_tag),
     PlainSerializer(lambda pulse: pulse if isinstance(pulse, str) else pulse.name, return_type=str),
-    Field(description="a pulse by its name, or by samples"),
+    said("a pulse by its name, or by samples"),
 ]
 
 

@@ -1,20 +1,172 @@
-"""Fields of pydantic from the declarations of quantities."""
+"""Fields of pydantic from the declarations of quantities, and the inputs that several routes share.
+
+The ranges of the service lie inside those of the library, far outside of practice: searches around a point, and points
+shifted by rounding for the error bound, stay in the latter.
+"""
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Any
+import math
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BeforeValidator, Field
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    create_model,
+)
+from pydantic_core import PydanticCustomError
 
+from rocking._base import quantities as q
 from rocking._base.quantity import Quantity
+from rocking._excitation.pulses import pulse_names, pulse_parameters
+from rocking._excitation.records.processing import MAX_BASELINE_ORDER
+from rocking._excitation.records.readers.read_record import MAX_SKIP
+from rocking._excitation.records.record import TIME_STEP, UNITS
+
+Model = TypeVar("Model", bound=BaseModel)
+
+SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
+FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
+ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
+
+SMALLEST_SCALE = 1e-6
+"""Smallest factor of a record [-]."""
 
 
-def described(quantity: Quantity, text: str = "", **more: Any) -> Any:
+def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:
     """What the declaration says of a field: its meaning, unit and range in the schema; `more` are those of `Field`."""
-    return Field(description=text or quantity.help, json_schema_extra=dict(quantity.limits), **more)
+    text = f"{text} [{unit or quantity.unit}]" if text else quantity.help
+    return Field(description=text, json_schema_extra=dict(quantity.limits), **more)
 
 
-def reader(quantity: Quantity) -> BeforeValidator:
-    """Reads a number in the SI unit, a text such as "40 cm", or one of the words of the quantity, and checks it."""
-    return BeforeValidator(partial(quantity.read, si=True))
+def said(text: str, default: Any = ..., **more: Any) -> Any:
+    """A field with its description; `more` are those of `Field`."""
+    return Field(default, description=text, **more)
+
+
+def with_intervals(**estimates: tuple[Any, str, str]) -> Callable[[type[Model]], type[Model]]:
+    """A decorator that adds estimates to a model, by type, meaning and unit, and the ends of their intervals."""
+    found: dict[str, Any] = {}
+    for name, (kind, meaning, unit) in estimates.items():
+        ends = {name: meaning} | {f"{name}_{end}": f"{end} end of its interval" for end in ("lower", "upper")}
+        found |= {key: (kind, said(f"{text} [{unit}]")) for key, text in ends.items()}
+    return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
+
+
+def _in_range(quantity: Quantity, low: float, high: float, text: str = "", kind: Any = float, **more: Any) -> Any:
+    """A field in SI units within the range of the service; a text may state another unit, as "40 cm"."""
+    own = quantity.restricted(low, high)
+
+    def read(value: Any) -> Any:
+        return value if value is None else own.read(value, si=True)
+
+    return Annotated[kind, BeforeValidator(read), described(own, text, **more)]
+
+
+def between(low: float, high: float, text: str, **more: Any) -> Any:
+    """A field with a range that includes its finite ends."""
+    ends: dict[str, Any] = {"minimum": low} | ({"maximum": high} if math.isfinite(high) else {})
+    return Field(description=text, json_schema_extra=ends, **more)
+
+
+def _list_pulses(schema: dict[str, Any]) -> None:
+    """Add the names of all pulses, those that were registered until the schema is made among them."""
+    names = pulse_names()
+    varied = "|".join(name for name in names if pulse_parameters(name))
+    schema["anyOf"] = [
+        {"title": "Pulse_name", "type": "string", "enum": [*names, *(f"-{name}" for name in names)]},
+        {"type": "string", "pattern": rf"^-?({varied})\([a-z]+=[^(),]+(,[a-z]+=[^(),]+)*\)$"},
+    ]
+
+
+def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
+    """One error message for both alternatives."""
+    try:
+        return read(value)
+    except ValidationError:
+        raise PydanticCustomError("restitution", "momentum, kalliontzis(k=0.8), or a number in [0, 1] [-]") from None
+
+
+def _format(*forms: str, default: str) -> Any:
+    text = f"format of the response; absent: by the Accept header, else {default}"
+    return Annotated[Literal[forms] | None, Field(description=text + (" (nc: netCDF-3)" if "nc" in forms else ""))]
+
+
+# the groups of a response
+
+Pulse = Field(
+    description="pulse, with its parameters in brackets if it has any; a leading minus mirrors it",
+    examples=["sine", "mavroeidis_papageorgiou(cycles=3, phase=90deg)"],
+    json_schema_extra=_list_pulses,
+)
+PulseName = Annotated[str, Pulse]
+Slenderness = Annotated[
+    float, described(SLENDERNESS, f"{SLENDERNESS.help[:-4]}; from 1 on the block does not uplift", examples=[0.4])
+]
+FrequencyRatio = Annotated[float, described(FREQUENCY_RATIO, examples=[5.0])]
+Restitution = Annotated[float, described(q.RESTITUTION, examples=[0.85])]
+AlphaDeg = Annotated[
+    float | None,
+    Field(description="slenderness angle alpha [deg]; absent or 0: the slender limit", examples=[0.0]),
+]
+
+# blocks and motions in SI units
+
+Width = _in_range(q.WIDTH, 1e-4, 1e4, examples=[0.4])
+Height = _in_range(q.HEIGHT, 1e-4, 1e4, examples=[1.6])
+Offset = _in_range(q.OFFSET, -1e4, 1e4, q.OFFSET.meaning + ", less than half of it")
+MassHeight = _in_range(q.MASS_HEIGHT, 1e-4, 1e4, kind=float | None)
+Gravity = _in_range(q.GRAVITY, 1e-3, 1e3)
+PeakAcceleration = _in_range(q.PEAK_ACCELERATION, 1e-6, 1e6, examples=[4.0])
+Period = _in_range(q.PERIOD, 1e-4, 1e4, examples=[0.5])
+Scale = Annotated[float, described(q.SCALE.restricted(SMALLEST_SCALE, q.HIGHEST_SCALE))]
+BodyRestitution = Annotated[
+    Literal["momentum"] | Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")] | float,
+    WrapValidator(_momentum_or_number),
+    Field(
+        description="eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b"
+    ),
+]
+
+# files of records
+
+Unit = Annotated[
+    str | None,
+    Field(
+        description="unit of the samples, required if the file states none", json_schema_extra={"enum": [*UNITS, None]}
+    ),
+]
+TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], required if the file states none")]
+Skip = Annotated[
+    int | None,
+    between(0, MAX_SKIP, "rows of numbers above the samples of a file of columns, such as a count or a factor [-]"),
+]
+BaselineOrder = Annotated[
+    int | None,
+    between(
+        0,
+        MAX_BASELINE_ORDER,
+        "degree of the baseline that is removed from the acceleration [-]; absent: the mean of K-NET counts only",
+    ),
+]
+Contact = Annotated[bool, Field(description="add the reactions of the ground and the friction that they need")]
+
+# options of the answer
+
+Method = Annotated[
+    Literal["auto", "cube", "solver"],
+    Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
+]
+AbsoluteTolerance = Annotated[
+    float,
+    Field(description="largest absolute error of an interpolated peak_rotation [-]", json_schema_extra={"minimum": 0}),
+]
+Format = _format("json", "csv", "nc", default="JSON")
+BodyFormat = _format("json", "csv", "nc", default="that of the body")
+TableFormat = _format("json", "csv", default="that of the body")
+FileFormat = _format("csv", "nc", default="nc")

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import BaseModel, Field, create_model
+from pydantic import BaseModel, create_model
 
-from rocking._base.quantities import HIGHEST_SCALE
-from rocking._excitation.records.processing import MAX_BASELINE_ORDER
-from rocking._excitation.records.readers.read_record import MAX_SKIP
-from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import NOTES, OVERTURNS_ABOVE, Edge, MassHeight, Offset, SizeParams
+from rocking_api.models.blocks import NOTES, BodyParams, Edge, ScaleThreshold, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Format
-from rocking_api.models.responses import BY_SOLVER, Motion, with_fields
-
-SMALLEST_SCALE = 1e-6
-"""Smallest factor of a record [-]."""
+from rocking_api.models.quantity import BaselineOrder, Contact, Format, Scale, Skip, TimeStep, Unit, between, said
+from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
 
 MAX_SCALES = 2000
 """Most factors of a curve over the scale [-]."""
@@ -31,47 +25,16 @@ CAUTION = (
     "amplitude at which it overturns a block is usually larger than that of the record, which is unconservative."
 )
 
-_SCALE: dict[str, Any] = {"minimum": SMALLEST_SCALE, "maximum": HIGHEST_SCALE}
-
-Unit = Annotated[
-    str | None,
-    Field(
-        description="unit of the samples, required if the file states none", json_schema_extra={"enum": [*UNITS, None]}
-    ),
-]
-
-
-Skip = Annotated[
-    int | None,
-    Field(
-        description="rows of numbers above the samples of a file of columns, such as a count or a factor [-]",
-        json_schema_extra={"minimum": 0, "maximum": MAX_SKIP},
-    ),
-]
-
-BaselineOrder = Annotated[
-    int | None,
-    Field(
-        description="degree of the baseline that is removed from the acceleration [-]; absent: none, "
-        "but for the mean of K-NET counts",
-        json_schema_extra={"minimum": 0, "maximum": MAX_BASELINE_ORDER},
-    ),
-]
-
 
 class RecordFileParams(SizeParams):
     """A block in SI units, and what the file of the record does not state."""
 
-    name: str = Field("record", description="name of the file, for messages", max_length=200)
+    name: str = said("name of the file, for messages", "record", max_length=200)
     unit: Unit = None
-    time_step: float | None = Field(
-        None,
-        description="time step [s], required if the file states none",
-        json_schema_extra={"minimum": TIME_STEP[0], "maximum": TIME_STEP[1]},
-    )
-    component: str | None = Field(None, description="column or trace of a file with several", max_length=200)
-    vertical: str | None = Field(
-        None, description="column or trace of the vertical component, upwards, in the same file", max_length=200
+    time_step: TimeStep = None
+    component: str | None = said("column or trace of a file with several", None, max_length=200)
+    vertical: str | None = said(
+        "column or trace of the vertical component, upwards, in the same file", None, max_length=200
     )
     skip: Skip = None
     baseline_order: BaselineOrder = None
@@ -80,61 +43,45 @@ class RecordFileParams(SizeParams):
 class RecordParams(RecordFileParams):
     """The same, and a factor of the record, of both components."""
 
-    scale: float = Field(1.0, description="factor of the record [-]", json_schema_extra=_SCALE)
+    scale: Scale = 1.0
 
 
-class RecordResponseParams(RecordParams):
+class RecordResponseParams(BodyParams, RecordParams):
     """The same, the place of the centre of mass, and whether to search thresholds and to fit a pulse."""
 
-    offset: Offset = 0.0
-    mass_height: MassHeight = None
-    thresholds: bool = Field(
-        True, description="find all scales at which the outcome changes, which takes most of the time"
-    )
-    fit: bool = Field(False, description="fit a pulse, and compare how both overturn the block")
+    thresholds: bool = said("find all scales at which the outcome changes, which takes most of the time", True)
+    fit: bool = said("fit a pulse, and compare how both overturn the block", False)
 
 
 class RecordHistoryParams(RecordParams):
     """The same, and which samples are wanted."""
 
-    samples: int | None = Field(
-        None,
-        description="uniform samples [-]; absent: those of the record; the events are added",
-        json_schema_extra={"minimum": 2},
+    samples: int | None = between(
+        2, math.inf, "uniform samples [-]; absent: those of the record; the events are added", default=None
     )
-    contact: bool = Field(False, description="add the reactions of the ground and the friction that they need")
+    contact: Contact = False
     format: Format = None
 
 
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
-    scale_min: float | None = Field(
-        None, description="smallest factor [-]; absent: that of uplift", json_schema_extra=_SCALE
-    )
-    scale_max: float | None = Field(
-        None, description="largest factor [-]; absent: ten times that of uplift", json_schema_extra=_SCALE
-    )
-    points: int = Field(
-        200,
-        description="factors, evenly spaced in their logarithm [-]",
-        json_schema_extra={"minimum": 2, "maximum": MAX_SCALES},
-    )
+    scale_min: Scale | None = said("smallest factor [-]; absent: that of uplift", None)
+    scale_max: Scale | None = said("largest factor [-]; absent: ten times that of uplift", None)
+    points: int = between(2, MAX_SCALES, "factors, evenly spaced in their logarithm [-]", default=200)
     format: Format = None
 
 
 class RecordPulseParams(RecordParams):
     """The same, and the samples for a drawing."""
 
-    samples: int = Field(
-        2000, description="most samples of the drawing [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
-    )
+    samples: int = between(2, MAX_DRAWN, "most samples of the drawing [-]", default=2000)
 
 
 class RecordBody(RecordFileParams):
     """A record in a JSON body, with the parameters of its route."""
 
-    record: str = Field(description="text of the file")
+    record: str = said("text of the file")
 
 
 @cache
@@ -149,126 +96,103 @@ def with_record(kind: type[RecordFileParams]) -> type[RecordBody]:
 class RecordDescription(BaseModel):
     """The record, as read; SI units."""
 
-    name: str = Field(description="name of the file, without its ending, and the component")
-    source: str = Field(description="file, format, and what was done to the record")
-    remarks: list[str] = Field(description="what the reader of the file found in doubt")
-    samples: int = Field(description="number of samples [-]")
-    time_step: float = Field(description="time step [s]")
-    peak_acceleration: float = Field(description="PGA [m/s2]")
-    peak_vertical_acceleration: float | None = Field(
-        description="largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
+    name: str = said("name of the file, without its ending, and the component")
+    source: str = said("file, format, and what was done to the record")
+    remarks: list[str] = said("what the reader of the file found in doubt")
+    samples: int = said("number of samples [-]")
+    time_step: float = said("time step [s]")
+    peak_acceleration: float = said("PGA [m/s2]")
+    peak_vertical_acceleration: float | None = said(
+        "largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
     )
-    peak_velocity: float = Field(description="PGV [m/s]")
-    peak_displacement: float = Field(description="PGD [m]")
-    arias_intensity: float = Field(description="Arias intensity [m/s]")
-    significant_duration: float = Field(description="between 5 % and 95 % of the Arias intensity [s]")
-    mean_period: float | None = Field(description="mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
-    final_velocity: float = Field(description="velocity at the last sample, which an offset leaves [m/s]")
-    digest: str = Field(description="sha256 of the time step and the samples of all components")
+    peak_velocity: float = said("PGV [m/s]")
+    peak_displacement: float = said("PGD [m]")
+    arias_intensity: float = said("Arias intensity [m/s]")
+    significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
+    mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
+    final_velocity: float = said("velocity at the last sample, which an offset leaves [m/s]")
+    digest: str = said("sha256 of the time step and the samples of all components")
 
 
-_RECORD = Field(description="the record, as read")
+class RecordAnswer(Answer):
+    """Base of the models of what is found under a record."""
 
-
-class ScaleThreshold(BaseModel):
-    """A scale at which the outcome changes."""
-
-    scale: float = Field(description="factor of the record [-]")
-    peak_acceleration: float = Field(description="PGA of the scaled record [m/s2]")
-    overturns_above: bool = OVERTURNS_ABOVE
+    record: RecordDescription = said("the record, as read")
+    source: str = BY_SOLVER
+    metadata: Metadata = METADATA_FIELD
 
 
 class FittedPulse(BaseModel):
     """A pulse fitted to the velocity of the record: a description, not a substitute."""
 
-    pulse: str = Field(description="kind of pulse")
-    period: float = Field(description="T_p [s]")
-    peak_acceleration: float = Field(description="a_g [m/s2]")
-    centre: float = Field(description="time of its centre from the first sample [s]")
-    cycles: float | None = Field(description="gamma of Mavroeidis & Papageorgiou [-]; null for others")
-    phase: float | None = Field(description="nu of Mavroeidis & Papageorgiou [rad]; null for others")
-    explained: float = Field(description="share of the sum of squares of the velocity that it takes away [-]")
-    scale_ratio: float | None = Field(
-        description="lowest scale at which the pulse overturns the block over that of the record [-]; above 1 the "
-        "pulse is unconservative; null: one of them does not overturn it"
+    pulse: str = said("kind of pulse")
+    period: float = said("T_p [s]")
+    peak_acceleration: float = said("a_g [m/s2]")
+    centre: float = said("time of its centre from the first sample [s]")
+    cycles: float | None = said("gamma of Mavroeidis & Papageorgiou [-]; null for others")
+    phase: float | None = said("nu of Mavroeidis & Papageorgiou [rad]; null for others")
+    explained: float = said("share of the sum of squares of the velocity that it takes away [-]")
+    scale_ratio: float | None = said(
+        "lowest scale at which the pulse overturns the block over that of the record [-]; above 1: unconservative; "
+        "null: one of them does not overturn it"
     )
 
 
-_SCALES = Field(
-    description="all scales at which the outcome changes, ascending; null: not asked for, or not found in time"
-)
+_SCALES = said("all scales at which the outcome changes, ascending; null: not asked for, or not found in time")
 
 
 @with_fields("record", "block")
-class RecordResponse(Answer):
+class RecordResponse(RecordAnswer):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
     query: RecordResponseParams = QUERY
-    record: RecordDescription = _RECORD
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
-    pulse: FittedPulse | None = Field(None, description="null unless requested")
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
+    pulse: FittedPulse | None = said("null unless requested", None)
 
 
 @with_fields("record", "edges")
-class RecordBodyResponse(Answer):
+class RecordBodyResponse(RecordAnswer):
     """What happens to a body whose centre of mass is not that of the block."""
 
     query: RecordResponseParams = QUERY
-    record: RecordDescription = _RECORD
     edge: Edge
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
-class RecordHistoryResponse(Motion):
+class RecordHistoryResponse(RecordAnswer, Motion):
     """A motion under a record."""
 
     query: RecordHistoryParams = QUERY
-    record: RecordDescription = _RECORD
-    time: list[float] = Field(description="from the first sample [s]")
-    impact_time: list[float] = Field(description="times of the impacts [s]")
-    vertical_acceleration: list[float] | None = Field(
-        None, description="of the ground over g, upwards [-]; null: the record has no vertical component"
+    time: list[float] = said("from the first sample [s]")
+    impact_time: list[float] = said("times of the impacts [s]")
+    vertical_acceleration: list[float] | None = said(
+        "of the ground over g, upwards [-]; null: the record has no vertical component", None
     )
-    metadata: Metadata = METADATA_FIELD
 
 
-class RecordScalesResponse(Answer):
+@declared(OF_SOLVER, many=True)
+class RecordScalesResponse(RecordAnswer):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
     query: RecordScalesParams = QUERY
-    record: RecordDescription = _RECORD
-    scale: list[float] = Field(description="factors of the record [-]")
-    peak_acceleration: list[float] = Field(description="PGA of the scaled record [m/s2]")
-    peak_rotation: list[float | None] = Field(description="max |theta|/alpha [-]; null where the block overturns")
-    overturned: list[bool] = Field(description="final outcome")
-    outcome: list[str] = Field(description="final outcome by name")
-    impacts: list[int] = Field(description="number of impacts while the ground moves [-]")
-    exceeded_alpha: list[bool] = Field(description="whether the rotation passes alpha")
-    thresholds: list[ScaleThreshold] = Field(
-        description="scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at "
-        "most 0.5 % apart up to the lowest, 0.2 % above it"
+    scale: list[float] = said("factors of the record [-]")
+    peak_acceleration: list[float] = said("PGA of the scaled record [m/s2]")
+    thresholds: list[ScaleThreshold] = said(
+        "scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at most "
+        "0.5 % apart up to the lowest, 0.2 % above it"
     )
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
-class RecordPulseResponse(Answer):
+class RecordPulseResponse(RecordAnswer):
     """The pulse fitted to the velocity of a record, and both motions for a drawing."""
 
     query: RecordPulseParams = QUERY
-    record: RecordDescription = _RECORD
-    pulse: FittedPulse = Field(description="parameters of the pulse")
-    time: list[float] = Field(description="from the first sample [s]; every few samples of a long record")
-    record_acceleration: list[float] = Field(description="of the record, factor included [m/s2]")
-    pulse_acceleration: list[float] = Field(description="of the pulse, factor included [m/s2]")
-    record_velocity: list[float] = Field(description="of the record, factor included [m/s]")
-    pulse_velocity: list[float] = Field(description="of the pulse, factor included [m/s]")
-    caution: str = Field(CAUTION, description="why the pulse does not replace the record")
-    source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
+    pulse: FittedPulse = said("parameters of the pulse")
+    time: list[float] = said("from the first sample [s]; every few samples of a long record")
+    record_acceleration: list[float] = said("of the record, factor included [m/s2]")
+    pulse_acceleration: list[float] = said("of the pulse, factor included [m/s2]")
+    record_velocity: list[float] = said("of the record, factor included [m/s]")
+    pulse_velocity: list[float] = said("of the pulse, factor included [m/s]")
+    caution: str = said("why the pulse does not replace the record", CAUTION)

@@ -72,13 +72,7 @@ def _read(body: AssessBody | bytes, form: Form, params: AssessParams, stop: Stop
 
 
 def check_table(table: ObjectTable, name: str) -> None:
-    """Refuse a table without an object.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is; `name` is that of the table for the message.
-    """
+    """Refuse a table without an object."""
     if not table.objects:
         reasons = "; ".join(map(str, table.bad_rows)) or "an empty table"
         raise InvalidArgumentError(name, reasons, "one object or more")

@@ -24,22 +24,11 @@ from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.blocks import (
-    MAX_BLOCKS,
-    BlockParams,
-    BlockResponse,
-    BlockRow,
-    BlockRows,
-    BlocksParams,
-    BlocksResponse,
-    BodyResponse,
-    Margins,
-    PeriodThreshold,
-    SizeThreshold,
-)
+from rocking_api.models import blocks as m
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.params import FREQUENCY_RATIO, ResponseParams
-from rocking_api.models.responses import PointResponse, point_response
+from rocking_api.models.params import ResponseParams
+from rocking_api.models.quantity import FREQUENCY_RATIO
+from rocking_api.models.responses import SOURCES, PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
@@ -62,8 +51,8 @@ BY_SOLVER = "no data set covers this block within the tolerance; the solver was 
 
 @router.get("/response", summary="A block in SI units")
 async def get_block(
-    params: Annotated[BlockParams, Query()], request: Request, service: ServiceDep
-) -> BlockResponse | BodyResponse:
+    params: Annotated[m.BlockParams, Query()], request: Request, service: ServiceDep
+) -> m.BlockResponse | m.BodyResponse:
     """Outcome, rotation in degrees, displacement in metres, distance to another outcome, friction, by (2.2).
 
     With `offset` or `mass_height` of a body with two different edges, by the solver.
@@ -74,16 +63,16 @@ async def get_block(
 @router.post(
     "/response",
     summary="Many blocks in SI units",
-    response_model=BlocksResponse,
+    response_model=m.BlocksResponse,
     responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
     openapi_extra=body_of(
         {
-            **json_content(BlockRows, _EXAMPLE),
+            **json_content(m.BlockRows, _EXAMPLE),
             **text_content(
                 MEDIA_TYPES["csv"], "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n"
             ),
         },
-        BlocksParams,
+        m.BlocksParams,
     ),
 )
 async def post_blocks(request: Request, service: ServiceDep) -> Response:
@@ -93,23 +82,23 @@ async def post_blocks(request: Request, service: ServiceDep) -> Response:
     brackets or in its cells, and optionally name and restitution; others are not used.
     """
     given = body_form(request, _FORMS)
-    params, body = await service.read(request, BlocksParams, given, BlockRows, MAX_BODY)
+    params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
     table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
     return await service.run_heavy(params, lambda stop: _blocks(service, params, request, table, form, stop), request)
 
 
-def _read_table(body: BlockRows | bytes, params: BlocksParams, stop: StopFlag) -> BlockTable:
+def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams, stop: StopFlag) -> BlockTable:
     """The blocks of a body, each checked."""
     if params.pulse is None:
         raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
-        table = read_table(text, params.pulse, params.restitution, most=MAX_BLOCKS, stop=stop)
+        table = read_table(text, params.pulse, params.restitution, most=m.MAX_BLOCKS, stop=stop)
         table.check()
     else:
-        if len(body.blocks) > MAX_BLOCKS:
-            raise TooLargeError("blocks", len(body.blocks), f"at most {MAX_BLOCKS}")
+        if len(body.blocks) > m.MAX_BLOCKS:
+            raise TooLargeError("blocks", len(body.blocks), f"at most {m.MAX_BLOCKS}")
         problems = [
             Problem.of(
                 Block(row.width, row.height),
@@ -132,21 +121,21 @@ def _read_table(body: BlockRows | bytes, params: BlocksParams, stop: StopFlag) -
             ("peak_acceleration", problem.peak_acceleration),
             ("period", problem.period),
         ):
-            BlockRow.check_field(name, value)
+            m.BlockRow.check_field(name, value)
     return table
 
 
 def _blocks(
-    service: Service, params: BlocksParams, request: Request, table: BlockTable, form: str, stop: StopFlag
+    service: Service, params: m.BlocksParams, request: Request, table: BlockTable, form: str, stop: StopFlag
 ) -> Response:
     columns: dict[str, Any] = {**respond_table(table, stop)}
     service.metrics.points("solver", len(table.problems))
     if form == "csv":
         return csv_response(columns, "blocks")
-    return json_response(BlocksResponse.model_construct(query=params, **columns), request)
+    return json_response(m.BlocksResponse.model_construct(query=params, **columns), request)
 
 
-def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockResponse | BodyResponse:
+def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:
     body = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
     problem = Problem.of(body, params.pulse, params.peak_acceleration, params.period, params.restitution)
     if not problem.is_block:
@@ -155,19 +144,19 @@ def _block(service: Service, params: BlockParams, stop: StopFlag) -> BlockRespon
         service.metrics.points("solver", 1)
         found = respond(problem, stop=stop)
         said: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
-        return BodyResponse(query=params, **said)
+        return m.BodyResponse(query=params, **said)
     point, bounded = _point(service, params, problem, stop)
     seconds = SEARCH_SHARE * service.settings.max_seconds
     served = FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
     found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
     about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
-    about["notes"] = [*([BY_SOLVER] if point.source == "solver" else []), *about["notes"]]
+    about["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *about["notes"]]
     margins = None if found.margins is None else _margins(found.margins)
-    return BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
+    return m.BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
 
 
 def _point(
-    service: Service, params: BlockParams, problem: Problem, stop: StopFlag
+    service: Service, params: m.BlockParams, problem: Problem, stop: StopFlag
 ) -> tuple[PointResponse, BoundedResponse]:
     """The response in groups, by a data set or by the solver, as a model too."""
     groups = problem.groups
@@ -186,12 +175,12 @@ def _point(
     if not found.from_cube:
         found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres
     answer = point_response(dimensionless, found, versions)
-    service.metrics.points(answer.source, 1)
+    service.metrics.points(SOURCES[found.from_cube.item()], 1)
     answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
     return answer, found.reshape(())
 
 
-def _margins(found: FoundMargins) -> Margins:
-    periods = [PeriodThreshold(period=one.value, overturns_above=one.overturns_above) for one in found.periods]
-    sizes = [SizeThreshold(half_diagonal=one.value, overturns_above=one.overturns_above) for one in found.sizes]
-    return Margins.model_validate(vars(found) | {"periods": periods, "sizes": sizes})
+def _margins(found: FoundMargins) -> m.Margins:
+    periods = [m.PeriodThreshold(period=one.value, overturns_above=one.overturns_above) for one in found.periods]
+    sizes = [m.SizeThreshold(half_diagonal=one.value, overturns_above=one.overturns_above) for one in found.sizes]
+    return m.Margins.model_validate(vars(found) | {"periods": periods, "sizes": sizes})

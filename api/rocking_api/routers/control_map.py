@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 import numpy as np
@@ -10,30 +11,27 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import Field, SerializeAsAny
 
-from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES
+from rocking._datasets.cube import AXES
 from rocking._model.checks import check_window
 from rocking._model.response import Response as Found
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
-from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
+from rocking_api.http.encoding import (
+    CONTENT,
+    csv_response,
+    json_response,
+    negotiated_form,
+    netcdf_response,
+    solved_variable,
+)
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import (
-    FREQUENCY_RATIO,
-    SLENDERNESS,
-    AlphaDeg,
-    Format,
-    FrequencyRatio,
-    Params,
-    PulseName,
-    Restitution,
-    Slenderness,
-    alpha_of,
-)
+from rocking_api.models.params import ShapeParams, alpha_of
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between, said
 from rocking_api.models.responses import BY_SOLVER, OUTCOMES
-from rocking_api.routers.twin import add_twin
+from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -45,18 +43,15 @@ MAX_AGE = 600
 """How long a client may store a map without revalidation [s]."""
 
 
-class MapParams(Params):
+class MapParams(ShapeParams):
     """A window of the control space: columns uniform in log frequency ratio, rows uniform in slenderness."""
 
-    pulse: PulseName
-    restitution: Restitution
-    alpha_deg: AlphaDeg = None
     frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
     frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
     slenderness_min: Slenderness = Field(0.01, examples=[0.01])
     slenderness_max: Slenderness = Field(1.05, examples=[1.05])
-    columns: int = Field(120, description="frequency ratios [-]", json_schema_extra={"minimum": 2})
-    rows: int = Field(90, description="slendernesses [-]", json_schema_extra={"minimum": 2})
+    columns: int = between(2, math.inf, "frequency ratios [-]", default=120)
+    rows: int = between(2, math.inf, "slendernesses [-]", default=90)
     format: Format = None
 
 
@@ -64,39 +59,32 @@ class MapResponse(Answer):
     """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
     query: Annotated[SerializeAsAny[MapParams], ECHO] = QUERY
-    frequency_ratio: list[float] = Field(description="omega_g/p of the columns [-]")
-    slenderness: list[float] = Field(description="1/a of the rows [-]")
-    peak_rotation: list[float | None] = Field(
-        description=f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
+    frequency_ratio: list[float] = said("omega_g/p of the columns [-]")
+    slenderness: list[float] = said("1/a of the rows [-]")
+    peak_rotation: list[float | None] = said(
+        f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
     )
-    outcome: list[int] = Field(description="final outcome as an index into `outcomes` [-]")
-    outcomes: list[str] = Field(description="names of the outcomes")
+    outcome: list[int] = said("final outcome as an index into `outcomes` [-]")
+    outcomes: list[str] = said("names of the outcomes")
     source: str = BY_SOLVER
     metadata_url: str = METADATA_URL_FIELD
 
 
-@router.get(
+@pair(
+    router,
     "/map",
-    summary="Outcome and peak rotation over a window of frequency ratio and slenderness",
+    "Outcome and peak rotation over a window of frequency ratio and slenderness",
     response_model=MapResponse,
-    responses=CONTENT | {304: {"description": "not modified"}},
+    responses=CONTENT,
 )
 async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
-    response = await _answer(params, request, service)
-    response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
-    return response
-
-
-async def _answer(params: MapParams, request: Request, service: Service) -> Response:
     form = negotiated_form(request, params.format)
     axes = _axes(service, params)
-    return await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
-
-
-add_twin(
-    router, "/map", _answer, "Outcome and peak rotation over a window", response_model=MapResponse, responses=CONTENT
-)
+    response = await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
+    if request.method == "GET":
+        response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
+    return response
 
 
 def _map(
@@ -153,12 +141,9 @@ def _dataset(
     params: MapParams, frequency_ratio: NDArray[np.float64], slenderness: NDArray[np.float64], found: Found
 ) -> xr.Dataset:
     """The map with the names, types and attributes of the data sets."""
-    variables: dict[str, Any] = {}
-    for name in ("peak_rotation", "outcome", "impacts", "exceeded_alpha"):
-        dtype, about = VARIABLES[name]
-        kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
-        values = getattr(found, name).astype(dtype)
-        variables[name] = (("slenderness", "frequency_ratio"), values, MODEL_RESULT | kept)
+    axes = ("slenderness", "frequency_ratio")
+    names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")
+    variables: dict[str, Any] = {name: solved_variable(name, axes, getattr(found, name)) for name in names}
     coordinates = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
     attributes = params.model_dump(exclude={"format"}, exclude_none=True)
     return xr.Dataset(

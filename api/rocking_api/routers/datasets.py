@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Path, Query, Request, Response
-from pydantic import Field
 from starlette.exceptions import HTTPException
 from starlette.responses import StreamingResponse
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError, version_of
 from rocking_api.dataset_archive import archive
-from rocking_api.dataset_summaries import Summary
+from rocking_api.dataset_summaries import summarized
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
 from rocking_api.http.encoding import json_response
 from rocking_api.http.files import file_response
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import ListParams, Params
+from rocking_api.models.quantity import said
 from rocking_api.models.responses import (
     DatasetCatalogue,
     DatasetDescription,
     DatasetSummary,
-    Link,
     PulseCubes,
     VariableDescription,
 )
@@ -45,14 +43,14 @@ ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".z
 class FileParams(Params):
     """Which version of a file."""
 
-    sha256: str | None = Field(None, description="only this version: 404 once the file has changed")
+    sha256: str | None = said("only this version: 404 once the file has changed", None)
 
 
 @router.get("", summary="Catalogue", response_model=DatasetCatalogue)
 async def get_datasets(params: Annotated[ListParams, Query()], request: Request, service: ServiceDep) -> Response:
     """The data sets in the results folder that can be read."""
 
-    def work() -> tuple[list[Summary], str | None]:
+    def work() -> tuple[list[DatasetSummary], str | None]:
         found = []
         names, cursor = params.part(service.cubes.catalogue.names())
         for name in names:
@@ -61,8 +59,7 @@ async def get_datasets(params: Annotated[ListParams, Query()], request: Request,
         return found, cursor
 
     summaries, cursor = await service.run_io(work)
-    listed = [DatasetSummary(**_summary(summary)) for summary in summaries]
-    catalogue = DatasetCatalogue(query=params, datasets=listed, pulses=_pulses(summaries), next_cursor=cursor)
+    catalogue = DatasetCatalogue(query=params, datasets=summaries, pulses=_pulses(summaries), next_cursor=cursor)
     return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
 
 
@@ -145,13 +142,7 @@ async def get_dataset(name: DatasetName, request: Request, service: ServiceDep) 
 
 
 def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
-    """The open file of a data set.
-
-    Raises
-    ------
-    DatasetError
-        If it is damaged.
-    """
+    """The open file of a data set."""
     file = service.cubes.catalogue.open(name)
     try:
         product = service.cubes.catalogue.product_of(file)
@@ -165,10 +156,9 @@ def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
 
 
 def _description(service: Service, name: str) -> DatasetDescription:
-    summary = service.summaries.summary(name)
     product, dataset = service.cubes.catalogue.dataset(name)
     return DatasetDescription(
-        **_summary(replace(summary, product=product)),
+        **dict(summarized(product, dataset)),
         dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},
         coordinates={str(key): _variable(dataset[key]) for key in dataset.coords},
         variables={str(key): _variable(dataset[key]) for key in dataset.data_vars},
@@ -176,27 +166,10 @@ def _description(service: Service, name: str) -> DatasetDescription:
     )
 
 
-def _summary(found: Summary) -> dict[str, Any]:
-    product = found.product
-    path = f"/v1/datasets/{product.name}"
-    paths = {"metadata": path, "netcdf": f"{path}.nc", "zarr": f"{path}.zarr"}
-    paths["version_url"] = f"{path}.nc?sha256={product.sha256}"
-    links = [
-        Link(rel="self", href=path, type="application/json"),
-        Link(rel="data", href=paths["netcdf"], type="application/x-netcdf"),
-        Link(rel="version", href=paths["version_url"], type="application/x-netcdf"),
-        Link(rel="zarr", href=paths["zarr"], type="application/vnd+zarr"),
-    ]
-    if product.name.startswith(f"{SPECTRA}/"):
-        links.append(Link(rel="subset", href=f"{path}/subset", type="application/x-netcdf"))
-    told = {"title": found.title, "pulse": found.pulse, "restitution": found.restitution, "extent": found.extent}
-    return {"name": product.name, "size": product.size, "sha256": product.sha256, **told, **paths, "links": links}
-
-
-def _pulses(summaries: list[Summary]) -> list[PulseCubes]:
+def _pulses(summaries: list[DatasetSummary]) -> list[PulseCubes]:
     restitutions: dict[str, list[float]] = {}
     for summary in summaries:
-        folder = summary.product.name.rpartition("/")[0]
+        folder = summary.name.rpartition("/")[0]
         if folder.startswith(f"{SPECTRA}/") and summary.restitution is not None:
             restitutions.setdefault(folder, []).append(summary.restitution)
     return [

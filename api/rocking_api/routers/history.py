@@ -16,13 +16,13 @@ from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import HistoryParams, alpha_of
 from rocking_api.models.responses import ContactResponse, HistoryResponse
-from rocking_api.routers.twin import add_twin
+from rocking_api.routers.twin import pair
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
 
-@router.get("/history", summary="Motion of one block", response_model=HistoryResponse, responses=CONTENT)
+@pair(router, "/history", "Motion of one block", response_model=HistoryResponse, responses=CONTENT)
 async def get_history(params: Annotated[HistoryParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Rotation and angular velocity from the start of the pulse through free rocking, always computed by the solver.
 
@@ -32,9 +32,6 @@ async def get_history(params: Annotated[HistoryParams, Query()], request: Reques
         raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
     form = negotiated_form(request, params.format)
     return await service.run_heavy(params, lambda stop: _history(params, request, form, stop), request)
-
-
-add_twin(router, "/history", get_history, "Motion of one block", response_model=HistoryResponse, responses=CONTENT)
 
 
 def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag) -> Response:

@@ -113,13 +113,7 @@ async def _assessed(
 
 
 def site_of(given: dict[str, str]) -> Site:
-    """The site of the fields of a form.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a field is wrong.
-    """
+    """The site of the fields of a form."""
     modes: dict[str, Any] = {}
     if given["floor_periods"].strip():
         for name in ("floor_periods", "floor_participation"):
@@ -143,13 +137,7 @@ def _is_asked(asked: dict[str, str]) -> bool:
 
 
 def fields_of(asked: dict[str, str]) -> dict[str, str]:
-    """The fields of the form; those that an address leaves out are as at first, or empty if it describes an object.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If there is no such way to describe an object.
-    """
+    """The fields of the form; those that an address leaves out are as at first, or empty if it describes an object."""
     shape = asked.get("shape", "rectangle")
     if shape not in SHAPES:
         raise InvalidArgumentError("shape", shape, f"one of {', '.join(SHAPES)}")

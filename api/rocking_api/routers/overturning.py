@@ -22,7 +22,7 @@ from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.params import OverturningParams, alpha_of
 from rocking_api.models.pulses import sampled_pulse
 from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
-from rocking_api.routers.twin import add_twin
+from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
@@ -41,7 +41,7 @@ MAX_KEPT = 64
 """Requests whose traced curves are cached [-]: some tens of kB each."""
 
 
-@router.get("/overturning", summary="Boundary curves", response_model=OverturningResponse, responses=CONTENT)
+@pair(router, "/overturning", "Boundary curves", response_model=OverturningResponse, responses=CONTENT)
 async def get_overturning(
     params: Annotated[OverturningParams, Query()], request: Request, service: ServiceDep
 ) -> Response:
@@ -54,11 +54,6 @@ async def get_overturning(
         where = f"/v1/map?{urlencode(given)}" if sampled_pulse(params) is None else "POST /v1/map"
         instead = f"ask for the outcomes on a grid, {where}, or for another restitution"
         raise TimeLimitError(error.seconds, instead) from None
-
-
-add_twin(
-    router, "/overturning", get_overturning, "Boundary curves", response_model=OverturningResponse, responses=CONTENT
-)
 
 
 def _overturning(service: Service, params: OverturningParams, request: Request, form: str, stop: StopFlag) -> Response:
@@ -101,13 +96,7 @@ def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | Non
 
 
 def _traced(service: Service, params: OverturningParams, stop: StopFlag) -> xr.Dataset:
-    """Traced curves, cached.
-
-    Raises
-    ------
-    TimeLimitError
-        For a nearly elastic block, before the time limit of the request.
-    """
+    """Traced curves, cached."""
     pulse, eta, alpha = params.pulse, params.restitution, alpha_of(params.alpha_deg)
     sampled = sampled_pulse(params)
     kept = _kept(pulse if sampled is None else (sampled.name, sampled.digest), eta, alpha)

@@ -8,13 +8,14 @@ from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, Field
+from pydantic import BaseModel
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation import pulses
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import QUERY, ListAnswer
 from rocking_api.models.params import ListParams
+from rocking_api.models.quantity import between, said
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
@@ -29,42 +30,38 @@ DIGITS = 4
 class PulsesParams(ListParams):
     """How finely the pulses are sampled, and a part of their list."""
 
-    samples: int = Field(
-        65, description="samples of each pulse [-]", json_schema_extra={"minimum": 2, "maximum": MAX_DRAWN}
-    )
+    samples: int = between(2, MAX_DRAWN, "samples of each pulse [-]", default=65)
 
 
 class PulseParameter(BaseModel):
     """A parameter of a pulse, which follows its name: name(parameter=value, ...)."""
 
-    name: str = Field(description="name of the parameter")
-    symbol: str = Field(description="as in the definition")
-    unit: str = Field(description="unit of the default and the range; a text states its unit")
-    range: str = Field(description="values that are allowed")
-    default: float = Field(description="value unless another is stated [-]; with a unit, that of `unit`")
-    description: str = Field(description="meaning")
+    name: str = said("name of the parameter")
+    symbol: str = said("as in the definition")
+    unit: str = said("unit of the default and the range; a text states its unit")
+    range: str = said("values that are allowed")
+    default: float = said("value unless another is stated [-]; with a unit, that of `unit`")
+    description: str = said("meaning")
 
 
 class PulseDescription(BaseModel):
     """An excitation u_g(t) = a_g f(omega_g t + phase_start), omega_g = 2 pi/T_p."""
 
-    name: str = Field(description="name; with a leading minus it is mirrored")
-    definition: str = Field(description="f(phi) and its window of the phase phi, with its source")
-    parameters: list[PulseParameter] = Field(description="parameters, if it has any")
-    phase_start: float = Field(description="phase at the first instant [rad]")
-    phase_end: float = Field(description="phase at the last instant [rad]")
-    duration: float = Field(description="duration over the period T_p [-]")
-    time: list[float] = Field(description="times from the first instant over T_p [-], to four decimals, for a drawing")
-    acceleration: list[float] = Field(
-        description="f at these times [-], to four decimals; the largest absolute value of f is 1"
-    )
+    name: str = said("name; with a leading minus it is mirrored")
+    definition: str = said("f(phi) and its window of the phase phi, with its source")
+    parameters: list[PulseParameter] = said("parameters, if it has any")
+    phase_start: float = said("phase at the first instant [rad]")
+    phase_end: float = said("phase at the last instant [rad]")
+    duration: float = said("duration over the period T_p [-]")
+    time: list[float] = said("times from the first instant over T_p [-], to four decimals, for a drawing")
+    acceleration: list[float] = said("f at these times [-], to four decimals; the largest absolute value of f is 1")
 
 
 class PulsesResponse(ListAnswer):
     """Excitations."""
 
     query: PulsesParams = QUERY
-    pulses: list[PulseDescription] = Field(description="those of the package, then those registered in this process")
+    pulses: list[PulseDescription] = said("those of the package, then those registered in this process")
 
 
 @router.get("/pulses", summary="The excitations")
@@ -107,11 +104,11 @@ def _parameters(name: str) -> list[PulseParameter]:
     return [
         PulseParameter(
             name=key,
-            symbol=one.declared.symbol,
-            unit=one.declared.unit,
-            range=one.declared.interval,
+            symbol=one.symbol,
+            unit=one.unit,
+            range=one.interval,
             default=one.default,
-            description=one.declared.meaning,
+            description=one.meaning,
         )
         for key, one in pulses.pulse_parameters(name).items()
     ]

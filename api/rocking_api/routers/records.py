@@ -34,28 +34,14 @@ from rocking_api.http.encoding import (
 )
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models import records as m
+from rocking_api.models.blocks import ScaleThreshold
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.records import (
-    FittedPulse,
-    RecordBodyResponse,
-    RecordDescription,
-    RecordFileParams,
-    RecordHistoryParams,
-    RecordHistoryResponse,
-    RecordPulseParams,
-    RecordPulseResponse,
-    RecordResponse,
-    RecordResponseParams,
-    RecordScalesParams,
-    RecordScalesResponse,
-    ScaleThreshold,
-    with_record,
-)
 from rocking_api.models.responses import OUTCOMES
 from rocking_api.routers.history import motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
-P = TypeVar("P", bound=RecordFileParams)
+P = TypeVar("P", bound=m.RecordFileParams)
 
 router = APIRouter(prefix="/v1/records", tags=["response"], route_class=ParamsRoute)
 
@@ -65,7 +51,7 @@ _EXAMPLE = "time [s],acceleration [g]\n" + "".join(
 """One full sine of 1 s and 0.6 g."""
 
 
-def _about(kind: type[RecordFileParams]) -> dict[str, Any]:
+def _about(kind: type[m.RecordFileParams]) -> dict[str, Any]:
     """The description of a route under a record."""
     example = {"record": _EXAMPLE, "width": 0.4, "height": 1.6}
     files = {
@@ -74,30 +60,30 @@ def _about(kind: type[RecordFileParams]) -> dict[str, Any]:
     description = (
         "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC or columns of numbers, by its content"
     )
-    return body_of({**files, **json_content(with_record(kind), example)}, kind, description)
+    return body_of({**files, **json_content(m.with_record(kind), example)}, kind, description)
 
 
-@router.post("/response", summary="A block in SI units under a record", openapi_extra=_about(RecordResponseParams))
-async def post_response(request: Request, service: ServiceDep) -> RecordResponse | RecordBodyResponse:
+@router.post("/response", summary="A block in SI units under a record", openapi_extra=_about(m.RecordResponseParams))
+async def post_response(request: Request, service: ServiceDep) -> m.RecordResponse | m.RecordBodyResponse:
     """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2).
 
     With `offset` or `mass_height` of a body with two different edges.
     """
-    params, record = await _read(RecordResponseParams, request, service)
+    params, record = await _read(m.RecordResponseParams, request, service)
     return await service.run_heavy(params, lambda stop: _response(service, params, record, stop), request)
 
 
 @router.post(
     "/history",
     summary="Motion of a block in SI units under a record",
-    response_model=RecordHistoryResponse,
+    response_model=m.RecordHistoryResponse,
     responses=CONTENT,
-    openapi_extra=_about(RecordHistoryParams),
+    openapi_extra=_about(m.RecordHistoryParams),
 )
 async def post_history(request: Request, service: ServiceDep) -> Response:
     """Rotation and angular velocity from the first sample through free rocking; with `contact` also reactions."""
     limit = service.settings.max_samples
-    params, record = await _read(RecordHistoryParams, request, service)
+    params, record = await _read(m.RecordHistoryParams, request, service)
     if params.samples is not None and params.samples > limit:
         raise TooLargeError("samples", params.samples, f"at most {limit}")
     if record.samples > limit and params.samples is None:
@@ -109,21 +95,21 @@ async def post_history(request: Request, service: ServiceDep) -> Response:
 @router.post(
     "/scales",
     summary="A block in SI units under a record times many factors",
-    response_model=RecordScalesResponse,
+    response_model=m.RecordScalesResponse,
     responses=CONTENT,
-    openapi_extra=_about(RecordScalesParams),
+    openapi_extra=_about(m.RecordScalesParams),
 )
 async def post_scales(request: Request, service: ServiceDep) -> Response:
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
-    params, record = await _read(RecordScalesParams, request, service)
+    params, record = await _read(m.RecordScalesParams, request, service)
     form = negotiated_form(request, params.format)
     return await service.run_heavy(params, lambda stop: _scales(params, request, record, form, stop), request)
 
 
-@router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_about(RecordPulseParams))
-async def post_pulse(request: Request, service: ServiceDep) -> RecordPulseResponse:
+@router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_about(m.RecordPulseParams))
+async def post_pulse(request: Request, service: ServiceDep) -> m.RecordPulseResponse:
     """Parameters of the pulse, how both motions overturn the block, and their accelerations and velocities."""
-    params, record = await _read(RecordPulseParams, request, service)
+    params, record = await _read(m.RecordPulseParams, request, service)
     return await service.run_heavy(params, lambda stop: _pulse(params, record, stop), request)
 
 
@@ -131,7 +117,7 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
     """The parameters, and the record in the body, parsed in a thread, one body at a time."""
     declared = request.headers.get("content-type", "").split(";")[0].strip().lower()
     form: Form = "json" if declared == MEDIA_TYPES["json"] else "csv"  # a file, whatever its type
-    params, body = await service.read(request, kind, form, with_record(kind), service.settings.max_record_bytes)
+    params, body = await service.read(request, kind, form, m.with_record(kind), service.settings.max_record_bytes)
 
     def read(stop: StopFlag) -> Record:
         found = parse_record(
@@ -153,8 +139,8 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
 
 
 def _response(
-    service: Service, params: RecordResponseParams, record: Record, stop: StopFlag
-) -> RecordResponse | RecordBodyResponse:
+    service: Service, params: m.RecordResponseParams, record: Record, stop: StopFlag
+) -> m.RecordResponse | m.RecordBodyResponse:
     body = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
     problem = Problem.of(body, record, scale=params.scale, restitution=params.restitution)
     if params.fit and not problem.is_block:
@@ -164,13 +150,13 @@ def _response(
     about = {"query": params, "record": _description(record), "thresholds": found.changes}
     said: dict[str, Any] = about | found.summary()
     if not problem.is_block:
-        return RecordBodyResponse(**said)
-    return RecordResponse(
+        return m.RecordBodyResponse(**said)
+    return m.RecordResponse(
         **said, pulse=_fitted(fit_pulse(record, blocks=problem.block, stop=stop)) if params.fit else None
     )
 
 
-def _history(params: RecordHistoryParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
+def _history(params: m.RecordHistoryParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
     block = Block(params.width, params.height, params.gravity)
     motion = time_history(
         record,
@@ -185,7 +171,7 @@ def _history(params: RecordHistoryParams, request: Request, record: Record, form
     if form == "csv":
         return csv_response(columns | reactions, "history")
     return json_response(
-        RecordHistoryResponse.model_construct(
+        m.RecordHistoryResponse.model_construct(
             query=params,
             record=_description(record),
             **motion_fields(motion, reactions),
@@ -195,7 +181,7 @@ def _history(params: RecordHistoryParams, request: Request, record: Record, form
     )
 
 
-def _scales(params: RecordScalesParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
+def _scales(params: m.RecordScalesParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
     block = Block(params.width, params.height, params.gravity)
     eta = restitution_of(block, params.restitution)
     uplift, highest, _ = search_range(record, block, None)
@@ -227,14 +213,14 @@ def _scales(params: RecordScalesParams, request: Request, record: Record, form: 
         return netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
     thresholds = scale_thresholds(record, block, restitution=eta, highest=high, stop=stop)
     return json_response(
-        RecordScalesResponse.model_construct(
+        m.RecordScalesResponse.model_construct(
             query=params, record=_description(record), thresholds=_thresholds(thresholds, record), **columns
         ),
         request,
     )
 
 
-def _pulse(params: RecordPulseParams, record: Record, stop: StopFlag) -> RecordPulseResponse:
+def _pulse(params: m.RecordPulseParams, record: Record, stop: StopFlag) -> m.RecordPulseResponse:
     fit = fit_pulse(record, blocks=Block(params.width, params.height, params.gravity), stop=stop)
     every = max(1, math.ceil(record.samples / params.samples))
     time = record.times[::every]
@@ -244,7 +230,7 @@ def _pulse(params: RecordPulseParams, record: Record, stop: StopFlag) -> RecordP
         "record_velocity": record.velocity[::every],
         "pulse_velocity": fit.velocity.velocity(time),
     }
-    return RecordPulseResponse(
+    return m.RecordPulseResponse(
         query=params,
         record=_description(record),
         pulse=_fitted(fit),
@@ -253,22 +239,13 @@ def _pulse(params: RecordPulseParams, record: Record, stop: StopFlag) -> RecordP
     )
 
 
-def _description(record: Record) -> RecordDescription:
-    return RecordDescription(
-        name=record.name,
-        source=record.source,
+def _description(record: Record) -> m.RecordDescription:
+    known = m.RecordDescription.model_fields.keys() - {"remarks", "mean_period", "peak_vertical_acceleration"}
+    return m.RecordDescription(
+        **{name: getattr(record, name) for name in known},
         remarks=list(record.remarks),
-        samples=record.samples,
-        time_step=record.time_step,
-        peak_acceleration=record.peak_acceleration,
-        peak_vertical_acceleration=None if record.vertical is None else record.peak_vertical_acceleration,
-        peak_velocity=record.peak_velocity,
-        peak_displacement=record.peak_displacement,
-        arias_intensity=record.arias_intensity,
-        significant_duration=record.significant_duration,
         mean_period=finite(record.mean_period),
-        final_velocity=record.final_velocity,
-        digest=record.digest,
+        peak_vertical_acceleration=None if record.vertical is None else record.peak_vertical_acceleration,
     )
 
 
@@ -281,8 +258,8 @@ def _thresholds(found: BodyThresholds, record: Record) -> list[ScaleThreshold]:
     ]
 
 
-def _fitted(fit: PulseFit) -> FittedPulse:
-    return FittedPulse(
+def _fitted(fit: PulseFit) -> m.FittedPulse:
+    return m.FittedPulse(
         pulse=fit.velocity.family,
         period=fit.period,
         peak_acceleration=fit.peak_acceleration,

@@ -15,6 +15,7 @@ from rocking_api.http.encoding import (
     CONTENT,
     MEDIA_TYPES,
     Form,
+    columns_as_they_are,
     csv_stream,
     dataset_of,
     json_stream,
@@ -33,7 +34,7 @@ from rocking_api.models.params import (
     check_point,
 )
 from rocking_api.models.pulses import options_of, with_samples
-from rocking_api.models.responses import BatchResponse, PointResponse, columns_of, point_response
+from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
@@ -61,9 +62,8 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
         found = evaluate(service.cubes, params, points, may_read=False)
     except UnreadError:
         found = await service.single.run(lambda stop: evaluate(service.cubes, params, points, stop))
-    answer = point_response(params, *found)
-    service.metrics.points(answer.source, 1)
-    return answer
+    service.metrics.points(SOURCES[found[0].from_cube.item()], 1)
+    return point_response(params, *found)
 
 
 @router.post(
@@ -122,6 +122,6 @@ def _answered(service: Service, batch: Batch, request: Request, form: Form, stop
         return netcdf_response(dataset_of(batch.groups, result, attributes), "response")
     columns = columns_of(result)  # JSON and CSV are written while they are sent
     if form == "csv":
-        return csv_stream(batch.groups | columns, "response")
+        return csv_stream(columns_as_they_are(batch.groups) | columns, batch.points, "response")
     answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
-    return json_stream(answer, request, columns)
+    return json_stream(answer, request, columns, batch.points)

@@ -10,14 +10,14 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
-from pydantic import Field
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.cube import DIMENSIONS
-from rocking_api.http.encoding import MEDIA_TYPES, csv_stream, negotiated_form, netcdf_response
+from rocking_api.http.encoding import MEDIA_TYPES, columns_as_they_are, csv_stream, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.params import FileFormat, Params
+from rocking_api.models.params import Params
+from rocking_api.models.quantity import FileFormat, said
 from rocking_api.routers.datasets import DatasetName
 from rocking_api.service import Service, ServiceDep
 
@@ -42,23 +42,17 @@ AXES = {
 class SubsetParams(Params):
     """Ranges of the axes, both ends included; an absent end is that of the cube."""
 
-    alpha_deg_min: float | None = Field(None, description="smallest slenderness angle [deg]; 0: the slender limit")
-    alpha_deg_max: float | None = Field(None, description="largest slenderness angle [deg]")
-    slenderness_min: float | None = Field(None, description="smallest g tan(alpha)/a_g [-]", examples=[0.5])
-    slenderness_max: float | None = Field(None, description="largest g tan(alpha)/a_g [-]", examples=[0.6])
-    frequency_ratio_min: float | None = Field(None, description="smallest omega_g/p [-]", examples=[2.0])
-    frequency_ratio_max: float | None = Field(None, description="largest omega_g/p [-]", examples=[3.0])
-    variables: str = Field(VARIABLES, description="names of variables, separated by commas; see the description")
+    alpha_deg_min: float | None = said("smallest slenderness angle [deg]; 0: the slender limit", None)
+    alpha_deg_max: float | None = said("largest slenderness angle [deg]", None)
+    slenderness_min: float | None = said("smallest g tan(alpha)/a_g [-]", None, examples=[0.5])
+    slenderness_max: float | None = said("largest g tan(alpha)/a_g [-]", None, examples=[0.6])
+    frequency_ratio_min: float | None = said("smallest omega_g/p [-]", None, examples=[2.0])
+    frequency_ratio_max: float | None = said("largest omega_g/p [-]", None, examples=[3.0])
+    variables: str = said("names of variables, separated by commas; see the description", VARIABLES)
     format: FileFormat = None
 
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Smallest and largest value of each axis in the unit of the parameters.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the smallest is above the largest, or not a number.
-        """
+        """Smallest and largest value of each axis in the unit of the parameters."""
         found = {}
         for axis, (name, *_) in AXES.items():
             ends = {f"{name}_min": -math.inf, f"{name}_max": math.inf}
@@ -112,7 +106,7 @@ def _subset(
         part = part.drop_vars("pulse").drop_encoding()
         part.attrs = {**part.attrs, "source_sha256": product.sha256}
         return netcdf_response(part, "subset")
-    return csv_stream(_columns(part, wanted), "subset")
+    return csv_stream(columns_as_they_are(_columns(part, wanted)), points, "subset")
 
 
 def _columns(part: xr.Dataset, wanted: list[str]) -> dict[str, NDArray[Any]]:

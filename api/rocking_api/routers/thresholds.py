@@ -5,62 +5,55 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field, SerializeAsAny
+from pydantic import BaseModel, SerializeAsAny
 
-from rocking._boundary.amplitude import Thresholds, thresholds
+from rocking._boundary.amplitude import thresholds
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import ECHO, QUERY, Answer
 from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import AlphaDeg, FrequencyRatio, Params, PulseName, Restitution, alpha_of
+from rocking_api.models.params import BlockInGroups, alpha_of
+from rocking_api.models.quantity import said
 from rocking_api.models.responses import BY_SOLVER
-from rocking_api.routers.twin import add_twin
+from rocking_api.routers.twin import pair
 from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
 
-class AmplitudeParams(Params):
+class AmplitudeParams(BlockInGroups):
     """A block and a pulse without amplitude."""
 
-    pulse: PulseName
-    frequency_ratio: FrequencyRatio
-    restitution: Restitution
-    alpha_deg: AlphaDeg = None
-    highest: float = Field(
-        100.0,
-        description="largest a = a_g/(g tan alpha) searched [-]",
-        json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6},
+    highest: float = said(
+        "largest a = a_g/(g tan alpha) searched [-]", 100.0, json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6}
     )
 
 
 class AmplitudeThreshold(BaseModel):
     """An amplitude at which the outcome changes."""
 
-    amplitude: float = Field(description="a = a_g/(g tan alpha) [-]")
-    slenderness: float = Field(description="1/a [-]")
-    overturns_above: bool = Field(
-        description="true: overturns just above and survives just below it; false: the reverse"
-    )
-    outcome: str = Field(description="outcome on the side where it overturns")
-    meaning: str = Field(description="that outcome in words")
-    impacts: int = Field(description="impacts before it overturns there [-]")
+    amplitude: float = said("a = a_g/(g tan alpha) [-]")
+    slenderness: float = said("1/a [-]")
+    overturns_above: bool = said("true: overturns just above and survives just below it; false: the reverse")
+    outcome: str = said("outcome on the side where it overturns")
+    meaning: str = said("that outcome in words")
+    impacts: int = said("impacts before it overturns there [-]")
 
 
 class AmplitudeResponse(Answer):
     """All amplitudes at which the outcome changes."""
 
     query: Annotated[SerializeAsAny[AmplitudeParams], ECHO] = QUERY
-    thresholds: list[AmplitudeThreshold] = Field(description="ascending in amplitude")
-    largest_surviving_amplitude: float | None = Field(
-        description="amplitude below which the block does not overturn [-]; null: no overturning was found"
+    thresholds: list[AmplitudeThreshold] = said("ascending in amplitude")
+    largest_surviving_amplitude: float | None = said(
+        "amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
     source: str = BY_SOLVER
     metadata_url: str = METADATA_URL_FIELD
 
 
-@router.get("/thresholds", summary="Amplitudes at which the outcome of a block changes")
+@pair(router, "/thresholds", "Amplitudes at which the outcome of a block changes", response_model=AmplitudeResponse)
 async def get_thresholds(
     params: Annotated[AmplitudeParams, Query()], request: Request, service: ServiceDep
 ) -> AmplitudeResponse:
@@ -69,15 +62,6 @@ async def get_thresholds(
     Where a block of restitution 1 overturns after more than 200 impacts, they are accurate to 1e-6.
     """
     return await service.run_heavy(params, lambda stop: _answer(params, stop), request)
-
-
-add_twin(
-    router,
-    "/thresholds",
-    get_thresholds,
-    "Amplitudes at which the outcome of a block changes",
-    response_model=AmplitudeResponse,
-)
 
 
 def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
@@ -89,14 +73,7 @@ def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
         highest=params.highest,
         stop=stop,
     )
-    listed = _thresholds(found)
-    lowest = listed[0].amplitude if listed else None
-    return AmplitudeResponse(query=params, thresholds=listed, largest_surviving_amplitude=lowest)
-
-
-def _thresholds(found: Thresholds) -> list[AmplitudeThreshold]:
-    columns = (found.amplitude, found.overturns_above, found.outcome, found.impacts)
-    return [
+    listed = [
         AmplitudeThreshold(
             amplitude=amplitude,
             slenderness=1.0 / amplitude,
@@ -105,5 +82,10 @@ def _thresholds(found: Thresholds) -> list[AmplitudeThreshold]:
             meaning=Outcome(code).sentence,
             impacts=impacts,
         )
-        for amplitude, above, code, impacts in zip(*(column.tolist() for column in columns), strict=True)
+        for amplitude, above, code, impacts in zip(
+            *(one.tolist() for one in (found.amplitude, found.overturns_above, found.outcome, found.impacts)),
+            strict=True,
+        )
     ]
+    lowest = listed[0].amplitude if listed else None
+    return AmplitudeResponse(query=params, thresholds=listed, largest_surviving_amplitude=lowest)

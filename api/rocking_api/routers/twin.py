@@ -1,4 +1,4 @@
-"""POST beside GET: the same parameters in a JSON body, where the pulse may be given by samples."""
+"""GET and POST of one endpoint: the same parameters in the query, or in a JSON body, where the pulse may be samples."""
 
 from __future__ import annotations
 
@@ -13,15 +13,21 @@ from rocking_api.models.pulses import MAX_BODY, with_samples
 from rocking_api.service import ServiceDep
 
 
-def add_twin(router: APIRouter, path: str, endpoint: Callable[..., Awaitable[Any]], summary: str, **about: Any) -> None:
-    """Add the POST of an endpoint of parameters, request and service; `about` as its GET."""
-    kind = get_type_hints(endpoint)["params"]
+def pair(router: APIRouter, path: str, summary: str, **about: Any) -> Callable[[Callable[..., Awaitable[Any]]], Any]:
+    """A decorator that adds an endpoint of parameters, request and service as GET and as POST, described by `about`."""
 
-    async def post(request: Request, service: ServiceDep) -> Any:
-        """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
-        form = body_form(request, ("json",))
-        params, _ = await service.read(request, kind, form, with_samples(kind), MAX_BODY)
-        return await endpoint(params, request, service)
+    def add(endpoint: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
+        kind = get_type_hints(endpoint)["params"]
 
-    summary = f"{summary}, under a pulse given by samples"
-    router.add_api_route(path, post, methods=["POST"], summary=summary, openapi_extra=twin_of(kind), **about)
+        async def post(request: Request, service: ServiceDep) -> Any:
+            """The same with the parameters in a JSON body, where `pulse` may be an object with the samples."""
+            form = body_form(request, ("json",))
+            params, _ = await service.read(request, kind, form, with_samples(kind), MAX_BODY)
+            return await endpoint(params, request, service)
+
+        router.add_api_route(path, endpoint, methods=["GET"], summary=summary, **about)
+        said = f"{summary}, under a pulse given by samples"
+        router.add_api_route(path, post, methods=["POST"], summary=said, openapi_extra=twin_of(kind), **about)
+        return endpoint
+
+    return add

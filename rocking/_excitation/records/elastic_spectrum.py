@@ -63,7 +63,8 @@ def elastic_spectrum(
     Returns
     -------
     xarray.Dataset
-        Over `damping` and `period` [s]: `displacement`, S_D = max |q| [m]; `pseudo_acceleration`, omega^2 S_D [m/s2].
+        Over `damping` and `period` [s]: `displacement`, S_D = max abs(q) [m]; `pseudo_acceleration`,
+        omega^2 S_D [m/s2].
 
     Raises
     ------

@@ -14,11 +14,10 @@ Array = NDArray[np.float64]
 MAX_BASELINE_ORDER = 6  # largest degree of a baseline [-]: higher ones follow the motion itself
 MAX_RATIO = 1000  # largest numerator and denominator of the ratio of two time steps [-]
 MAX_SAMPLES = 10_000_000  # most samples of a resampled record [-], as of one that is read
+ZEROS = 10  # zeros of the interpolation filter on either side [-]
 
 RATIO_TOLERANCE = 1e-9
 """Relative difference of a ratio of time steps from a fraction [-]: steps are often given in a few digits."""
-
-ZEROS = 10  # zeros of the interpolation filter on either side [-]
 
 STOP_BAND = 8.0
 """Parameter of the Kaiser window of the interpolation filter [-]: about 80 dB of attenuation in the stop band."""
@@ -56,13 +55,9 @@ def offset_remark(a: Array) -> str | None:
 def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
     """The acceleration `a` (samples,) less the derivative of a polynomial fitted to the velocity `v` (samples,).
 
-    The polynomial of degree `order` + 1 is zero at the first sample, as the velocity. Time is divided by the
-    `duration` [s]: the least-squares problem is then well conditioned for the degrees allowed.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `order` is out of range, or there are fewer than `order` + 2 samples.
+    The polynomial of degree `order` + 1 is zero at the first sample, as the velocity. Time is divided by the `duration`
+    [s]: the least-squares problem is then well conditioned for the degrees allowed. At least `order` + 2 samples are
+    needed.
     """
     order = integer("order", order, 0, MAX_BASELINE_ORDER)
     if a.size < order + 2:
@@ -75,11 +70,7 @@ def baseline(a: Array, v: Array, duration: float, order: int) -> Array:
 
 
 def resample(a: Array, dt: float, time_step: Scalar) -> Array:
-    """The samples of the band-limited signal at the step `time_step`, zero outside of the record.
-
-    Raises `InvalidArgumentError` if the ratio of the steps is not a fraction of integers up to `MAX_RATIO`, or the
-    samples would be fewer than 2 or more than `MAX_SAMPLES`.
-    """
+    """The samples of the band-limited signal at the step `time_step`, zero outside of the record."""
     step = positive("time_step", time_step, "s")
     ratio = Fraction(dt / step).limit_denominator(MAX_RATIO)
     if not 1 <= ratio.numerator <= MAX_RATIO or abs(float(ratio) * step / dt - 1.0) > RATIO_TOLERANCE:

@@ -105,7 +105,7 @@ class Record:
             component.flags.writeable = False
         given = {"vertical": None, **components, "time_step": step, **about}
         for key, value in given.items():
-            object.__setattr__(self, key, value)
+            vars(self)[key] = value
 
     def __repr__(self) -> str:
         """Name, length, step and peak accelerations."""
@@ -266,7 +266,7 @@ class Record:
 
 
 def offset_doubts(records: Sequence[Record], most: int = 5) -> list[str]:
-    """What is to be said of records before they are scaled by their PGA or PGV: those whose offset is not small."""
+    """Remarks on the records whose offset is not small, which scaling by PGA or PGV would amplify."""
     found = []
     for record in records:
         text = offset_remark(record.acceleration)

@@ -15,10 +15,7 @@ WAVELET = int(Family.WAVELET)
 
 WAVELET_SERIES_LENGTH = 23  # length of the series at the start of the slender arcs under wavelets
 
-WAVELET_FIELDS: Fields = [
-    ("spread", np.float64),
-    ("polynomial", np.float64, (MAX_POLYNOMIAL,)),
-]
+WAVELET_FIELDS: Fields = [("spread", np.float64), ("polynomial", np.float64, (MAX_POLYNOMIAL,))]
 
 WAVELET_ARC_FIELDS: Fields = [
     ("derivatives", np.float64, (MAX_POLYNOMIAL,)),  # see `WaveletSeries`

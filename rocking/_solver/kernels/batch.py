@@ -10,7 +10,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.records import copy_fields
 from rocking._numba.simd import LANES
 from rocking._solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
-from rocking._solver.rules import set_block, set_body, write_edges, write_response
+from rocking._solver.rules import set_body, write_edges, write_response
 from rocking._solver.state import IN_FLIGHT
 from rocking._solver.taylor.flight import MAX_STEPS, free_lanes, process_step, start_steps
 from rocking._solver.taylor.lane_events import locate_events
@@ -18,13 +18,20 @@ from rocking._solver.taylor.step import take_step
 
 
 @kernel
-def same_cell(i: int, j: int, slenderness: FloatArray, omega: FloatArray, alpha: FloatArray) -> bool:
-    """Whether two cells are equal except for eta."""
-    return bool(slenderness[i] == slenderness[j] and omega[i] == omega[j] and alpha[i] == alpha[j])
+def differ_in_eta_only(one: Record, other: Record) -> bool:
+    """Whether two cells have the same first flight."""
+    return bool(
+        one.rate == other.rate
+        and one.alpha == other.alpha
+        and one.slenderness[0] == other.slenderness[0]
+        and one.slenderness[1] == other.slenderness[1]
+        and one.ratio == other.ratio
+        and one.stiffness == other.stiffness
+    )
 
 
 @kernel
-def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record, edges: FloatArray) -> bool:
+def continue_with_next_eta(flight: Record, cells: Record, responses: Record, edges: FloatArray) -> bool:
     """Write the response of a finished cell and start the next flight of the next eta; False if there is none."""
     while True:
         write_response(flight, responses[flight.cell])
@@ -32,36 +39,12 @@ def continue_with_next_eta(flight: Record, eta: FloatArray, responses: Record, e
         if flight.cell == flight.last_cell:
             return False
         flight.cell += 1
-        flight.eta[0] = flight.eta[1] = eta[flight.cell]
+        eta = cells[flight.cell].eta
+        flight.eta[0], flight.eta[1] = eta[0], eta[1]
         if flight.first_flight_known == 0:  # no uplift, whatever eta
             continue
         if repeat_first_flight(flight) and start_flight(flight):
             return True
-
-
-@kernel
-def init_cell(
-    flight: Record,
-    first: int,
-    slenderness: FloatArray,
-    omega: FloatArray,
-    eta: FloatArray,
-    alpha: FloatArray,
-    bodies: Record,
-) -> int:
-    """Initialise the state of the cell `first`; returns the first cell that differs in more than eta."""
-    flight.cell, flight.last_cell = first, first
-    if len(bodies) > 0:
-        set_body(flight, bodies[first], True)
-        init_state(flight, omega[first])
-        return first + 1
-    while flight.last_cell + 1 < len(slenderness) and same_cell(
-        flight.cell, flight.last_cell + 1, slenderness, omega, alpha
-    ):
-        flight.last_cell += 1
-    set_block(flight, slenderness[first], eta[first], alpha[first])
-    init_state(flight, omega[first])
-    return flight.last_cell + 1
 
 
 @kernel
@@ -70,34 +53,32 @@ def next_cell(
     steps: Record,
     lane: int,
     following: int,
-    slenderness: FloatArray,
-    omega: FloatArray,
-    eta: FloatArray,
-    alpha: FloatArray,
-    bodies: Record,
+    cells: Record,
     stop: FloatArray,
     responses: Record,
     edges: FloatArray,
 ) -> int:
-    """Put the next cell with an uplift into a lane; returns the cell after it."""
-    while following < len(slenderness) and not is_stopped(stop):
-        following = init_cell(flight, following, slenderness, omega, eta, alpha, bodies)
+    """Put the next cell with an uplift into a lane; returns the first cell after it that differs in more than eta."""
+    while following < len(cells) and not is_stopped(stop):
+        flight.cell = following
+        following += 1
+        while following < len(cells) and differ_in_eta_only(cells[flight.cell], cells[following]):
+            following += 1
+        flight.last_cell = following - 1
+        set_body(flight, cells[flight.cell], len(edges) > 0)
+        init_state(flight, cells[flight.cell].rate)
         if start_flight(flight):
             steps.omega[lane] = flight.omega
             start_steps(flight, steps, lane)
             return following
-        continue_with_next_eta(flight, eta, responses, edges)
+        continue_with_next_eta(flight, cells, responses, edges)
     flight.cell = -1
     return following
 
 
 @light_entry
 def solve_batch(
-    slenderness: FloatArray,
-    omega: FloatArray,
-    eta: FloatArray,
-    alpha: FloatArray,
-    bodies: Record,
+    cells: Record,
     flights: Record,
     steps: Record,
     stop: FloatArray,
@@ -105,14 +86,12 @@ def solve_batch(
     edges: FloatArray,
     followed: Record,
 ) -> int:
-    """Follow blocks from rest to their final outcome, by Taylor steps; returns the number of flights written.
+    """Follow bodies from rest to their final outcome, by Taylor steps; returns the number of flights written.
 
     Parameters
     ----------
-    slenderness, omega, eta, alpha : float arrays (cells,)
-        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]; slenderness angle in [0, pi/2) [rad], 0: slender.
-    bodies : array (cells,) of `BODY_CELL`, or (0,)
-        Bodies with two edges, instead of slenderness, eta and alpha.
+    cells : array (cells,) of `BODY_CELL`
+        The bodies.
     flights, steps
         Solver state: an array (LANES,) of records of `pulse_state`, and `step_state`.
     stop : uint8 array (1,)
@@ -120,7 +99,7 @@ def solve_batch(
     responses : array (cells,) of `state.RESPONSE_RECORD`
         Filled.
     edges : float array (cells, EDGE_COLUMNS), or (0, EDGE_COLUMNS)
-        Of `bodies`, filled, see `rocking._solver.state.EDGE_COLUMNS`.
+        Filled, see `rocking._solver.state.EDGE_COLUMNS`; without rows for equal edges where it is not wanted.
     followed : array of `rocking._solver.state.FOLLOWED_FLIGHT`
         Filled with the flights in the order of their ends, as many as fit: of one cell, for its history.
     """
@@ -129,9 +108,7 @@ def solve_batch(
     for lane in range(LANES):
         taken[lane] = 0
     for lane in range(LANES):
-        following = next_cell(
-            flights[lane], steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, edges
-        )
+        following = next_cell(flights[lane], steps, lane, following, cells, stop, responses, edges)
         if flights[lane].cell >= 0:
             busy += 1
     while busy > 0 and not is_stopped(stop):
@@ -153,12 +130,10 @@ def solve_batch(
             if written < len(followed):
                 copy_fields(flight, followed[written])
                 written += 1
-            if (going and start_flight(flight)) or continue_with_next_eta(flight, eta, responses, edges):
+            if (going and start_flight(flight)) or continue_with_next_eta(flight, cells, responses, edges):
                 start_steps(flight, steps, lane)
                 continue
-            following = next_cell(
-                flight, steps, lane, following, slenderness, omega, eta, alpha, bodies, stop, responses, edges
-            )
+            following = next_cell(flight, steps, lane, following, cells, stop, responses, edges)
             if flight.cell < 0:
                 steps.in_use[lane] = 0.0
                 busy -= 1

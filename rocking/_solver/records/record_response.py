@@ -1,6 +1,7 @@
 """`record_response`: responses of blocks under a recorded ground motion."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -33,8 +34,8 @@ MAX_DIVIDED = 200_000
 """Most intervals into which the samples of a pulse are divided where they are longer than `MAX_INTERVAL`."""
 
 MIN_CHUNK, MAX_CHUNK = 64, 512
-"""Cells given to a thread at a time: about a millisecond of work at least, and full SIMD lanes for most of it. Of a
-motion with fewer samples than an ordinary record, 2,000, so many more."""
+"""Cells given to a thread at a time: at least a millisecond of work, with full SIMD lanes for most of it; more in
+proportion for motions of fewer samples than an ordinary record, 2,000."""
 
 
 def record_response(
@@ -107,10 +108,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
 
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
-    """Smallest and largest frequency parameter p of a block under this record [rad/s].
-
-    Raises `InvalidArgumentError` if `motion` is not a record.
-    """
+    """Smallest and largest frequency parameter p of a block under this record, which is checked to be one [rad/s]."""
     if not isinstance(motion, Record):
         raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
@@ -119,10 +117,8 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
 def solve_pulse(
     pulse: AbstractPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
-    """Response records (size,) of blocks under a sampled pulse; `cells` as for `solve_cells` of `peak_response`.
-
-    Raises `InvalidArgumentError` if the frequency ratio is so low that the samples had to be divided into more than
-    `MAX_DIVIDED` intervals. Raises `StoppedError` if `stop` was set.
+    """Response records (size,) of blocks under a sampled pulse; `cells` and errors as for `solve_cells` of
+    `peak_response`.
     """
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
@@ -130,20 +126,26 @@ def solve_pulse(
 
 
 def solve_bodies_under_pulse(
-    pulse: AbstractPulse,
-    cells: NDArray[np.void],
-    threads: int | None,
-    stop: StopFlag | None,
-    each_side: bool = False,
+    pulse: AbstractPulse, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None, each_side: bool = False
 ) -> tuple[NDArray[np.void], Array]:
     """`solve_bodies` under a sampled pulse; `rate` of the cells is the frequency ratio, errors as `solve_pulse`."""
-    parts = interval_parts(pulse, cells["rate"])
-    sampled = cells.copy()
+    parts, sampled = interval_parts(pulse, cells["rate"]), cells.copy()
     sampled["rate"] = 1.0 / cells["rate"]
-    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
-    for division in np.unique(parts):
-        own, rows = parts == division, pulse_samples(pulse, int(division))
-        records[own], of_edges = solve_bodies(rows, sampled[own], threads, stop, each_side)
+
+    def solve(own: NDArray[np.bool_], division: int) -> tuple[NDArray[np.void], Array]:
+        return solve_bodies(pulse_samples(pulse, division), sampled[own], threads, stop, each_side)
+
+    return _each_kind(parts, solve, each_side)
+
+
+def _each_kind(
+    kinds: NDArray[np.int64], solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]], each_side: bool
+) -> tuple[NDArray[np.void], Array]:
+    """The result of `solve_bodies` for cells of several kinds (size,), those of each kind solved together."""
+    records, edges = np.empty(kinds.size, RESPONSE_RECORD), np.empty((kinds.size if each_side else 0, EDGE_COLUMNS))
+    for kind in np.unique(kinds):
+        own = kinds == kind
+        records[own], of_edges = solve(own, int(kind))
         if each_side:
             edges[own] = of_edges
     return records, edges
@@ -173,11 +175,7 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
 
 
 def solve_bodies(
-    samples: Array,
-    cells: NDArray[np.void],
-    threads: int | None,
-    stop: StopFlag | None,
-    each_side: bool = False,
+    samples: Array, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None, each_side: bool = False
 ) -> tuple[NDArray[np.void], Array]:
     """Response records (size,) of bodies `BODY_CELL` (size,) under `sample_rows`, and what differs from edge to edge.
 
@@ -185,29 +183,19 @@ def solve_bodies(
     EDGE_COLUMNS); else the second result has no rows. Errors are those of `rocking._solver.peak_response.solve_cells`.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
-    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
-    if by_steps.any() and not by_steps.all():
-        for kind in (by_steps, ~by_steps):
-            records[kind] = solve_bodies(samples, cells[kind], threads, stop)[0]
-        return records, edges
-    if cells.size and by_steps[0]:
+    kinds = np.full(cells.size, -1)
+    if by_steps.any():
         # what sets the rounding of a cell is its own, not that of the cells beside it in the array or the thread
-        alike = 2 * taylor_orders(samples, cells) + (cells["vertical"] != 0.0)
-        if (kinds := np.unique(alike)).size > 1:
-            for kind in kinds:
-                own = alike == kind
-                records[own], of_edges = solve_bodies(samples, cells[own], threads, stop, each_side)
-                if each_side:
-                    edges[own] = of_edges
-            return records, edges
+        kinds[by_steps] = 2 * taylor_orders(samples, cells[by_steps]) + (cells["vertical"][by_steps] != 0.0)
+    if cells.size and (kinds != kinds[0]).any():
+        return _each_kind(kinds, lambda own, _: solve_bodies(samples, cells[own], threads, stop, each_side), each_side)
+    records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))
 
-        def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        if by_steps[0]:
             blocks, steps = body_states(samples, LANES), step_state(samples, cells[part])
             solve_by_steps(samples, cells[part], blocks, steps, flag, records[part], edges[part])
-
-    else:
-
-        def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        else:
             solve_slender(samples, cells[part], body_states(samples, 1)[0], flag, records[part])
 
     cores = int(threads or AVAILABLE_CORES)

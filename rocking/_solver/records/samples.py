@@ -22,9 +22,7 @@ BLOCK = 32  # sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold 
 
 
 def sample_rows(
-    shape: NDArray[np.float64],
-    time: NDArray[np.float64] | None = None,
-    vertical: NDArray[np.float64] | None = None,
+    shape: NDArray[np.float64], time: NDArray[np.float64] | None = None, vertical: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
     """The array (7, samples) of a motion.
 
@@ -58,10 +56,7 @@ def motion_samples(motion: RecordedMotion) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=16)
 def pulse_samples(pulse: AbstractPulse, parts: int = 1) -> NDArray[np.float64]:
-    """`sample_rows` of a pulse, whose unit of time is the phase [rad]; each interval is divided into `parts`.
-
-    Raises `InvalidArgumentError` if the pulse is not given by samples.
-    """
+    """`sample_rows` of a sampled pulse, in time units of the phase [rad]; each interval is divided into `parts`."""
     if pulse.samples is None:
         raise InvalidArgumentError("pulse", pulse.name, "a pulse given by samples")
     phases, values = pulse.samples

@@ -11,7 +11,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel, light_entry
 from rocking._numba.simd import LANES, any_lane, gather_rows, lane_bits, load, scatter_rows, select, splat, store
 from rocking._solver.stages import columns as column
 from rocking._solver.stages.cuts import init_nodes, start_uplifts, uplift_piece
-from rocking._solver.stages.events import end_flights, prefetch_responses, write_responses
+from rocking._solver.stages.events import end_flights, write_responses
 from rocking._solver.stages.flight import follow_flights
 from rocking._solver.stages.lists import (
     GENERAL_LIST,
@@ -30,7 +30,7 @@ LEFT = -1  # outcome of a cell that no stage decides: it is left to the caller
 
 @kernel
 def leave_rest(which: int, pulse: Record, group: Record) -> None:
-    """Decide what follows for blocks at rest: another uplift or nothing."""
+    """Decide whether blocks at rest uplift again."""
     columns = group.columns
     for lane in range(LANES):
         if group.next[lane] != float(REST):
@@ -69,14 +69,7 @@ def distribute(which: int, pulse: Record, group: Record, cells: Record, response
 
 
 @kernel
-def share_flights(
-    which: int,
-    eta: FloatArray,
-    pulse: Record,
-    group: Record,
-    cells: Record,
-    responses: Record,
-) -> None:
+def share_flights(which: int, eta: FloatArray, pulse: Record, group: Record, cells: Record, responses: Record) -> None:
     """End the flights for the other cells that share them; `shared` and `leader` hold the group as it was before."""
     members, most = cells.members, 1
     for lane in range(LANES):
@@ -172,7 +165,6 @@ def solve_by_arcs(
         block = responses[first:last]
         counts[:] = 0
         shared = start_cells(block_s, block_w, pulse, cells, block)
-        ahead = last
         while not is_stopped(stop):
             fullest = 0
             for which in range(1, GENERAL_LIST):
@@ -180,8 +172,6 @@ def solve_by_arcs(
                     fullest = which
             if counts[fullest] == 0:
                 break
-            prefetch_responses(responses, ahead, min(ahead + LANES, last + BLOCK_SIZE))
-            ahead += LANES
             follow_group(fullest, shared, block_s, block_w, block_eta, pulse, group, cells, block)
         for i in range(counts[GENERAL_LIST]):
             place = lists[GENERAL_LIST, i]

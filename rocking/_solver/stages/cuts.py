@@ -102,21 +102,16 @@ def uplift_piece(pulse: Record, slenderness: float, phase: float) -> tuple[int, 
 
 
 @kernel
-def first_uplifts(pulse: Record, slenderness: SimdVector) -> Any:
-    """Pieces of the pulse with the first uplifts of blocks at rest at its start, and their sgn(theta), 0: no uplift.
+def first_uplift_pieces(pulse: Record, slenderness: SimdVector) -> Any:
+    """Pieces of the pulse with the first uplifts of blocks at rest at its start, as `uplift_piece`.
 
-    The piece is -1 where |f| exceeds 1/a at the start. The vector form of `uplift_piece`.
+    The piece is -1 where |f| exceeds 1/a at the start.
     """
-    pieces, signs = splat(-1.0), splat(0.0)
+    pieces = splat(-1.0)
     for i in range(pulse.pieces):
         piece = pulse.pieces - 1 - i
-        f = pulse.end_shape[piece + 1]
-        reached = slenderness < abs(f)
-        pieces = select(reached, splat(float(piece)), pieces)
-        signs = select(reached, splat(-math.copysign(1.0, f)), signs)
-    f = pulse.end_shape[0]
-    exceeded = slenderness < abs(f)
-    return select(exceeded, splat(-1.0), pieces), select(exceeded, splat(-math.copysign(1.0, f)), signs)
+        pieces = select(slenderness < abs(pulse.end_shape[piece + 1]), splat(float(piece)), pieces)
+    return select(slenderness < abs(pulse.end_shape[0]), splat(-1.0), pieces)
 
 
 @kernel

@@ -7,8 +7,7 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.memory import prefetch_for_write
-from rocking._numba.records import scatter_records
+from rocking._numba.records import copy_lane
 from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
 from rocking._solver.free_rocking import slender_energy, slender_top
 from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, RECOVERS, peak_mode, series_fits
@@ -141,8 +140,6 @@ def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVe
 def write_responses(group: Record, done: int, responses: Record) -> None:
     """Write the responses of the lanes whose bits are set in `done`, each at once."""
     columns, response = group.columns, group.response
-    for lane in range(LANES):
-        group.written[lane] = group.place[lane] if (done >> lane) & 1 else -1
     peak = load(columns, column.PEAK)
     store(response.peak_rotation, 0, peak)
     store(response.exceeded_alpha, 0, select(peak <= 1.0, splat(0.0), splat(1.0)))  # also where it is nan
@@ -155,11 +152,6 @@ def write_responses(group: Record, done: int, responses: Record) -> None:
     store(response.first_impact_velocity, 0, load(columns, column.FIRST_VELOCITY))
     store(response.end_rotation, 0, load(group.free_z, 0))
     store(response.end_velocity, 0, load(group.free_w, 0))
-    scatter_records(response, group.written, responses)
-
-
-@kernel
-def prefetch_responses(responses: Record, first: int, last: int) -> None:
-    """Prefetch the memory of responses of the next block, which is written in the order of the ends of the cells."""
-    for cell in range(first, min(last, len(responses))):
-        prefetch_for_write(responses.ctypes.data + cell * responses.itemsize)
+    for lane in range(LANES):
+        if (done >> lane) & 1:
+            copy_lane(response, lane, responses[group.place[lane]])

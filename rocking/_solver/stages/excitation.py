@@ -13,18 +13,9 @@ from rocking._numba.simd import load, maximum, minimum, select, splat, square_ro
 from rocking._numba.simd_exponentials import exponential
 from rocking._numba.simd_sines import sine_and_cosine
 from rocking._solver.families.sinusoids import SERIES_LENGTH, SERIES_RADIUS, is_unit_sinusoid
-from rocking._solver.families.wavelets import (
-    WAVELET,
-    WAVELET_SERIES_LENGTH,
-    expand_gaussian_product,
-    polynomial_at,
-)
+from rocking._solver.families.wavelets import WAVELET, WAVELET_SERIES_LENGTH, expand_gaussian_product, polynomial_at
 from rocking._solver.stages import columns as column
-from rocking._solver.stages.wavelets import (
-    MAX_WAVELET_REACH,
-    WAVELET_SERIES_RADIUS,
-    particular_solution,
-)
+from rocking._solver.stages.wavelets import MAX_WAVELET_REACH, WAVELET_SERIES_RADIUS, particular_solution
 
 
 @kernel

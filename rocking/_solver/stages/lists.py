@@ -4,9 +4,9 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import FloatArray, Record, kernel
-from rocking._numba.simd import LANES, any_lane, gather, lane_bits, load_elements, select, splat, store
+from rocking._numba.simd import LANES, gather, lane_bits, select, splat, store
 from rocking._solver.stages import columns as column
-from rocking._solver.stages.cuts import first_uplifts, uplift_piece
+from rocking._solver.stages.cuts import first_uplift_pieces, uplift_piece
 from rocking._solver.stages.state import BLOCK_SIZE, BUCKETS
 from rocking._solver.state import set_empty_response
 
@@ -53,40 +53,14 @@ def take_places(which: int, group: Record, cells: Record) -> None:
 
 
 @kernel
-def common_list(place: int, slenderness: FloatArray, omega: FloatArray, pulse: Record) -> int:
-    """List of the first flights of the next `LANES` cells, or -1 if they differ or if some have none or share one."""
-    s, w = load_elements(slenderness, place), load_elements(omega, place)
-    same = (s == load_elements(slenderness, place + 1)) & (w == load_elements(omega, place + 1))
-    _, signs = first_uplifts(pulse, s)
-    if any_lane(same | ~(s < 1.0)):
-        return -1
-    if not any_lane(~(signs > 0.0)):
-        return FIRST_LISTS + 1
-    if not any_lane(~(signs < 0.0)):
-        return FIRST_LISTS
-    return -1
-
-
-@kernel
 def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells: Record, responses: Record) -> bool:
     """Put the cells of a block into the lists of first flights; True if some share a flight.
 
     Consecutive cells that differ in eta only share the first flight, for which the first of them stands.
     """
-    lists, counts, members = cells.lists, cells.counts, cells.members
+    members = cells.members
     f_start, shared, place, count = pulse.end_shape[0], False, 0, len(slenderness)
-    single = 0  # cells before this one are put into lists one by one
     while place < count:
-        if place >= single and place + LANES < count:
-            which = common_list(place, slenderness, omega, pulse)
-            if which >= 0:
-                for lane in range(LANES):
-                    lists[which, counts[which] + lane] = place + lane
-                    members[place + lane] = 1
-                counts[which] += LANES
-                place += LANES
-                continue
-            single = place + LANES
         s, w = slenderness[place], omega[place]
         following = place + 1
         while following < count and slenderness[following] == s and omega[following] == w:
@@ -139,13 +113,7 @@ def sort_by_slenderness(which: int, slenderness: FloatArray, cells: Record) -> N
 
 @kernel
 def take_resting_cells(
-    which: int,
-    slenderness: FloatArray,
-    omega: FloatArray,
-    eta: FloatArray,
-    pulse: Record,
-    group: Record,
-    cells: Record,
+    which: int, slenderness: FloatArray, omega: FloatArray, eta: FloatArray, pulse: Record, group: Record, cells: Record
 ) -> None:
     """Take the last cells from a list of first flights into the group; unused lanes get one of them."""
     columns = group.columns
@@ -153,7 +121,7 @@ def take_resting_cells(
     for k in range(LANES):
         store(columns, k, splat(0.0))
     s = gather(slenderness, group.source)
-    piece, _ = first_uplifts(pulse, s)
+    piece = first_uplift_pieces(pulse, s)
     store(columns, column.SLENDERNESS, s)
     store(columns, column.OMEGA, gather(omega, group.source))
     store(columns, column.ETA, gather(eta, group.source))

@@ -25,62 +25,30 @@ FINISHED, LONG, SHORT, REPEATED, REST, UNDECIDED = 0, 1, 2, 3, 4, 5
 same sign, rest, or the event loop."""
 
 _LANE_FIELDS = (
-    # the cell
-    "a",
-    "reciprocal_omega",
+    # the cell; `reach`: time [tau] up to which the series at the start of the flight is exact to rounding
+    *("a", "reciprocal_omega", "reach"),
     "max_rate",  # largest of 1 and the rates Omega
-    "reach",  # time [tau] up to which the series at the start of the flight is exact to rounding
     "half_width",  # arccos(1/a) [rad]
     "node_share",  # of the nodes of a piece, 0 to 1
-    # the arc of the flight, as in `rocking._solver.state.FLIGHT_STATE`
-    "q0",
-    "x0",
-    "y0",
-    "offset_z",
-    "offset_w",
+    *("q0", "x0", "y0", "offset_z", "offset_w"),  # the arc, as in `rocking._solver.state.FLIGHT_STATE`
     # of a wavelet: sgn(theta) a; phase and exp(-phase^2/spread) at the phase of the last `set_angles`, and at the start
-    "strength",
-    "phase",
-    "gaussian",
-    "gaussian0",
+    *("strength", "phase", "gaussian", "gaussian0"),
     "decay",  # sqrt(spread)/(2 omega), see `rocking._solver.stages.wavelets`
     # progress of the flight
     "followed",  # 1 where it is still followed, else 0
     "undecided",  # 1 where it is left to the event loop, else 0
     "known",  # 1 where the state below is known; 0 where it is not and w > 0
-    "left_h",  # time, z, w and q at the left end of the next part of the pulse
-    "left_z",
-    "left_w",
-    "left_q",
-    # a peak to be located: 1 where there is one; the bracket, and a first guess
-    "peak_pending",
-    "peak_low",
-    "peak_high",
-    "peak_guess",
-    "found_peak_h",  # the last located one
-    "found_peak_z",
-    "found_peak_slope",  # of w
+    *("left_h", "left_z", "left_w", "left_q"),  # time, z, w and q at the left end of the next part of the pulse
+    *("peak_pending", "peak_low", "peak_high", "peak_guess"),  # 1 where a peak is to be located; bracket, first guess
+    *("found_peak_h", "found_peak_z", "found_peak_slope"),  # the last located one, with the slope of w
     # the impact to be located: the bracket with the states at its ends
-    "impact_low",
-    "impact_low_z",
-    "impact_low_w",
-    "impact_low_slope",
-    "impact_high",
-    "impact_high_z",
-    "impact_high_w",
-    "impact_high_slope",
+    *("impact_low", "impact_low_z", "impact_low_w", "impact_low_slope"),
+    *("impact_high", "impact_high_z", "impact_high_w", "impact_high_slope"),
     "impact_after_peak",  # 1 where the bracket starts with the last peak
-    # end of the flight
-    "ended",  # `IMPACT`, `PULSE_END`, or `IN_FLIGHT` where it is undecided
-    "length",  # its duration [tau]
-    "end_z",
-    "end_w",
-    "top",  # largest z
-    # the response
-    "outcome",
-    "next",  # what follows: `FINISHED` to `UNDECIDED`
-    "free_z",  # state at the end of the pulse, or where overturning is certain
-    "free_w",
+    # end of the flight: `IMPACT`, `PULSE_END`, or `IN_FLIGHT` where it is undecided; its duration [tau]; largest z
+    *("ended", "length", "end_z", "end_w", "top"),
+    # the response; what follows, `FINISHED` to `UNDECIDED`; state at the end of the pulse, or where it overturns
+    *("outcome", "next", "free_z", "free_w"),
 )
 
 
@@ -93,19 +61,13 @@ def _group_layout() -> np.dtype[np.void]:
             *((name, np.float64, lanes) for name in _LANE_FIELDS),
             *((name, np.float64, terms) for name in ("force", "rate", "particular")),
             *((name, np.float64, terms) for name in ("cosine0", "sine0", "cosine", "sine")),
-            (
-                "series",
-                np.float64,
-                (WAVELET_SERIES_LENGTH, LANES),
-            ),  # Taylor coefficients of z about the start of the flight
-            ("excitation", np.float64, (WAVELET_SERIES_LENGTH, LANES)),  # of F for a wavelet
-            ("gauss", np.float64, (WAVELET_SERIES_LENGTH, LANES)),  # of its Gaussian, in powers of phi
+            # coefficients: of z about the start of the flight; of F for a wavelet; of its Gaussian, in powers of phi
+            *((name, np.float64, (WAVELET_SERIES_LENGTH, LANES)) for name in ("series", "excitation", "gauss")),
             ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
             ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
             ("node_slope", np.float64, pieces),
             ("response", [(name, np.float64, lanes) for name in RESPONSE_RECORD.names or ()]),  # to be written
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
-            ("written", np.int64, lanes),  # number of the response to be written, or -1
             ("expanded", np.int64),  # 1 once `series` and `excitation` are of this flight
             ("used", np.int64),  # bits of the lanes that hold a cell
             ("source", np.int64, lanes),  # the same, with a cell in every lane

@@ -45,7 +45,7 @@ STEP_TOLERANCE = 0.02
 
 MAX_TIME = 1e12  # largest time in a column of times [s]; times are often counted from an epoch
 WRAPPED = "rows"  # the component that stands for the values of all columns, row by row
-JUMP = 3.0  # a leading value so many times as large as all others is no sample [-]
+JUMP = 3.0  # a leading value this many times larger than all others is no sample [-]
 
 SMOOTHER = 0.8
 """Sum of the steps along the rows over that down the columns below which the rows are one series [-]: of records of 100
@@ -105,10 +105,7 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
 
 
 def read_samples(file: TextFile, most: int) -> tuple[int, Array | None, Array]:
-    """Index of the first row, times if there are two columns, and accelerations, in any units; at most `most` rows.
-
-    Raises `RecordFileError` if the file holds anything else.
-    """
+    """Index of the first row, times if there are two columns, and accelerations, in any units; at most `most` rows."""
     expected = "one column of accelerations, or two of times and accelerations"
     layout = find_layout(file, 0, expected=expected)
     if layout.width > 2:
@@ -330,10 +327,7 @@ def _agreed_step(layout: Layout, count: int, measured: float | None, given: floa
 
 
 def _check_leading(layout: Layout, values: Array, time_step: float | None) -> None:
-    """Refuse one column whose first numbers are a count, a step or a factor, by their size and their form.
-
-    Raises `RecordFileError` with the argument `skip`, which says how many of them are no samples, 0 included.
-    """
+    """Refuse one column that begins with a count, a step or a factor, by size and form, unless `skip` is stated."""
     texts = [row.strip() for row in layout.file.head[layout.first :] if row.strip()]
     forms, digits = zip(*map(_form, texts), strict=True)
     uniform = len(texts) > 6 and len({*forms[3:]}) == 1
@@ -417,10 +411,7 @@ def _time_factor(layout: Layout, column: Column) -> float:
 
 
 def _stated_unit(layout: Layout, column: Column, quantity: str) -> str | None:
-    """The unit of times or rotations of a column; None if there is none.
-
-    Raises `RecordFileError` if anything else is in brackets or after a slash.
-    """
+    """The unit of times or rotations of a column, None without; other text in brackets or after a slash is refused."""
     unit = column.unit(quantity)
     if unit is None and re.search(r"[(\[/]", column.shown):
         raise _no_unit(layout, column, quantity)

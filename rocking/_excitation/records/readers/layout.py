@@ -104,10 +104,7 @@ RECORDS = "the header of a known format (AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet,
 
 
 def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expected: str = RECORDS) -> Layout:
-    """Decide how a file holds its numbers; `skip` rows of numbers are passed over, None: it may have to be asked for.
-
-    Raises `RecordFileError` if there are no rows of numbers, or two readings.
-    """
+    """Decide how a file holds its numbers; `skip` rows of them are passed over, None: it may have to be asked for."""
     rows = [k for k, line in enumerate(file.head) if is_row(line)]
     if not rows:
         shown = next((line.strip() for line in file.head if line.strip()), "blank lines")
@@ -202,10 +199,7 @@ def is_row(line: str) -> bool:
 def _columns(
     file: TextFile, first: int, separator: str | None, width: int, quantity: str
 ) -> tuple[int | None, list[Column]]:
-    """Line of the names, and the columns: of the nearest line above the rows that names as many; else numbered.
-
-    Raises `RecordFileError` if two lines name as many columns in different units.
-    """
+    """Line of the names, and the columns: of the nearest line above the rows that names as many; else numbered."""
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []
     for k in range(first - 1, -1, -1):

@@ -58,13 +58,13 @@ class TextFile:
         """Convert UTF-16 to UTF-8, as numbers are read from bytes, and CR CR LF to LF; leave out a last comment."""
         if self.content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             try:
-                object.__setattr__(self, "content", self.content.decode("utf-16").encode())
+                vars(self)["content"] = self.content.decode("utf-16").encode()
             except UnicodeDecodeError as error:
                 raise self.error(None, f"UTF-16 with {error.reason}", "text") from None
         if b"\r\r\n" in self.content:  # a line end written twice by a system that adds a carriage return
-            object.__setattr__(self, "content", self.content.replace(b"\r\r\n", b"\n"))
+            vars(self)["content"] = self.content.replace(b"\r\r\n", b"\n")
         if end := _CLOSING.search(self.content, max(1, len(self.content) - MAX_CLOSING)):
-            object.__setattr__(self, "content", self.content[: end.start()])
+            vars(self)["content"] = self.content[: end.start()]
 
     @cached_property
     def head(self) -> list[str]:
@@ -177,10 +177,7 @@ class TextFile:
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
 
     def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
-        """The remark on a number of values that differs from the stated one; none if it does not.
-
-        Raises `RecordFileError` if the difference is larger than headers are usually off: the file is damaged.
-        """
+        """The remark on a number of values that differs from the stated one, by as much as headers are usually off."""
         difference = abs(values.size - stated)
         if difference > COUNT_DIFFERENCE * stated:
             raise self.error(line, f"{stated} stated, {values.size} values in the file", "equal numbers")
@@ -188,10 +185,7 @@ class TextFile:
 
 
 def to_floats(fields: list[bytes]) -> list[float]:
-    """Numbers that match `NUMBER`, with exponents of E.
-
-    Raises `ValueError` for any other text.
-    """
+    """Numbers that match `NUMBER`, with exponents of E; `ValueError` for any other text."""
     if b" ".join(fields).translate(None, b"0123456789+-.Ee "):
         raise ValueError("not only numbers")
     return [*map(float, fields)]

@@ -63,10 +63,7 @@ class Channel:
 
 
 def format_of(file: TextFile) -> str | None:
-    """The name of the format; None if it is none of these.
-
-    Raises `RecordFileError` if it is one that is not read.
-    """
+    """The name of the format; None if it is none of these; those that are not read are refused."""
     start = file.head[:FIRST_LINES]
     for line in start:
         if re.match(r"(un)?corrected accelerogram \S+ +(GNS|GeoNet)", line, re.I):

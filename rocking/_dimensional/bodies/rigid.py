@@ -1,0 +1,133 @@
+"""Rigid bodies: a rectangle, one with its centre of mass elsewhere, two edges, a cylinder, an outline, a mesh."""
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any
+
+from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.quantities import (
+    DIAMETER,
+    GRAVITY,
+    GYRATION,
+    HEIGHT,
+    INCLINATION,
+    LEFT,
+    MASS_HEIGHT,
+    OFFSET,
+    REBOUND,
+    RIGHT,
+    TOP_HEIGHT,
+    WIDTH,
+)
+from rocking._base.quantity import Quantity
+
+if TYPE_CHECKING:
+    from rocking._dimensional.block import Block
+    from rocking._dimensional.rigid_body import RigidBody
+
+VERTICES = Quantity(
+    "vertices", "", "corners x, y of the outline in order, in metres; y is upwards", example="0 0; 0.3 0; 0.3 1.0"
+)
+PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, ...), z upwards", example="vase.stl")
+UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft", default="m")
+SIDES = Quantity("sides", "", "edges about which it rocks: both; left or right: a wall stops it at the other side")
+DIRECTION = Quantity(
+    "direction",
+    "rad",
+    "angle of the ground motion from the x axis of the mesh towards its y axis",
+    lower=-2.0 * math.pi,
+    upper=2.0 * math.pi,
+    closed="both",
+    example="30 deg",
+)
+
+
+def rectangle(
+    width: Annotated[float, WIDTH],
+    height: Annotated[float, HEIGHT],
+    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+) -> "Block":
+    """A rectangular block of uniform density."""
+    from rocking._dimensional.block import Block  # noqa: PLC0415
+
+    return Block(width, height, gravity)
+
+
+def offset_mass(
+    width: Annotated[float, WIDTH],
+    height: Annotated[float, HEIGHT],
+    offset: Annotated[float, OFFSET] = 0.0,
+    mass_height: Annotated[float | None, MASS_HEIGHT] = None,
+    gyration: Annotated[float | None, GYRATION] = None,
+    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+) -> "Block | RigidBody":
+    """A body from its outer dimensions, the place of its centre of mass and its radius of gyration."""
+    from rocking._dimensional.rigid_body import body_of_size  # noqa: PLC0415
+
+    return body_of_size(width, height, offset, mass_height, gravity, gyration)
+
+
+def two_edges(
+    left: Annotated[float, LEFT],
+    right: Annotated[float, RIGHT],
+    mass_height: Annotated[float, MASS_HEIGHT],
+    gyration: Annotated[float | None, GYRATION] = None,
+    top_height: Annotated[float | None, TOP_HEIGHT] = None,
+    inclination: Annotated[float, INCLINATION] = 0.0,
+    sides: Annotated[str, SIDES] = "both",
+    rebound: Annotated[float | None, REBOUND] = None,
+    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+) -> "RigidBody":
+    """A body from the distances of its edges from the centre of mass, and the height of that."""
+    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
+
+    return RigidBody(
+        left,
+        right,
+        mass_height,
+        gyration,
+        inclination=inclination,
+        gravity=gravity,
+        top_height=top_height,
+        sides=sides,
+        rebound=rebound,
+    )
+
+
+def cylinder(
+    diameter: Annotated[float, DIAMETER],
+    height: Annotated[float, HEIGHT],
+    offset: Annotated[float, OFFSET] = 0.0,
+    mass_height: Annotated[float | None, MASS_HEIGHT] = None,
+    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+) -> "Block | RigidBody":
+    """A body on a round base, in the planar model, in which it does not wobble or roll."""
+    gyration = (0.75 * diameter * diameter + height * height) ** 0.5 / math.sqrt(12.0)
+    return offset_mass(diameter, height, offset, mass_height, gyration, gravity)
+
+
+def outline(vertices: Annotated[Any, VERTICES], gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY) -> "RigidBody":
+    """A body of uniform density from its outline, standing on its lowest edge."""
+    from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
+    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
+
+    points = vertices
+    if isinstance(vertices, str):
+        try:
+            points = [[float(one) for one in part.split()] for part in vertices.split(";")]
+        except ValueError:
+            raise InvalidArgumentError(
+                "vertices", vertices, f"pairs x y in metres, such as {VERTICES.example}"
+            ) from None
+    return RigidBody.from_polygon(points, gravity=gravity)
+
+
+def mesh(
+    path: Annotated[str, PATH],
+    direction: Annotated[float, DIRECTION] = 0.0,
+    unit: Annotated[str, UNIT] = "m",
+    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+) -> "RigidBody":
+    """A body of uniform density from a surface mesh, standing on its lowest points."""
+    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
+
+    return RigidBody.from_mesh(path, direction, unit=unit, gravity=gravity)

@@ -1,0 +1,72 @@
+"""The kinds of bodies by name: Python, options, HTTP, tables and configurations describe a body by them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from rocking._base.kinds import Kind, kind_with, split_kind
+from rocking._dimensional.bodies.composite import hollow, on_pedestal
+from rocking._dimensional.bodies.rigid import cylinder, mesh, offset_mass, outline, rectangle, two_edges
+from rocking._dimensional.bodies.structures import arch, frame, on_pivots, structure
+
+if TYPE_CHECKING:
+    from rocking._dimensional.body import RespondingBody
+
+RIGID = (rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline, mesh)
+"""Rigid bodies, which an object of a table may be."""
+
+BODIES: dict[str, Kind[RespondingBody]] = {
+    make.__name__: Kind(make, reads_files=make is mesh) for make in (*RIGID, frame, arch, on_pivots, structure)
+}
+"""Where only parameters are given, the first kind that has them."""
+
+
+def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingBody:
+    """The body of a description, such as `"hollow(width=40cm, height=1.6m, wall=2cm)"`.
+
+    Parameters
+    ----------
+    description : str or mapping
+        The name of a kind, with its parameters and their units in brackets; or a mapping of the parameters, with `kind`
+        unless they say which one it is. Kinds: rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal,
+        outline, mesh, frame, arch, on_pivots, structure.
+    **parameters
+        The same as arguments: numbers in SI units, texts such as "40 cm", quantities of pint.
+
+    Raises
+    ------
+    InvalidArgumentError
+        For an unknown kind, or a parameter that is missing, unknown, stated twice or out of range.
+
+    Examples
+    --------
+    >>> body("cylinder", diameter="30 cm", height="1.2 m")
+    <rocking.RigidBody: body on edges 0.15 m left and 0.15 m right of its mass at 0.6 m>
+    """
+    from rocking._base.errors import InvalidArgumentError, one_of  # noqa: PLC0415
+
+    text: Any = description
+    if isinstance(text, Mapping):
+        parameters = {str(key): value for key, value in text.items() if key != "kind"} | parameters
+        text = text.get("kind")
+        kind = kind_with(BODIES, parameters)
+        if text is None and kind is not None:
+            return kind(**parameters)
+    parts = split_kind(text, "body") if isinstance(text, str) else None
+    if parts is None or parts[0]:
+        stated = ", ".join(parameters) if text is None else text
+        raise InvalidArgumentError("body", stated, f"the name or the parameters of one of: {signatures()}")
+    if parts[2].keys() & parameters.keys():
+        raise InvalidArgumentError("body", text, "each parameter once")
+    return BODIES[one_of("body", parts[1], BODIES)](**parts[2], **parameters)
+
+
+def signatures(kinds: Mapping[str, Kind[Any]] = BODIES) -> str:
+    """The kinds with the parameters that they need, and those that they may have in square brackets."""
+
+    def written(kind: Kind[Any]) -> str:
+        names = (name if name in kind.needed else f"[{name}]" for name in kind.fields if name != "gravity")
+        return f"{kind.name}({', '.join(names)})"
+
+    return "; ".join(map(written, kinds.values()))

@@ -1,0 +1,115 @@
+"""The declaration of a quantity: conversion, ranges, and what options, JSON and tables derive from it."""
+
+import math
+from functools import partial
+from typing import Annotated
+
+import numpy as np
+import pytest
+import typer
+from pydantic import BaseModel, BeforeValidator, ValidationError, create_model
+from rocking_api.models.quantity import described
+
+import rocking._base.quantities as quantities
+from rocking._base.cells import read_cell, read_header
+from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, GROUPS, MASS_HEIGHT, PGA, RESTITUTION, SLENDERNESS, WIDTH
+from rocking._base.quantity import Quantity
+from rocking._base.units import UNITS
+from rocking._cli.options import option
+from rocking._model.checks import check_window
+
+
+@pytest.mark.parametrize("parameter", GROUPS, ids=[one.name for one in GROUPS])
+def test_interval_states_which_values_are_accepted(parameter):
+    assert parameter.convert(parameter.lower) == parameter.lower
+    for wrong in (parameter.lower - 1.0, math.nan, math.inf):
+        with pytest.raises(InvalidArgumentError) as caught:
+            parameter.convert(wrong)
+        assert caught.value.allowed == f"{parameter.interval} [{parameter.unit}]"
+
+
+def test_smaller_range():
+    served = SLENDERNESS.restricted(1e-9, math.inf)
+    assert (served.interval, served.name) == ("[1e-09, inf)", "slenderness")
+    assert FREQUENCY_RATIO.restricted(1.0, 2.0).interval == "[1, 2]"
+    for wrong in ((1e-13, 1.0), (2.0, 1.0)):
+        with pytest.raises(ValueError, match="not a part of"):
+            SLENDERNESS.restricted(*wrong)
+
+
+def test_angle_in_degrees():
+    degrees = ALPHA.in_degrees()
+    assert (degrees.name, degrees.unit, degrees.lower) == ("alpha_deg", "deg", 0.0)
+    assert math.radians(degrees.upper) == pytest.approx(ALPHA.upper)
+
+
+def test_window():
+    assert check_window(FREQUENCY_RATIO, 1, 2) == (1.0, 2.0)
+    for low, high, name in ((0.0, 1.0, "frequency_ratio_min"), (2.0, 2.0, "frequency_ratio_max")):
+        with pytest.raises(InvalidArgumentError, match=f"^`{name}` = "):
+            check_window(FREQUENCY_RATIO, low, high)
+    with pytest.raises(InvalidArgumentError, match=r"^`last` = "):
+        check_window(SLENDERNESS, 0.5, 0.4, ("first", "last"))
+
+
+DECLARED = [one for one in vars(quantities).values() if isinstance(one, Quantity)]
+
+
+@pytest.mark.parametrize("one", DECLARED, ids=[one.name for one in DECLARED])
+def test_a_declaration_is_complete(one):
+    assert one.unit in UNITS or one.unit in ("", "bool")
+    assert one.meaning[0].islower() or one.meaning[0].isupper() != one.meaning[1].isupper()
+    assert not one.meaning.endswith(".")
+    if one.example:
+        assert one.lower <= one.number(one.example) <= one.upper
+    assert len({*one.names}) == len(one.names)
+
+
+def test_one_declaration_reads_python_options_json_and_tables():
+    assert WIDTH.number("40 cm") == WIDTH.read("40 cm") == WIDTH.read(0.4) == WIDTH.read("0.4", si=True) == 0.4
+    np.testing.assert_array_equal(WIDTH.convert(["40 cm", 0.5]), [0.4, 0.5])
+    assert RESTITUTION.read("momentum") == "momentum"
+    assert RESTITUTION.read("85 %") == RESTITUTION.read("0.85") == 0.85
+    assert (WIDTH.option, MASS_HEIGHT.option, WIDTH.header) == ("--width", "--mass-height", "width [m]")
+    assert (WIDTH.limits, ALPHA.limits) == ({"exclusiveMinimum": 0.0}, {"minimum": 0.0, "maximum": 1.57})
+    known = {name: one for one in (WIDTH, MASS_HEIGHT) for name in one.names}
+    assert read_header("Breite (cm)", known, "table") == (WIDTH, "cm")
+    assert read_cell(WIDTH, "40", "cm", ".") == 0.4
+    shown = option(PGA)
+    assert isinstance(shown, typer.models.OptionInfo)
+    assert (shown.metavar, shown.help) == (
+        r"[m/s2]",
+        "Peak ground acceleration; records are scaled to it, PGA, such as 0.3g.",
+    )
+
+
+@pytest.mark.parametrize(
+    ("one", "value", "words"),
+    [
+        (WIDTH, "0.4", "missing unit: write 0.4m"),
+        (WIDTH, -1.0, r"allowed: \(0, inf\) \[m\]"),
+        (WIDTH, [1.0, -1.0], "at index 1|one number"),
+        (RESTITUTION, "bouncy", "momentum, or a number"),
+        (RESTITUTION, 1.5, r"momentum, or \[0, 1\] \[-\]"),
+        (ALPHA, 30.0, "write '30 deg'"),
+    ],
+)
+def test_what_is_refused_has_its_name_its_value_and_what_is_allowed(one, value, words):
+    with pytest.raises(InvalidArgumentError, match=words) as caught:
+        one.read(value)
+    assert (caught.value.parameter, caught.value.value) == (one.name, value)
+
+
+def test_a_field_of_pydantic_has_the_declaration():
+    model: type[BaseModel] = create_model(
+        "Model",
+        width=(Annotated[float, BeforeValidator(partial(WIDTH.read, si=True)), described(WIDTH)], ...),
+        restitution=(Annotated[float | str, BeforeValidator(RESTITUTION.read)], "momentum"),
+    )
+    assert model(width="40 cm").width == model.model_validate_strings({"width": "0.4"}).width == 0.4
+    assert model.model_json_schema()["properties"]["width"]["exclusiveMinimum"] == 0.0
+    assert model.model_json_schema()["properties"]["width"]["description"] == WIDTH.help
+    with pytest.raises(ValidationError) as caught:
+        model(width=-1.0)
+    assert isinstance(caught.value.errors()[0]["ctx"]["error"], InvalidArgumentError)
