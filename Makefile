@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm deploy-check fuzz mutants oldest newest wheel lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm deploy-check mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -48,14 +48,14 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	ruff format --check .
 	ruff check .
 	snakefmt --check Snakefile workflow
-	@echo 'of long enumerations a sample is tried: make test-all tries all'
+	@echo 'of long tests and enumerations a part is run: make test-all runs all'
 	$(PYTEST)
 
 build/clients/bin/openapi-python-client: | .venv/project
 	$(PYTHON) -m venv build/clients && build/clients/bin/pip install --quiet openapi-python-client datamodel-code-generator
 
 test-all: .venv/project browser build/clients/bin/openapi-python-client ## run all tests, with all of what `make test` tries a sample (SEED= for other random requests)
-	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) $(PYTEST)
+	FUZZ_ALL=1 FUZZ_SEED=$(or $(SEED),1) $(PYTEST)
 
 PYTEST := pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 
@@ -84,9 +84,6 @@ SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin
 
 deploy-check: .venv/project ## slow and greedy clients of the service alone, and behind nginx if it is installed; a minute
 	python -m tests.api.check_deployment
-
-fuzz: .venv/project ## those of the tests of `make test-all` that have samples: 5,000 random requests (SEED= for others); 15 minutes
-	FUZZ_ALL=1 FUZZ_CASES=5500 FUZZ_SEED=$(or $(SEED),1) pytest -q $$(grep -rlE 'FUZZ_CASES|tests.sampling' --include='test_*.py' tests)
 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)

@@ -2,12 +2,15 @@
 
 import contextlib
 import gc
+import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.sampling import ALL
 
 # Derandomized: a failure can be repeated. No deadline: the first call of a kernel compiles it.
 settings.register_profile(
@@ -40,7 +43,11 @@ FIRST = (
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Move these files to the front, in their order, where several processes run them."""
+    """Leave out what is long; move these files to the front, in their order, where several processes run them."""
+    if not ALL:
+        long = [item for item in items if item.get_closest_marker("long")]
+        items[:] = [item for item in items if not item.get_closest_marker("long")]
+        config.hook.pytest_deselected(items=long)
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: [not item.nodeid.startswith(start) for start in FIRST])
 
@@ -74,6 +81,27 @@ def _turn(alone: bool) -> Iterator[None]:
             yield
         finally:
             fcntl.flock(running, fcntl.LOCK_UN)  # also for processes that have inherited it
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Callable[[str, Callable[[Path], None]], Path]:
+    """Make a folder by the first process of the run that needs it; the others wait. Tests must not change it."""
+    import fcntl  # noqa: PLC0415  (not on every system)
+
+    base = tmp_path_factory.getbasetemp()
+    if os.environ.get("PYTEST_XDIST_WORKER"):
+        base = base.parent  # shared by all workers
+
+    def made(name: str, make: Callable[[Path], None]) -> Path:
+        folder, complete = base / f"{name}-{testrun_uid}", base / f"{name}.complete"
+        with (base / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not complete.exists():
+                make(folder)
+                complete.touch()
+        return folder
+
+    return made
 
 
 pytest_plugins = ["tests.wheel_fixtures", "tests.workflow_fixtures"]

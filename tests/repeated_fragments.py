@@ -1,15 +1,12 @@
 """Texts of repeated fragments for every reader of text: the processor time grows in proportion to their length.
 
-`python -m tests.repeated_fragments --seconds 600 --seed 1` searches for a text that takes longer. A text is a template
-of the reader with prefix + fragment * k + suffix in it, of tokens of the grammars that are read.
+A text is a template of the reader with prefix + fragment * k + suffix in it, of tokens of the grammars that are read.
 """
 
 from __future__ import annotations
 
-import argparse
 import asyncio
 import random
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -57,54 +54,18 @@ TOKENS = [
 ]
 
 RECORD = [
-    "unit",
-    "units",
-    "UNITS OF",
-    "dt",
-    "time",
-    "time step",
-    "acc",
-    "NPTS",
-    "DT",
-    "VELOCITY",
-    "sampling rate",
-    "Hz",
-]
+    "unit", "units", "UNITS OF", "dt", "time", "time step", "acc", "NPTS", "DT", "VELOCITY", "sampling rate", "Hz",
+]  # fmt: skip
 RECORD += ["g", "gal", "cm/s2", "SEC", "s", "Scale Factor", "NDATA", "vel", "m"]
 UNIT = ["m", "cm", "g", "gal", "s", "ms", "s2", "deg", "rad", "percent"]
 TABLE = ["name", "width", "height [m]", "period", "peak_acceleration [g]", "restitution", *UNIT]
 SUITE = [
-    f"a{NUMBER}: 1\n",
-    f"[a{NUMBER}]\n",
-    "name",
-    "records",
-    "folder",
-    "intensity",
-    "hazard",
-    "&a",
-    "*a",
-    "- ",
-    ": ",
-    "a.",
-    '"""',
-    "null",
-    "true",
-]
+    f"a{NUMBER}: 1\n", f"[a{NUMBER}]\n", "name", "records", "folder", "intensity", "hazard", "&a", "*a", "- ", ": ",
+    "a.", '"""', "null", "true",
+]  # fmt: skip
 QUERY = [
-    f"a{NUMBER}=1&",
-    "pulse",
-    "sine",
-    "slenderness",
-    "&",
-    "=",
-    "%41",
-    "%",
-    "+",
-    "a=1&",
-    "&&",
-    "unit",
-    "restitution",
-]
+    f"a{NUMBER}=1&", "pulse", "sine", "slenderness", "&", "=", "%41", "%", "+", "a=1&", "&&", "unit", "restitution",
+]  # fmt: skip
 BODY = ["slenderness", '"slenderness"', '"slenderness":[', "restitution", "null", "{", "[1,", "]", "\\u0041"]
 PULSE = ['"acceleration":', '"time":', '"period":', '"name":', "[1,", "[0,1]", "null", "{", "1e999", "NaN", "9" * 400]
 HEADER = ["text/csv", "application/json", "q=0", "bytes=", "0-", "1-2", "W/", '"a"', "*", ";", ",", "utf-8"]
@@ -307,28 +268,3 @@ def excess(reader: Reader, given: Fragments) -> str | None:
         else:
             return f"{given}: {short:.3f} s for {length} characters, {long:.3f} s for four times as many"
     return None
-
-
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=60.0, help="processor time")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    endless = {
-        name: (reader, fragments(name, reader, options.seed)) for name, reader in (READERS | MATCHED_UNITS).items()
-    }
-    found, count = 0, 0
-    while time.process_time() < options.seconds:
-        for name, (reader, texts) in endless.items():
-            count += 1
-            wrong = excess(reader, next(texts))
-            if wrong is not None:
-                found += 1
-                sys.stdout.write(f"{name}: {wrong}\n")
-    sys.stdout.write(f"{count} texts in {time.process_time():.0f} s, {found} of them too slow\n")
-    sys.exit(bool(found))
-
-
-if __name__ == "__main__":
-    main()

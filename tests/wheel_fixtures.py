@@ -1,8 +1,8 @@
 """The wheel, and an installation of it: made once for all processes of a test run."""
 
-import fcntl
 import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,18 +30,14 @@ class Installation(NamedTuple):
 
 
 @pytest.fixture(scope="session")
-def build(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Path:
+def build(once: Callable[[str, Callable[[Path], None]], Path]) -> Path:
     """Folder with `source`, from which the wheel was built, the wheel in `dist`, and `installed`."""
-    base = tmp_path_factory.getbasetemp()
-    if os.environ.get("PYTEST_XDIST_WORKER"):
-        base = base.parent  # shared by all workers
-    folder = base / f"wheel-{testrun_uid}"
-    with (base / "wheel.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not folder.exists():
-            copy_source(folder / "source")
-            install(build_wheel(folder / "source", folder / "dist"), folder / "installed")
-    return folder
+
+    def make(folder: Path) -> None:
+        copy_source(folder / "source")
+        install(build_wheel(folder / "source", folder / "dist"), folder / "installed")
+
+    return once("wheel", make)
 
 
 @pytest.fixture(scope="session")

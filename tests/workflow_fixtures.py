@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import re
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -45,24 +44,16 @@ def rules_to_run(output: str) -> set[str]:
 
 
 @pytest.fixture(scope="session")
-def smoke_run(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Path:
-    """Folder in which the workflow ran with smoke.yaml; tests must not change it.
-
-    The first worker process of a test run that needs it runs the workflow; the others wait.
-    """
+def smoke_run(once: Callable[[str, Callable[[Path], None]], Path]) -> Path:
+    """Folder in which the workflow ran with smoke.yaml; tests must not change it."""
     if made := os.environ.get("ROCKING_SMOKE_RUN"):  # by the test run that started this one
         return Path(made)
-    base = tmp_path_factory.getbasetemp()
-    if os.environ.get("PYTEST_XDIST_WORKER"):
-        base = base.parent  # shared by all workers
-    directory = base / f"smoke-{testrun_uid}"
-    with (base / "smoke.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (base / "smoke.complete").exists():
-            finished = reproduce(directory)
-            assert finished.returncode == 0, finished.stdout
-            (base / "smoke.complete").touch()
-    return directory
+
+    def make(folder: Path) -> None:
+        finished = reproduce(folder)
+        assert finished.returncode == 0, finished.stdout
+
+    return once("smoke", make)
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import tempfile
 import urllib.request
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from threading import Lock
 
@@ -48,6 +48,9 @@ class Layers:
         self._kept = np.empty(shape, NODE), set(range(shape[0]))  # the nodes, and the angles that are not read
         self._read = read
         self._lock = Lock()
+
+    def __reduce__(self) -> tuple[type[Layers], tuple[tuple[int, ...], Callable[[int], Nodes]]]:
+        return Layers, (self._nodes.shape, self._read)  # a copy reads the nodes anew
 
     @property
     def nbytes(self) -> int:
@@ -123,7 +126,7 @@ def decode_slice(content: bytes, name: Path | str, path: Path, version: FileVers
     with open_checked(content, name) as cube:
         check_spectrum(cube, name)
         try:
-            return slice_of(cube, sha256_of(content), lambda angle: _layer_of_file(path, version, angle))
+            return slice_of(cube, sha256_of(content), partial(_layer_of_file, path, version))
         except InvalidArgumentError as error:
             raise DatasetError(f"{name}: {error}; build it again") from error
 
@@ -132,7 +135,7 @@ def _layer_of_file(path: Path, version: FileVersion | None, angle: int) -> Nodes
     """The nodes (n, m) of an angle, from a version of a file."""
     try:
         with open_netcdf(path) as cube:
-            found = _layer(cube.isel(alpha=[angle]))
+            found = _layer(cube, angle)
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         raise DatasetError(f"{path}: cannot be read: {error}") from error
     if version is None or version_of(path) != version:
@@ -155,7 +158,7 @@ def slice_of(cube: xr.Dataset, sha256: str = "", read: Callable[[int], Nodes] | 
     """A spectrum cube of at least four nodes along each axis; of a file its `sha256`, and `read` as of `Layers`."""
     restitution = restitution_of(cube)
     axes = {name: cube[name].values for name in AXES}
-    layers = Layers(cube["peak_rotation"].shape, read or (lambda angle: _layer(cube.isel(alpha=[angle]))))
+    layers = Layers(cube["peak_rotation"].shape, read or partial(_layer, cube))
     if read is None:
         layers.at(range(cube.sizes["alpha"]))
     return CubeSlice(
@@ -170,8 +173,9 @@ def slice_of(cube: xr.Dataset, sha256: str = "", read: Callable[[int], Nodes] | 
     )
 
 
-def _layer(cube: xr.Dataset) -> Nodes:
-    """The nodes (n, m) of a cube of one angle."""
+def _layer(cube: xr.Dataset, angle: int) -> Nodes:
+    """The nodes (n, m) of an angle of a cube."""
+    cube = cube.isel(alpha=[angle])
     nodes = np.empty(cube["peak_rotation"].shape, NODE)
     for name in [name for name in NODE.names or () if name in cube]:
         nodes[name] = cube[name].values

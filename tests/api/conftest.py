@@ -28,9 +28,12 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
 
 
 @pytest.fixture(scope="session")
-def results(tmp_path_factory):
+def results(once):
     """Two cubes, one set of boundary curves, and a suite of four made-up records, as the workflow writes them."""
-    folder = tmp_path_factory.mktemp("results")
+    return once("results", make_results)
+
+
+def make_results(folder):
     for pulse, eta in CUBES:
         cube = spectrum(
             pulse,
@@ -52,7 +55,6 @@ def results(tmp_path_factory):
     sensitivity = suite_sensitivity(motions, blocks, intensity=[4.0, 9.0])
     for name, dataset in (("outcomes", outcomes), ("fragility", fragility), ("sensitivity", sensitivity)):
         write_dataset(describe(dataset), folder / "suites" / "demonstration" / f"{name}.nc")
-    return folder
 
 
 @pytest.fixture(scope="session")

@@ -141,15 +141,6 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert {"name", "width", "height"} <= {*answer["columns"].values()}
 
 
-def test_names_that_a_spreadsheet_would_evaluate_are_text(client):
-    names = ["=1+1", "+1", "@SUM(A1)", "-2+3", 'say "no"', "two\nlines", "<script>"]
-    rows = [{"name": name, "width": 0.4, "height": 1.6} for name in names]
-    text = client.post(URL + "&format=csv", json=rows).text
-    found = [row["object"] for row in csv.DictReader(io.StringIO(text, newline=""))]
-    assert found == [*(f"'{name}" for name in names[:4]), *names[4:]]
-    assert [row["object"] for row in client.post(URL, json=rows).json()["rows"]] == names
-
-
 @pytest.mark.parametrize(
     ("query", "parameter"),
     [
@@ -213,11 +204,3 @@ def test_size_type_and_time_are_limited(client, results, monkeypatch):
     assert_problem(client.post(URL, content="<x/>", headers={"content-type": "application/xml"}), 415)
     with client_of(results, max_seconds=0.001) as hurried:
         assert hurried.post("/v1/assess?pga=3&period_min=0.1&period_max=2", json=ROWS).status_code in (503, 504)
-
-
-def test_the_baseline_of_records_is_removed_on_request(client):
-    a = np.sin(0.3 * np.arange(300)) + 0.5
-    body = {"objects": ROWS, "pga": 2.0, "records": [{"acceleration": a.tolist(), "time_step": 0.02, "name": "S1"}]}
-    named = [client.post("/v1/assess", json=body | more).json()["rows"] for more in ({}, {"baseline_order": 0})]
-    assert "S1: its mean of 0.5" in named[0][0]["warnings"]
-    assert "its mean" not in named[1][0]["warnings"]

@@ -13,7 +13,8 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.block import Block
 from rocking._history.time_history import time_history
 from rocking._solver.peak_response import peak_response
-from tests.api.conftest import assert_problem, client_of
+from tests.api.conftest import assert_problem
+from tests.sampling import but_long
 
 QUERY = {
     "width": 0.4,
@@ -74,19 +75,6 @@ def test_golden_thresholds_of_the_rigid_block(client):
     assert response["largest_surviving_acceleration"] == response["thresholds"][0]["peak_acceleration"]
 
 
-def test_a_block_that_overturns(client):
-    response = get_response(client, peak_acceleration=8.0).json()
-    assert response["overturned"]
-    assert response["peak_rotation_deg"] is response["top_displacement"] is None
-
-
-def test_a_weak_pulse_causes_no_uplift(client):
-    response = get_response(client, peak_acceleration=2.0, restitution=0.9).json()
-    assert response["response"]["outcome"] == "NO_UPLIFT"
-    assert response["peak_rotation_deg"] == 0.0
-    assert response["restitution"] == 0.9
-
-
 def test_friction_through_the_motion(client):
     response = get_response(client).json()
     block = Block(0.4, 1.6)
@@ -126,34 +114,6 @@ def test_warnings(client, changes, words, overturned):
     assert (response["friction_demand"] is None) is (words == "lifts off")
 
 
-@pytest.mark.parametrize(
-    ("changes", "parameter"),
-    [
-        ({"width": 0}, "width"),
-        ({"height": "nan"}, "height"),
-        ({"peak_acceleration": -1}, "peak_acceleration"),
-        ({"period": 0}, "period"),
-        ({"period": "inf"}, "period"),
-        ({"gravity": 0}, "gravity"),
-        ({"width": 200000.0}, "width"),
-        ({"pulse": "sinus"}, "pulse"),
-        ({"restitution": 1.5}, "restitution"),
-        ({"restitution": "bouncy"}, "restitution"),
-        ({"half_depth": 1.0}, "half_depth"),
-        ({"method": "cube"}, "restitution"),
-    ],
-)
-def test_bad_input(client, changes, parameter):
-    assert_problem(get_response(client, **changes), 422, parameter)
-
-
-@pytest.mark.parametrize("odd", ["bouncy", "", "nan", "Housner"])
-def test_a_restitution_may_be_housner_or_a_number(client, odd):
-    problem = assert_problem(get_response(client, restitution=odd), 422, "restitution")
-    assert "[0, 1]" in problem["allowed"]
-    assert odd == "nan" or "momentum" in problem["allowed"]
-
-
 def test_the_largest_surviving_acceleration_holds_for_this_size_only(client):
     """A block of 0.6 m x 2.4 m survives up to 0.496 g; under 0.45 g the same shape at 0.2 m x 0.8 m overturns."""
     query = {"period": 0.6, "peak_acceleration": 0.45 * STANDARD_GRAVITY}
@@ -164,13 +124,6 @@ def test_the_largest_surviving_acceleration_holds_for_this_size_only(client):
     assert small["largest_surviving_acceleration"] < 0.45 * STANDARD_GRAVITY < large["largest_surviving_acceleration"]
     said = client.get("/openapi.json").json()["components"]["schemas"]["BlockResponse"]["properties"]
     assert "this block, of this size" in said["largest_surviving_acceleration"]["description"]
-
-
-def test_the_largest_surviving_acceleration_comes_with_its_friction(client):
-    response = get_response(client).json()
-    just_below = get_response(client, peak_acceleration=response["largest_surviving_acceleration"] * (1 - 1e-9)).json()
-    assert not just_below["overturned"]
-    assert response["largest_surviving_friction_demand"] == pytest.approx(just_below["friction_demand"], rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -191,43 +144,11 @@ def test_the_meaning_starts_with_the_rocking_model_not_applying(client, changes,
     assert demand is None or (demand > 1 and f"{demand:.3g}" in response["meaning"])
 
 
-def test_no_acceleration_is_called_surviving_where_the_rocking_model_does_not_apply(client):
-    cube = {"width": 1.0, "height": 1.0, "peak_acceleration": 1.5 * STANDARD_GRAVITY}
-    response = get_response(client, **cube).json()
-    assert response["friction_demand"] == pytest.approx(17.9, abs=0.1)
-    assert response["thresholds"][0]["peak_acceleration"] == pytest.approx(5.67 * STANDARD_GRAVITY, rel=1e-3)
-    assert response["largest_surviving_acceleration"] is response["largest_surviving_friction_demand"] is None
-    assert any("no largest surviving acceleration" in warning for warning in response["warnings"])
-
-
-def test_a_squat_block_that_does_not_uplift_has_a_response(client):
-    """2 m x 1 m under 1.2 g: it uplifts from 2 g on, and no impact asks for the negative restitution of (2.4)."""
-    squat = {"width": 2.0, "height": 1.0}
-    response = get_response(client, **squat, peak_acceleration=1.2 * STANDARD_GRAVITY).json()
-    assert response["response"]["outcome"] == "NO_UPLIFT"
-    assert not response["overturned"]
-    assert response["uplift_acceleration"] == pytest.approx(2 * STANDARD_GRAVITY)
-    assert response["friction_demand"] == pytest.approx(1.2)
-    assert response["meaning"] == "never uplifts, but slides unless the coefficient of friction is at least 1.2"
-    assert get_response(client, **squat, peak_acceleration=5.0).json()["meaning"] == "never uplifts"
-
-
-def test_a_squat_block_that_uplifts_stops_at_an_impact(client):
-    squat = {"width": 2.0, "height": 1.0, "peak_acceleration": 2.1 * STANDARD_GRAVITY}
-    response = get_response(client, **squat).json()
-    assert response["response"]["impacts"] > 0
-    assert response["restitution"] == 0.0
-    assert any("negative (-0.2)" in warning and "eta = 0" in warning for warning in response["warnings"])
-    given = get_response(client, **squat, restitution=0.0).json()
-    assert given["peak_rotation_deg"] == response["peak_rotation_deg"]
-    assert not any("(2.4)" in warning for warning in given["warnings"])
-
-
 def overturned(client, **changes):
     return get_response(client, method="solver", **changes).json()["overturned"]
 
 
-@pytest.mark.parametrize("peak_acceleration", [4.0, 4.8, 13.5, 20.0])
+@pytest.mark.parametrize("peak_acceleration", but_long([4.0, 4.8, 13.5, 20.0], 4.0, 13.5))
 def test_margins_are_the_nearest_changes_of_outcome(client, peak_acceleration):
     margins = get_response(client, peak_acceleration=peak_acceleration).json()["margins"]
     here = overturned(client, peak_acceleration=peak_acceleration)
@@ -245,46 +166,9 @@ def test_margins_are_the_nearest_changes_of_outcome(client, peak_acceleration):
                 assert overturned(client, **start | {name: start[name] * factor ** (way * step)}) is here
 
 
-def test_sizes_of_the_shape_that_survive(client):
-    margins = get_response(client).json()["margins"]
-    block = Block(0.4, 1.6)
-
-    def overturns(half_diagonal):
-        scale = half_diagonal / block.half_diagonal
-        return overturned(client, width=0.4 * scale, height=1.6 * scale)
-
-    smallest, from_here_on = margins["smallest_surviving_half_diagonal"], margins["surviving_from_half_diagonal"]
-    assert overturns(smallest * (1 - 1e-9))
-    assert not overturns(smallest * (1 + 1e-9))
-    assert overturns(from_here_on * (1 - 1e-9))
-    assert not overturns(from_here_on * (1 + 1e-9))
-    assert not any(overturns(from_here_on * factor) for factor in (1.01, 2, 10, 50))
-    assert all(overturns(smallest / factor) for factor in (1.01, 2, 8))
-    assert any("larger ones overturn" in note for note in get_response(client).json()["notes"])
-    low, high = margins["sizes_searched"]
-    assert low == pytest.approx(block.half_diagonal / 100)
-    assert high == pytest.approx(block.half_diagonal * 100)
-
-
-def test_a_pulse_without_uplift_has_no_margin_in_period(client):
-    margins = get_response(client, peak_acceleration=2.0).json()["margins"]
-    assert margins["nearest_period"] is margins["period_factor"] is None
-    assert margins["smallest_surviving_half_diagonal"] == margins["surviving_from_half_diagonal"]
-    assert margins["nearest_acceleration"] > 2.0
-
-
 def test_the_url_repeats_the_request(client):
     response = get_response(client, pulse="-cosine", restitution=0.9, gravity=3.71).json()
     assert client.get(response["url"]).json() == response
-
-
-def test_a_change_of_outcome_close_in_period_is_a_warning(client):
-    response = get_response(client, period=0.55).json()
-    assert any("5 % of this period: at 0.5681 s" in warning for warning in response["warnings"])
-
-
-def test_a_response_outside_of_the_data_sets_has_a_note(client):
-    assert any("the solver was used" in note for note in get_response(client).json()["notes"])
 
 
 def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, monkeypatch):
@@ -299,17 +183,6 @@ def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, 
     assert [text for text in response["warnings"] if "not found in time" in text] == response["warnings"][-2:]
     for name in ("response", "peak_rotation_deg", "friction_demand"):
         assert response[name] == whole[name]
-
-
-def test_an_elastic_block_with_many_impacts_has_a_response(results, monkeypatch):
-    """A hundred thousand impacts for each amplitude that is looked at: seconds of work, a fifth of one is allowed."""
-    monkeypatch.setattr(blocks, "SEARCH_SHARE", 0.02)
-    needle = {"width": 0.0002, "height": 900.0, "pulse": "c1", "peak_acceleration": 1e-6, "period": 450.0}
-    with client_of(results, max_seconds=10.0) as client:
-        response = get_response(client, **needle).json()
-    assert response["response"]["outcome"] == "NO_UPLIFT"
-    assert response["thresholds"] is None
-    assert "the peak accelerations at which the outcome changes were not found in time" in response["warnings"][-1]
 
 
 ROWS = [
@@ -404,16 +277,6 @@ def test_names_come_out_as_they_went_in_but_for_formulas(client):
     assert [row["name"] for row in rows] == [*names[:4], *(f"'{name}" for name in names[4:])]
     assert {row["restitution"] for row in rows} == {"0.9"}
     assert client.post(url + "&format=json", content=sent.getvalue(), headers=headers).json()["name"] == names
-
-
-def test_types_of_a_body_and_of_the_response_are_those_that_are_offered(client):
-    url = "/v1/blocks/response?pulse=sine"
-    problem = assert_problem(client.post(url, content="<x/>", headers={"content-type": "application/xml"}), 415)
-    assert problem["allowed"] == "one of application/json, text/csv"
-    headers = {"content-type": "text/csv", "accept": "application/x-netcdf"}
-    assert client.post(url, content=TABLE, headers=headers).headers["content-type"].startswith("text/csv")
-    problem = assert_problem(client.post(url + "&format=nc", content=TABLE, headers=headers), 422, "format")
-    assert problem["allowed"] == "one of 'json' or 'csv'"
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,6 @@ from rocking_api.routers.response import get_response
 from starlette.requests import ClientDisconnect
 
 import rocking
-from rocking._base.errors import StoppedError
 from rocking._numba.cancellation import run_with_timeout
 from tests.api.conftest import assert_problem, client_of
 from tests.api.test_request_log import metrics_of
@@ -34,21 +33,6 @@ class Gate:
         self.begun.release()
         assert self.open.wait(30)
         return "done"
-
-
-def test_work_beyond_the_queue_limit_is_refused():
-    async def scenario():
-        executor, gate = BoundedExecutor(workers=1, queue=2, seconds=30), Gate()
-        tasks = [asyncio.create_task(executor.run(gate.work)) for _ in range(3)]
-        await asyncio.to_thread(gate.begun.acquire)
-        assert (executor.running, executor.waiting) == (1, 2)
-        with pytest.raises(BusyError):
-            await executor.run(gate.work)
-        gate.open.set()
-        assert await asyncio.gather(*tasks) == ["done"] * 3
-        assert (executor.running, executor.waiting) == (0, 0)
-
-    asyncio.run(scenario())
 
 
 def of_client(host):
@@ -273,27 +257,6 @@ def test_a_part_of_the_work_may_have_its_own_time_limit():
         return run_with_timeout(slow_search, 0.05, stop), run_with_timeout(lambda part: part.is_set(), 10.0, stop)
 
     assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
-
-
-def test_the_time_limit_of_the_whole_is_not_taken_for_that_of_a_part():
-    async def scenario():
-        ended = []
-
-        def work(stop):
-            try:
-                return run_with_timeout(slow_search, 30.0, stop)
-            except StoppedError:
-                ended.append("the whole")
-                raise
-
-        executor = BoundedExecutor(1, 0, 0.1)
-        with pytest.raises(TimeLimitError):
-            await executor.run(work)
-        while executor.running:
-            await asyncio.sleep(0.001)
-        return ended
-
-    assert asyncio.run(scenario()) == ["the whole"]
 
 
 def test_batches_in_chunks_are_equal(client, monkeypatch):

@@ -67,13 +67,6 @@ def test_a_statue_under_a_record_with_its_vertical_component(client):
     assert_problem(post(client, body, **given | {"offset": 0.25}), 422, "offset")
 
 
-def test_a_block_that_overturns_has_no_peak(client):
-    found = post(client, scale=3.0).json()
-    assert found["overturned"]
-    assert found["exceeded_alpha"]
-    assert found["peak_rotation"] is found["top_displacement"] is None
-
-
 def test_remarks_of_the_reader_are_in_the_response(client):
     body = at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)).encode()
     remark = "the file holds 100 samples, its header states 101"
@@ -166,20 +159,6 @@ def test_the_pulse_is_drawn_beside_the_record(client, motion):
     assert "unconservative" in found["caution"]
 
 
-def test_what_the_file_does_not_state_is_in_the_query(client, motion):
-    plain = "\n".join(map(repr, (100.0 * motion.acceleration).tolist())).encode()
-    found = post(client, plain, unit="cm/s2", time_step=0.005).json()
-    assert found["record"]["peak_acceleration"] == pytest.approx(motion.peak_acceleration)
-    problem = assert_problem(post(client, plain, time_step=0.005), 422, "record")
-    assert "unit" in problem["detail"]
-
-
-def test_baseline_is_removed_on_request_only(client):
-    plain, corrected = (post(client, **more).json()["record"] for more in ({}, {"baseline_order": 1}))
-    assert abs(corrected["final_velocity"]) < 0.5 * abs(plain["final_velocity"])
-    assert corrected["digest"] != plain["digest"]
-
-
 def test_a_damaged_file_is_explained_by_its_line(client):
     problem = assert_problem(post(client, DAMAGED, name="damaged.csv"), 422, "record")
     assert "damaged.csv, line 4: found what; expected a number" in problem["detail"]
@@ -229,14 +208,6 @@ def test_body_and_samples_are_limited(client, results):
     assert_problem(post(client, route="history", samples=10**6), 413, "samples")
 
 
-def test_openapi_describes_the_body(client):
-    paths = client.get("/openapi.json").json()["paths"]
-    for route in ("response", "history"):
-        operation = paths[f"/v1/records/{route}"]["post"]
-        assert "text/csv" in operation["requestBody"]["content"]
-        assert {"width", "height", "scale", "unit"} <= {p["name"] for p in operation["parameters"]}
-
-
 def both_columns(motion, share=0.5):
     a = motion.acceleration
     rows = np.stack([motion.times, a, share * np.roll(a, 5)], axis=1).tolist()
@@ -280,11 +251,3 @@ def test_errors_of_the_vertical_component_name_the_parameter(client, motion):
     assert_problem(post(client, body, route="scales", **columns, scale_max=5.0), 422, "scale_max")
     by_default = post(client, body, route="scales", **columns).json()
     assert by_default["scale"][-1] == pytest.approx(9.80665 / motion.acceleration.max())
-
-
-def test_leading_numbers_are_skipped_on_request(client):
-    body = (ROOT / "tests/data/field/factor_and_step_first.txt").read_bytes()
-    stated = {"unit": "g", "time_step": 0.01}
-    assert "`skip`: 2" in assert_problem(post(client, body, **stated), 422)["detail"]
-    assert post(client, body, **stated, skip=2).json()["record"]["samples"] == 40
-    assert_problem(post(client, body, **stated, skip=-1), 422)

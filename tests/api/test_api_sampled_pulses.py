@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import json
 import time
 
 import numpy as np
 import pytest
-import xarray as xr
 from rocking_api.models.pulses import MAX_BODY, MAX_SAMPLES
 from rocking_api.routers import overturning
 
@@ -95,20 +93,6 @@ def test_a_body_may_name_the_pulse(client, route):
     found = answer(client, route, pulse="-sine")
     assert found["query"]["pulse"] == "-sine"
     assert found["query"].get("pulse_digest") is None
-
-
-def test_a_period_beside_the_duration(client):
-    slow = rocking.SampledPulse(SAMPLES["acceleration"], SAMPLES["time"], 2.0, "ramp")
-    found = answer(client, "/v1/response", pulse=SAMPLES | {"period": 2.0})
-    assert found["query"]["pulse_digest"] == slow.digest
-    assert found["peak_rotation"] == [float(rocking.peak_response(slow, **GROUPS).peak_rotation)]
-
-
-def test_files_of_a_spectrum_name_the_pulse(client):
-    response = post(client, "/v1/spectrum", format="nc")
-    with xr.open_dataset(io.BytesIO(response.content), engine="scipy") as found:
-        assert (found.attrs["pulse"], found.attrs["pulse_digest"]) == ("ramp", RAMP.digest)
-    assert post(client, "/v1/map", format="csv").text.startswith("slenderness,frequency_ratio,")
 
 
 @pytest.mark.parametrize("route", BODIES)

@@ -11,7 +11,6 @@ from rocking_api import suite_reader
 import rocking
 from rocking._datasets.cube import read_dataset, write_dataset
 from rocking.suites.nrml import write_nrml
-from rocking.suites.summary import record_margins
 from tests.api.conftest import assert_problem, client_of
 from tests.suites.motions import noise
 
@@ -146,27 +145,6 @@ def test_unknown_and_damaged_suites_are_refused(client, own_results):
     with client_of(own_results) as own:
         assert_problem(own.get(NAME), 503)
         assert own.get("/v1/suites").json()["suites"] == []
-
-
-@pytest.mark.parametrize("name", ["pga", "frequency_ratio"])
-def test_margins_count_from_the_mildest_level(name):
-    overturned = np.array([[0, 1, 0, 1, 1]], dtype=np.int8)[..., None]  # (block, intensity, record)
-    scale = np.array([[1.0, 2.0, 3.0, 4.0, 5.0]])[..., None]
-    dims = ("block", "intensity", "record")
-    first, above = (1.9, 1) if name == "pga" else (5.1, 2)  # blocks of larger omega_p/p are larger and safer
-    outcomes = xr.Dataset(
-        {
-            "overturned": (dims, overturned),
-            "scale": (dims, scale),
-            "overturning_intensity": (("block", "record"), [[first]]),
-        },
-        {"intensity": [1.0, 2.0, 3.0, 4.0, 5.0], "record": ["a"]},
-        {"measure": name},
-    )
-    found = record_margins(outcomes).isel(block=0, record=0)
-    assert found["overturning_intensity"] == first
-    assert found["overturning_scale"] == (first if name == "pga" else 1.0)
-    assert found["levels_survived_above"] == above
 
 
 def test_fragility_as_nrml_is_that_of_the_library(client, files, tmp_path):

@@ -5,7 +5,6 @@ import time
 
 import numpy as np
 import pytest
-from rocking_api.http.errors import TooLargeError
 from rocking_api.models.batch import batch_of, parse_csv
 from rocking_api.models.params import LookupOptions
 from rocking_api.routers.response import MAX_JSON
@@ -69,13 +68,6 @@ def test_parsing_of_a_million_points_can_be_stopped():
     with pytest.raises(StoppedError):
         read(body, stopped)
     assert len(stopped.times) == 5
-
-
-def test_too_many_points_are_refused():
-    with pytest.raises(TooLargeError):
-        read(as_csv(columns(1001)), limit=1000)
-    with pytest.raises(TooLargeError):
-        batch_of(OPTIONS, {}, {"slenderness": [0.5] * 1001, "frequency_ratio": 1.0, "restitution": 1.0}, 1000)
 
 
 def post(client, body):

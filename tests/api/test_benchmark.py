@@ -9,7 +9,7 @@ import pytest
 from tests.api.servers import ROOT
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_benchmark_measures_a_worker(results, tmp_path):
     out = tmp_path / "service.json"
     few = ["--seconds", "1", "--connections", "4", "--points", "2000", "--json-points", "500", "--rounds", "1"]

@@ -9,31 +9,6 @@ from rocking_api.dataset_checker import DatasetChecker
 NAMES = ["spectra/sine/eta-0.80", "spectra/sine/eta-0.85", "spectra/sine/eta-0.90"]
 
 
-def test_data_sets_left_are_counted_one_by_one(monkeypatch):
-    monkeypatch.setattr("rocking_api.dataset_checker.MAX_WAIT", 0.05)
-    turn = Semaphore(0)
-
-    def problem(name):
-        turn.acquire()
-        return "damaged" if name == NAMES[1] else None
-
-    cubes = SimpleNamespace(
-        catalogue=SimpleNamespace(scan=lambda: (NAMES, {})), problem=problem, problems=lambda: {NAMES[1]: "damaged"}
-    )
-
-    async def counted():
-        inspection, seen = DatasetChecker(cubes), []
-        for left in (3, 2, 1, 0):
-            while (state := await inspection.state()).unchecked > left:
-                pass
-            seen.append((state.unchecked, dict(state.problems)))
-            turn.release()
-        return seen
-
-    nothing, damaged = {}, {NAMES[1]: "damaged"}
-    assert asyncio.run(asyncio.wait_for(counted(), 20)) == [(3, nothing), (2, nothing), (1, damaged), (0, damaged)]
-
-
 def test_the_state_follows_a_folder_that_is_replaced_during_a_check_or_without_requests(monkeypatch):
     monkeypatch.setattr("rocking_api.dataset_checker.MAX_WAIT", 0.05)
     monkeypatch.setattr("rocking_api.dataset_checker.WATCH_SECONDS", 0.01)

@@ -61,27 +61,6 @@ def test_an_unchanged_map_is_304(client):
     assert other.headers["etag"] != first.headers["etag"]
 
 
-@pytest.mark.parametrize(
-    ("change", "parameter"),
-    [
-        ({"pulse": "sin"}, "pulse"),
-        ({"restitution": 1.2}, "restitution"),
-        ({"alpha_deg": 95.0}, "alpha_deg"),
-        ({"frequency_ratio_min": 0.0}, "frequency_ratio_min"),
-        ({"frequency_ratio_max": 0.7}, "frequency_ratio_max"),
-        ({"slenderness_min": 0.0}, "slenderness_min"),
-        ({"slenderness_max": 0.1}, "slenderness_max"),
-        ({"slenderness_max": "inf"}, "slenderness_max"),
-        ({"rows": 1}, "rows"),
-        ({"columns": 2.5}, "columns"),
-        ({"colums": 7}, "colums"),
-        ({"format": "png"}, "format"),
-    ],
-)
-def test_an_invalid_window_is_explained(client, change, parameter):
-    assert_problem(client.get("/v1/map", params=QUERY | change), 422, parameter)
-
-
 def test_the_grid_is_bounded(tmp_path):
     with client_of(tmp_path, max_samples=200) as small:
         assert small.get("/v1/map", params=QUERY | {"columns": 20, "rows": 10}).status_code == 200

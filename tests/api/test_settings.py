@@ -5,7 +5,6 @@ import re
 from pathlib import Path
 
 import pytest
-from rocking_api.routers.control_map import MapParams
 from rocking_api.settings import Settings
 
 PAGE = (Path(__file__).parents[2] / "docs" / "service.md").read_text(encoding="utf-8")
@@ -24,8 +23,3 @@ def test_a_documented_default_is_the_default(name):
         assert documented == str(default)
     else:
         assert json.loads(documented) == (list(default) if isinstance(default, tuple) else default)
-
-
-def test_the_default_map_is_the_one_of_the_page():
-    fields = MapParams.model_fields
-    assert (fields["columns"].default, fields["rows"].default) == (120, 90)

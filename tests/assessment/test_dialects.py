@@ -1,8 +1,7 @@
-"""Random tables of known objects: no silent error, by file, by workbook and over HTTP. `make fuzz` tries more."""
+"""Random tables of known objects: no silent error, by file, by workbook and over HTTP. `make test-all` tries more."""
 
 from __future__ import annotations
 
-import os
 import random
 from pathlib import Path
 
@@ -12,10 +11,10 @@ from rocking._assessment.tables import SCHEMA, objects_of_csv, objects_of_text, 
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import csv_of_sheet
 from tests.assessment.dialects import Writer, errors_of
-from tests.sampling import SEED
+from tests.sampling import SEED, number
 from tests.sheets import xlsx_bytes
 
-CASES = 2 * int(os.environ.get("FUZZ_CASES", "75"))
+CASES = number(60, 11_000)
 
 
 def test_what_is_read_is_true_or_refused() -> None:

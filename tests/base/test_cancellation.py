@@ -11,12 +11,6 @@ from rocking._base.errors import StoppedError
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._history.motion import build_motion
 from rocking._numba.cancellation import StopFlag, run_with_timeout
-from rocking._numba.simd import LANES
-from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.peak_response import NO_EDGES, NO_FLIGHTS
-from rocking._solver.stages.batch import solve_by_arcs
-from rocking._solver.stages.state import stage_state
-from rocking._solver.state import RESPONSE_RECORD, block_cells, pulse_state, step_state
 from rocking._spectra.cubes import spectra
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
@@ -83,41 +77,6 @@ def test_work_ends_soon_after_cancellation(name):
     thread.join(30)
     assert ended, "it went on to its end"
     assert ended[0] - asked < SOON
-
-
-def test_a_kernel_reads_the_flag_within_one_cell():
-    """One block with 200,000 impacts: the load of the flag must not be moved out of the loop."""
-    for alpha in (0.0, 0.2):
-        for delay in (0.003, 0.006, 0.003, 0.006, 0.012):  # on a busy machine kernel or timer may start later
-            flag, answers = np.zeros(1, np.uint8), np.zeros(1, RESPONSE_RECORD)
-            pulse = pulse_state(rocking.pulse("c2")).copy()
-            states, steps = np.repeat(pulse, LANES), step_state(pulse)
-            cells = block_cells(*(np.array([x]) for x in (0.05, MANY[-1], 1.0, alpha)))
-            timer = threading.Timer(delay, flag.fill, [1])
-            timer.start()
-            solve_batch(cells, states, steps, flag, answers, NO_EDGES, NO_FLIGHTS)
-            timer.join()
-            reached = states[0]["impacts"]
-            if 0 < reached < 200_000:
-                break
-        assert 0 < reached < 200_000
-
-
-def test_the_stages_read_the_flag_within_one_block_of_cells():
-    """Two million cells, half a second: those after the flag was set have no response."""
-    s, pulse = np.linspace(0.02, 0.95, 2_000_000), rocking.pulse("c2")
-    w, eta, unknown = np.full(s.size, 3.0), np.full(s.size, 0.85), -2
-    for delay in (0.05, 0.02, 0.1, 0.2):  # on a busy machine kernel or timer may start later
-        flag, answers = np.zeros(1, np.uint8), np.zeros(s.size, RESPONSE_RECORD)
-        answers["outcome"] = unknown
-        timer = threading.Timer(delay, flag.fill, [1])
-        timer.start()
-        solve_by_arcs(s, w, eta, pulse_state(pulse).copy(), *stage_state(), flag, answers)
-        timer.join()
-        missing = np.count_nonzero(answers["outcome"] == unknown)
-        if 0 < missing < s.size:
-            break
-    assert 0 < missing < s.size
 
 
 def test_a_flag_set_in_advance_ends_the_work_at_once():

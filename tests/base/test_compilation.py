@@ -1,8 +1,6 @@
 """Compiled kernels: one signature for all arguments, equal results in every process."""
 
-import gc
 import math
-import operator
 import os
 import re
 import subprocess
@@ -26,7 +24,7 @@ from rocking._interpolation import kernel as lookup_kernel
 from rocking._interpolation import stencils as interpolation
 from rocking._lookup.cube import open_cube
 from rocking._numba import kernel_cache
-from rocking._numba.compilation import contiguous_array, entry, kernel, specialised_kernel
+from rocking._numba.compilation import entry, kernel
 from rocking._numba.way import INTERNALS
 from rocking._solver.kernels import batch as rock_many
 from rocking._solver.kernels.intervals import half_width
@@ -89,15 +87,6 @@ def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
         SinusoidalPulse("many", sine.start, sine.end, sine.stationary, sine.terms * (MAX_SINUSOIDS + 1))
 
 
-def test_contiguous_arrays_are_not_copied():
-    array = np.ones((3, 4))
-    assert contiguous_array(array) is array
-    for other in (array[:, ::2], array.T, np.broadcast_to(1.0, (3,)), read_only(1.0), *np.broadcast_arrays(1.0, array)):
-        made = contiguous_array(other)
-        assert made.flags.carray
-        np.testing.assert_array_equal(made, other)
-
-
 def script(code, **environment):
     """Output of a new process that runs some code."""
     run = subprocess.run(
@@ -106,7 +95,7 @@ def script(code, **environment):
     return run.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_compiling_process_and_cached_process_give_equal_bits(tmp_path):
     code = """
 import hashlib, numpy as np, rocking
@@ -127,41 +116,6 @@ print(sum(sum(one.stats.cache_misses.values()) for one in entries), digest.hexdi
     found = [script(code, NUMBA_CACHE_DIR=str(tmp_path)).split() for _ in range(2)]
     assert [misses for misses, _ in found] == ["2", "0"]
     assert found[0][1] == found[1][1]
-
-
-def test_constants_need_no_code_of_their_own_unless_a_kernel_is_specialised():
-    def power(x, n, inverse):
-        return x**-n if inverse else x**n
-
-    plain, special = kernel(power), specialised_kernel(power)
-
-    @numba.njit
-    def total(x):
-        return plain(x, 2, True) + plain(x, 3, False) + special(x, 2, True) + special(x, 3, False)
-
-    assert total(2.0) == 2.0 * (0.25 + 8.0)
-    assert len(plain.overloads) == 1
-    assert len(special.overloads) == 2
-
-
-def test_garbage_collection_goes_on_after_compilation():
-    @numba.njit(pipeline_class=INTERNALS._EntryCompiler)
-    def wrong(x):
-        return x + "text"
-
-    @numba.njit(pipeline_class=INTERNALS._EntryCompiler)
-    def right(x):
-        return x + 1.0
-
-    for collecting in (True, False):
-        (gc.enable if collecting else gc.disable)()
-        try:
-            with pytest.raises(numba.TypingError):
-                wrong(1.0 if collecting else 1)
-            right(1.0 if collecting else 1)
-            assert gc.isenabled() is collecting
-        finally:
-            gc.enable()
 
 
 def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypatch):
@@ -241,35 +195,6 @@ def test_only_the_cores_of_this_process_are_used():
     bind = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})"
     code = f"{bind}; import rocking._solver.peak_response; print(rocking._solver.peak_response.AVAILABLE_CORES)"
     assert script(code) == "1\n"
-
-
-@pytest.mark.skipif(INTERNALS is None, reason="of the faster way alone")
-def test_an_operation_is_looked_up_once_for_each_combination_of_types(monkeypatch):
-    looked_up = []
-    look_up = BaseFunction.get_call_type
-
-    def counted(self, context, args, kws):
-        looked_up.append((self.key[0], args))
-        return look_up(self, context, args, kws)
-
-    monkeypatch.setattr(BaseFunction, "get_call_type", counted)
-
-    @kernel
-    def twice(x):
-        return x + x
-
-    @kernel
-    def thrice(x):
-        return x + x + x
-
-    @entry
-    def product(x, n):
-        return twice(x) * thrice(x) * twice(n)
-
-    assert product(0.5, 3) == 9.0
-    sums = [args for key, args in looked_up if key is operator.add]
-    assert sorted(sums, key=str) == [(numba.float64,) * 2, (numba.int64,) * 2]
-    assert BaseFunction.get_call_type is counted  # as it was before
 
 
 @pytest.mark.skipif(INTERNALS is None, reason="of the faster way alone")

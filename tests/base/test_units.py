@@ -93,12 +93,6 @@ def test_quantities_in_groups_are_converted(name, quantity):
     assert 0.0 < expected == pytest.approx(found, rel=1e-12)
 
 
-def test_the_percentage_of_the_report():
-    arguments = {"frequency_ratio": 5.0, "restitution": 0.9}
-    found = rocking.peak_response("sine", slenderness=QUANTITY(40.0, "percent"), **arguments)
-    assert found.peak_rotation == rocking.peak_response("sine", slenderness=0.4, **arguments).peak_rotation > 0.5
-
-
 @pytest.mark.parametrize(
     "angles",
     [QUANTITY([10.0, 20.0], "degree"), [QUANTITY(10.0, "degree"), math.radians(20.0)],
@@ -228,31 +222,6 @@ def test_a_bare_acceleration_that_looks_like_g_gives_a_warning(peak, warned):
     if warned:
         assert texts[0].startswith(f"peak_acceleration = {float(peak):.4g} m/s2 is below the uplift acceleration 2.452")
         assert texts[0].endswith(f"write '{float(peak):.4g} g'")
-
-
-@pytest.mark.parametrize(
-    ("text", "unit", "value"),
-    [
-        ("0.3m", "m", 0.3),
-        ("30 cm", "m", 0.3),
-        ("12 inch", "m", 0.3048),
-        ("0.4g", "m/s2", 0.4 * 9.80665),
-        ("0.4 g", "m/s2", 0.4 * 9.80665),
-        ("4 m/s2", "m/s2", 4.0),
-        ("4 m/s^2", "m/s2", 4.0),
-        ("400 cm/s**2", "m/s2", 4.0),
-        ("400 gal", "m/s2", 4.0),
-        ("400Gal", "m/s2", 4.0),
-        ("500 ms", "s", 0.5),
-        ("500 milliseconds", "s", 0.5),
-        ("500 \u00b5s", "s", 5e-4),
-        ("500 microseconds", "s", 5e-4),
-        ("20 deg", "rad", math.radians(20)),
-        ("0.2 rad", "rad", 0.2),
-    ],
-)
-def test_units(text, unit, value):
-    assert si_value("x", text, unit) == pytest.approx(value, rel=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import rocking
-from benchmarks.accuracy.shaking_table import main, read_outcomes, read_tests
-from tests.sheets import xlsx_bytes
+from benchmarks.accuracy.shaking_table import main, read_tests
 
 BLOCK = rocking.Block.from_slenderness_angle(0.12, 0.4)
 RATE = 800
@@ -38,13 +37,6 @@ def test_motions_are_in_si_units_without_the_offset(folder):
     assert abs(motions[-1].final_velocity) < 0.3  # an offset of 0.02 g would give 1 m/s
     assert outcomes[1, "measured"].any()
     assert not outcomes[1, "KN=1 KS=1"].any()
-
-
-def test_outcomes_are_read_from_a_sheet_as_from_text(folder, tmp_path):
-    header, *rows = ((folder / "Results_Granite.csv").read_text()).splitlines()
-    cells = [header.split(","), *([float(cell) for cell in row.split(",")] for row in rows)]
-    (tmp_path / "Results_Granite.xlsx").write_bytes(xlsx_bytes(cells))
-    assert read_outcomes(tmp_path).equals(read_outcomes(folder))
 
 
 def test_the_report_and_the_picture(folder, tmp_path, capsys):

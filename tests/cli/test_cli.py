@@ -62,20 +62,6 @@ def test_response_in_three_formats():
     assert f"{float(expected.peak_rotation):.9g}" in text
 
 
-def test_response_with_units_is_that_of_the_rigid_block():
-    block = Block(0.4, 1.6)
-    expected = peak_response(
-        "sine",
-        slenderness=block.uplift_acceleration / 4.0,
-        frequency_ratio=4 * math.pi / block.frequency_parameter,
-        restitution=block.momentum_restitution,
-        alpha=block.alpha,
-    )
-    result = json.loads(run("response", *UNITS, "--format=json"))
-    assert result["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-9)
-    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.peak_rotation * block.alpha), rel=1e-9)
-
-
 def test_alpha_is_an_angle_with_a_unit():
     degrees = run("response", *GROUPS, "--alpha", "20 deg", "--format=json")
     expected = peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85, alpha=math.radians(20))
@@ -184,16 +170,6 @@ def test_a_body_whose_mass_is_not_in_the_middle():
     assert history["friction_demand"] == moved["friction_demand"].values.tolist()
     header = run("history", *options, "--samples=5", "--format=csv").splitlines()[0]
     assert header.startswith("time [ms],rotation_deg [deg]")
-
-
-def test_an_offset_of_zero_is_the_block_and_a_mirrored_one_exchanges_the_edges():
-    assert run("response", *UNITS, "--offset=0cm") == run("response", *UNITS)
-    left, right = (
-        json.loads(run("response", "--pulse", pulse, *UNITS[2:], "--offset", offset, "--format=json"))
-        for pulse, offset in (("sine", "-3cm"), ("-sine", "3cm"))
-    )
-    assert {left["edge"], right["edge"]} == {"left", "right"}
-    assert left["rotation_left_deg"] == pytest.approx(right["rotation_right_deg"], rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -25,14 +25,6 @@ def test_three_formats_hold_the_fit(file):
     assert "alpha [rad]" in run("identify", str(file))
 
 
-def test_degrees(file):
-    time, rotation = trace()
-    np.savetxt(file, np.column_stack([time, np.degrees(rotation)]), delimiter=",")
-    found = json.loads(run("identify", str(file), "--format=json", "--degrees"))
-    assert found["alpha"] == pytest.approx([0.25], rel=1e-3)
-    assert "degrees" in refused("identify", str(file))
-
-
 def test_units_of_the_header(file):
     time, rotation = trace()
     columns = np.column_stack([1000.0 * time, np.degrees(rotation)])

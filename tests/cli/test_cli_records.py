@@ -237,12 +237,6 @@ def test_unreadable_configuration_is_refused(name, text, tmp_path):
     assert "missing.yaml" in refused("fragility", "missing.yaml")
 
 
-def test_sizes_in_any_unit_are_the_same():
-    other = json.loads(run("record", NAPA, "--width", "50 cm", "--height", "2m", "--format=json"))
-    assert other == json.loads(run("record", NAPA, *SIZES, "--format=json"))
-    assert "--width" in refused("record", NAPA, "--height", "2m")
-
-
 def test_remarks_of_a_suite_are_warnings(small, tmp_path):
     folder = tmp_path / "motions"
     folder.mkdir()
@@ -296,25 +290,3 @@ def test_errors_of_the_vertical_component_name_the_option():
     said = refused("record", NAPA, *SIZES, "--vertical", up, "--scale", "4")
     assert "--scale" in said
     assert "-g at " in said
-
-
-def test_a_suite_names_the_column_of_the_vertical_component(small, tmp_path):
-    folder = tmp_path / "motions"
-    folder.mkdir()
-    for name, shift in (("a", 3), ("b", 9)):
-        motion = rocking.read_record(NAPA)
-        up = 0.5 * np.roll(motion.acceleration, shift)
-        rows = np.stack([motion.times, motion.acceleration, up], axis=1).tolist()
-        text = "".join(f"{t:.3f},{a!r},{w!r}\n" for t, a, w in rows)
-        (folder / f"{name}.csv").write_text("t,h_m/s2,up_m/s2\n" + text)
-    given = json.loads(small.read_text())
-    given["records"] |= {"folder": str(folder), "pattern": "*.csv", "component": "h", "vertical": "up"}
-    records = suite_configuration(given, tmp_path).motions()
-    assert [record.name for record in records] == ["a", "b"]
-    np.testing.assert_allclose(records[1].vertical, 0.5 * np.roll(records[1].acceleration, 9), rtol=1e-12)
-    path = tmp_path / "suite.json"
-    path.write_text(json.dumps(given))
-    with_vertical = json.loads(run("fragility", str(path), "--format=json"))
-    given["records"] |= {"vertical": None}
-    path.write_text(json.dumps(given))
-    assert with_vertical != json.loads(run("fragility", str(path), "--format=json"))

@@ -4,15 +4,11 @@ import math
 import pickle
 
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional import response
-from rocking._dimensional.problem import Problem, frequency_ratio_of, period_of
-from rocking._model.block import STANDARD_GRAVITY
 from rocking._model.outcome import Outcome
 
 BLOCK = rocking.Block(width=0.4, height=1.6)
@@ -83,15 +79,6 @@ def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
         block.thresholds(made, **({"period": 0.5} if by_record else {}))
 
 
-@pytest.mark.parametrize("motion", ["sine", "record"])
-def test_what_is_not_to_be_searched_is_not(motion, monkeypatch):
-    monkeypatch.setattr(response, "block_thresholds", None)  # a search fails
-    given = {"motion": RECORD} if motion == "record" else {"motion": motion, **MOTION}
-    found = BLOCK.response(**given, thresholds=False)
-    assert (found.thresholds, found.margins, found.margin) == (None, None, None)
-    assert not any("not found" in text for text in found.warnings)
-
-
 def test_margins_and_responses_as_text_and_tables():
     found = BLOCK.response("sine", **MOTION)
     assert repr(found.margins).startswith("<rocking.Margins: acceleration 4.7 m/s2, period 0.5")
@@ -105,22 +92,6 @@ def test_margins_and_responses_as_text_and_tables():
     none = BLOCK.response("sine", peak_acceleration=1e-3, period=0.01).margins
     assert none.to_pandas().isna()["nearest_period"]
     assert "period not found" in repr(none)
-
-
-def test_restitution_is_a_number_or_that_of_the_shape():
-    elastic = BLOCK.response("sine", **MOTION, restitution=0.95)
-    expected = rocking.peak_response("sine", **groups(restitution=0.95))
-    assert elastic.peak_rotation == pytest.approx(float(expected.peak_rotation), rel=1e-12)
-    squat = rocking.Block(2.0, 1.0).response("sine", peak_acceleration=2.5 * STANDARD_GRAVITY, period=0.5)
-    assert squat.problem.groups["restitution"] == 0.0
-    assert any("negative" in text for text in squat.warnings)
-
-
-def test_overturning_has_no_rotation():
-    found = BLOCK.response("sine", peak_acceleration=8.0, period=0.5)
-    assert math.isnan(found.rotation)
-    assert math.isnan(found.displacement)
-    assert repr(found).startswith("<rocking.BodyResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m")
 
 
 def test_text_forms():
@@ -203,13 +174,6 @@ def test_spectrum_over_the_size_is_that_of_each_block():
     assert float(found["displacement"][0]) == pytest.approx(half.displacement, rel=1e-12)
 
 
-@pytest.mark.parametrize("wrong", ["sinus", ["sine", "cosine"], None])
-def test_what_is_no_pulse_is_refused(wrong):
-    for call in (BLOCK.response, BLOCK.history):
-        with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
-            call(wrong, **MOTION)
-
-
 def test_history_is_that_of_the_groups_in_si_units():
     found = BLOCK.history("sine", **MOTION, samples=50, contact=True)
     expected = rocking.time_history("sine", **groups(), samples=50, contact=True)
@@ -254,12 +218,6 @@ def test_history_under_a_record_is_that_of_the_groups_in_si_units():
         BLOCK.history(motion, scale=0.0)
 
 
-def test_duration_of_a_history_is_in_seconds():
-    assert float(BLOCK.history("sine", **MOTION, duration=1.5)["time"][-1]) == pytest.approx(1.5)
-    with pytest.raises(InvalidArgumentError, match=r"^`duration` = "):
-        BLOCK.history("sine", **MOTION, duration=0.0)
-
-
 def test_spectrum_is_the_response_at_each_period():
     found = BLOCK.spectrum("sine", peak_acceleration=4.0, period=[0.3, 0.5, 1.0])
     each = [BLOCK.response("sine", peak_acceleration=4.0, period=period) for period in (0.3, 0.5, 1.0)]
@@ -287,25 +245,6 @@ def test_outcome_changes_across_the_boundary():
             BLOCK.boundary("sine", period=wrong)
 
 
-def test_periods_and_frequency_ratios():
-    problem = Problem.of(BLOCK, "sine", 4.0, 0.5)
-    omega = frequency_ratio_of(BLOCK, 0.5)
-    assert omega == pytest.approx(problem.groups["frequency_ratio"], rel=1e-14)
-    assert period_of(BLOCK, omega) == pytest.approx(0.5, rel=1e-14)
-
-
-def test_dimensionless_response_as_a_table():
-    found = rocking.peak_response("sine", slenderness=[0.4, 0.2], frequency_ratio=5.0, restitution=0.85)
-    table = found.to_pandas()
-    assert isinstance(table, pd.DataFrame)
-    assert table.index.tolist() == [0.4, 0.2]
-    assert table["peak_rotation"].iloc[0] == found.peak_rotation[0]
-    assert table["overturned"].tolist() == [False, True]
-    single = rocking.peak_response("sine", slenderness=0.4, frequency_ratio=5.0, restitution=0.85)
-    assert len(single.to_pandas()) == 1
-    assert "rocks and comes to rest" in single._repr_html_()
-
-
 def test_a_record_with_a_scale_is_solved_in_groups():
     block = rocking.Block(width=0.4, height=1.6)
     found = block.response(RECORD, scale=0.55)
@@ -328,13 +267,6 @@ def test_a_record_with_a_scale_is_solved_in_groups():
     assert data.attrs["record"] == found.to_pandas()["record"] == "made up"
     assert found.to_pandas()["outcome"] == "RECOVERS"
     assert "<td>peak rotation max |theta|</td>" in found._repr_html_()
-
-
-def test_a_record_at_a_large_scale_overturns_and_has_thresholds():
-    found = rocking.Block(width=0.4, height=1.6).response(RECORD, scale=4.0, thresholds=True)
-    assert found.overturned
-    assert math.isnan(found.rotation)
-    assert found.thresholds.value[0] < 4.0
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,6 @@
 """Equivalent blocks: the same motion as the structure, by its own Lagrange equation, and accepted like a block."""
 
-import doctest
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,15 +12,6 @@ from rocking._model.linkage import VelocityField, restitution_of_impact
 
 COLUMN = rocking.Block(width=0.6, height=4.0)
 ARCH = {"radius": 10.0, "thickness": 1.5, "embrace": math.radians(157.5), "voussoirs": 7}
-
-
-PAGE = Path(__file__).parents[2] / "docs/equivalent-blocks.md"
-
-
-def test_examples_of_the_page():
-    found = doctest.testfile(str(PAGE), module_relative=False)
-    assert found.attempted > 5
-    assert found.failed == 0
 
 
 def frame_of(mass_ratio):
@@ -117,12 +106,6 @@ def test_restitution_of_a_frame_by_conservation_of_momentum(mass_ratio):
     )
 
 
-def test_a_beam_makes_columns_safer():
-    ground = {"peak_acceleration": 3.0, "period": 1.0}
-    alone = COLUMN.response("sine", **ground).thresholds[0].value
-    assert frame_of(2.0).response("sine", **ground).thresholds[0].value > alone  # Makris & Vassiliou (2013)
-
-
 def test_a_linear_mechanism_is_a_slender_block():
     wanted = rocking.peak_response("cosine", slenderness=0.4, frequency_ratio=9.0, restitution=0.9)
     mass, p, alpha, uplift = 5.0, 2.5, 0.2, 1.7
@@ -174,13 +157,6 @@ def test_it_is_accepted_wherever_a_block_is():
     levels = [0.9 * frame.uplift_acceleration, 20.0 * frame.uplift_acceleration]
     outcomes = rocking.fragility(record, frame, intensity=levels, measure="pga")
     assert outcomes["overturned"].values.ravel().tolist() == [False, True]
-
-
-def test_equal_structures_are_equal():
-    assert frame_of(0.5) == frame_of(0.5)
-    assert hash(frame_of(0.5)) == hash(frame_of(0.5))
-    assert frame_of(0.5) != frame_of(0.6)
-    assert eval(repr(frame_of(0.5)), {"EquivalentBlock": rocking.EquivalentBlock}) == frame_of(0.5)
 
 
 @pytest.mark.parametrize(

@@ -22,46 +22,15 @@ from rocking._excitation.records.readers.lines import TextFile
 from rocking._excitation.records.readers.read_record import parse_record
 
 TIMES = [
-    "time",
-    "Time",
-    "t",
-    "Zeit",
-    "temps",
-    "tempo",
-    "tiempo",
-    "Elapsed time",
-    "TIME",
-    "rel. time",
-    "Time since trigger",
-]
+    "time", "Time", "t", "Zeit", "temps", "tempo", "tiempo", "Elapsed time", "TIME", "rel. time", "Time since trigger",
+]  # fmt: skip
 SAMPLES = [
-    "acc",
-    "a",
-    "acceleration",
-    "Accel",
-    "Beschleunigung",
-    "aceleración",
-    "accélération",
-    "acc_NS",
-    "ag",
-    "Acc. X",
-]
+    "acc", "a", "acceleration", "Accel", "Beschleunigung", "aceleración", "accélération", "acc_NS", "ag", "Acc. X",
+]  # fmt: skip
 OTHERS = ["NS", "EW", "UD", "N-S", "E-W", "U-D", "H1", "H2", "V", "acc EW", "Chan 2", "x", "y"]
 COUNTERS = [
-    "frame",
-    "index",
-    "sample #",
-    "Frame no",
-    "no",
-    "n",
-    "Sample",
-    "i",
-    "#",
-    "Point",
-    "Messwert Nr",
-    "idx",
-    "Bild",
-]
+    "frame", "index", "sample #", "Frame no", "no", "n", "Sample", "i", "#", "Point", "Messwert Nr", "idx", "Bild",
+]  # fmt: skip
 ROTATIONS = ["rotation", "theta", "angle", "Winkel", "rotazione", "θ"]
 TITLES = [
     "Made-up shock, scaled to 0.4 g", "The (XX) shock of May 3, 2001", "Station 12; north, 45 deg", "Run 7\tblock B",
@@ -117,16 +86,9 @@ def make(dice: random.Random) -> Case:
     rng = np.random.default_rng(dice.randrange(2**32))
     unit = dice.choice(["deg", "rad", "mrad"]) if trace else dice.choice(list(SPELLINGS))
     size = {
-        "g": 0.3,
-        "gal": 200.0,
-        "cm/s2": 200.0,
-        "m/s2": 3.0,
-        "mg": 300.0,
-        "%g": 30.0,
-        "deg": 6.0,
-        "rad": 0.1,
+        "g": 0.3, "gal": 200.0, "cm/s2": 200.0, "m/s2": 3.0, "mg": 300.0, "%g": 30.0, "deg": 6.0, "rad": 0.1,
         "mrad": 90.0,
-    }
+    }  # fmt: skip
     k = np.arange(n)
 
     def motion() -> np.ndarray:

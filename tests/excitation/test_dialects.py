@@ -1,13 +1,11 @@
 """Random layouts of files of records and traces: what is read is the truth, or it is refused with the reason."""
 
-import os
-
 import pytest
 
 from tests.excitation.dialects import run
-from tests.sampling import SEED
+from tests.sampling import SEED, number
 
-CASES = 10_000 if os.environ.get("FUZZ_ALL") == "1" else 150
+CASES = number(100, 10_000)
 
 
 @pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds

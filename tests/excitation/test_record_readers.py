@@ -20,10 +20,6 @@ from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS,
 from tests.excitation.record_fuzzer import fuzz
 
 
-def test_there_are_at_least_sixty_files() -> None:
-    assert len(GOOD) + len(ODD) + len(DAMAGED) >= 60
-
-
 @pytest.mark.parametrize("file", [*GOOD.values(), *ODD.values()], ids=[*GOOD, *ODD])
 def test_good_and_odd_files_are_read(file: File, tmp_path) -> None:
     path = tmp_path / "motion.dat"  # the suffix says nothing
@@ -145,12 +141,6 @@ def test_seismic_formats_without_obspy_name_the_package(monkeypatch) -> None:
         parse_record(sac.tobytes(), "x.sac", unit="g")
 
 
-def test_the_south_napa_record_is_read() -> None:
-    record = rocking.read_record("workflow/motions/napa_HNE.csv")
-    assert (record.samples, record.time_step) == (6997, 0.005)
-    assert record.peak_acceleration == pytest.approx(3.656, abs=2e-3)
-
-
 def test_mutated_files_are_read_or_refused() -> None:
     """A few seconds; `python -m tests.excitation.record_fuzzer --seconds 3600` runs longer."""
     dice = random.Random(0)
@@ -170,13 +160,6 @@ def test_the_vertical_component_of_a_second_file(tmp_path) -> None:
     assert found.name == horizontal.name
     assert found.source == f"{horizontal.source}; vertical: up, up.csv (columns)"
     assert found == rocking.read_record(paths[0], vertical=str(paths[1]))
-
-
-def test_remarks_of_both_files_are_kept(tmp_path) -> None:
-    path = tmp_path / "h.at2"
-    path.write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
-    (remark,) = rocking.read_record(path).remarks
-    assert rocking.read_record(path, vertical=path).remarks == (remark, f"vertical component: {remark}")
 
 
 @pytest.mark.parametrize(("count", "done"), [(95, "continued by zeros"), (104, "cut")])
@@ -225,11 +208,6 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
     path.write_text(at2())
     with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):
         rocking.read_record(path, vertical="up")
-
-
-def test_titles_and_names_of_times_without_a_unit_are_no_units() -> None:
-    for name in ("Time (s)", "T[sec]", "time", "t", "Zeit", "time sec.", "time since trigger", "Elapsed time [s]"):
-        assert parse_record(f"{name},a [g]\n0,1\n0.5,2\n1,3\n".encode(), "f").time_step == 0.5, name
 
 
 @pytest.mark.parametrize(

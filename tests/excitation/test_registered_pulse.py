@@ -13,7 +13,7 @@ import rocking
 from rocking import precompile
 from rocking._base.errors import DatasetError, InvalidArgumentError
 from rocking._cli.app import app
-from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._datasets.cube import write_dataset
 from rocking._excitation import pulses
 from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
 from rocking._lookup.collection import CubeCollection
@@ -68,49 +68,6 @@ def test_response_is_that_of_direct_integration(pulse):
     assert float(found.end_rotation) == pytest.approx(abs(motion.rotation), abs=1e-8)
     mirrored = rocking.peak_response("-three_sines", **GROUPS)
     np.testing.assert_array_equal(mirrored.peak_rotation, found.peak_rotation)
-
-
-@pytest.mark.usefixtures("pulse")
-def test_rigid_block_tends_to_the_slender_one():
-    slender, rigid = (rocking.peak_response("three_sines", **GROUPS, alpha=alpha) for alpha in (None, 1e-6))
-    assert float(rigid.peak_rotation) == pytest.approx(float(slender.peak_rotation), rel=1e-9)
-
-
-@pytest.mark.usefixtures("pulse")
-def test_history_and_boundary():
-    found = rocking.peak_response("three_sines", **GROUPS)
-    history = rocking.time_history("three_sines", **GROUPS, contact=True)
-    assert float(abs(history.rotation).max()) == pytest.approx(float(found.peak_rotation), rel=1e-3)
-    amplitude = {name: value for name, value in GROUPS.items() if name != "slenderness"}
-    threshold = 1.0 / rocking.thresholds("three_sines", **amplitude).amplitude[0]
-    sides = rocking.peak_response("three_sines", **amplitude, slenderness=threshold * np.array([1 + 1e-9, 1 - 1e-9]))
-    assert sides.overturned.tolist() == [False, True]
-    assert rocking.overturning_boundary("three_sines", restitution=0.85, nodes=31).sizes["curve"] > 0
-
-
-@pytest.mark.usefixtures("pulse")
-def test_cube_and_http_response(tmp_path):
-    axes = {"slenderness": np.linspace(0.55, 0.65, 21), "frequency_ratio": np.geomspace(2.8, 3.2, 21)}
-    path = tmp_path / "spectra" / "three_sines" / "eta-0.85.nc"
-    write_dataset(spectrum("three_sines", restitution=0.85, **axes), path)
-    stored = read_spectrum(path)
-    assert int(stored["pulse"]) == -1
-    assert stored["pulse"].attrs["pulse_name"] == "three_sines"
-    solved = float(rocking.peak_response("three_sines", **GROUPS).peak_rotation)
-    interpolated = open_cube(path).response(**GROUPS, absolute_tolerance=1e-2)
-    assert abs(float(interpolated.peak_rotation) - solved) <= float(interpolated.error_bound)
-    precompile.main()  # the service refuses requests while it compiles
-    with TestClient(create_app(Settings(results=tmp_path))) as client:
-        for method in ("solver", "auto"):
-            response = client.get("/v1/response", params=GROUPS | {"pulse": "three_sines", "method": method})
-            assert response.status_code == 200, response.text
-            assert response.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)
-        (parameter,) = (
-            one
-            for one in client.get("/openapi.json").json()["paths"]["/v1/response"]["get"]["parameters"]
-            if one["name"] == "pulse"
-        )
-        assert {"sine", "-sine", "three_sines", "-three_sines"} <= set(parameter["schema"]["anyOf"][0]["enum"])
 
 
 def test_names_that_cannot_be_registered(pulse, monkeypatch):

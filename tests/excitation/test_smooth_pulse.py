@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-import rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation import smooth
-from rocking._excitation.polynomials import DEGREE, MAX_POLYNOMIALS, turning_points
+from rocking._excitation.polynomials import DEGREE, MAX_POLYNOMIALS
 from rocking._excitation.shapes import MAX_PIECES
 from rocking._excitation.smooth import SmoothPulse
 
@@ -81,14 +80,6 @@ def test_extremes_are_those_of_the_function():
     assert float(np.abs(CHIRP.acceleration(CHIRP.stationary)).max()) == 1.0
 
 
-def test_turning_points_ignore_small_changes():
-    assert turning_points(np.array([0.0, 1.0, 0.0, 1.0]), 0.5) == [1, 2]
-    assert turning_points(np.array([0.0, 1.0, 0.9, 1.1, 0.0]), 0.5) == [3]
-    assert turning_points(np.array([0.1, 0.0, 0.1, 1.0, 0.9, 0.0]), 0.5) == [3]
-    assert turning_points(np.array([0.0, 0.1, -1.0]), 0.5) == []
-    assert turning_points(np.array([1.0, 1.0, 1.0]), 0.5) == []
-
-
 @pytest.mark.parametrize(
     ("function", "message"),
     [
@@ -139,12 +130,6 @@ def test_equality_and_mirror_image():
     assert CHIRP.shape(1.0).shape == ()
     # curves that differ in what is no field of the pulse are different pulses
     assert Given("given", 0.0, 1.0, np.sin).digest != Given("given", 0.0, 1.0, np.cos).digest
-
-
-def test_a_class_without_curve_is_no_pulse():
-    with pytest.raises(TypeError, match="curve"):
-        SmoothPulse("none", 0.0, 1.0)
-    assert rocking.pulse("sine").stationary == (math.pi / 2, 3 * math.pi / 2)
 
 
 def test_the_example_of_the_docstring():

@@ -96,22 +96,6 @@ def test_history_and_response_agree(name, alpha):
             assert np.abs(y).max() >= found.peak_rotation * (1 - 1e-3)
 
 
-@pytest.mark.parametrize("alpha", [None, 0.2])
-def test_ground_acceleration_is_the_pulse(alpha):
-    for name in SIGNED:
-        history = rocking.time_history(name, slenderness=0.5, frequency_ratio=2.0, restitution=0.9, alpha=alpha)
-        pulse = rocking.pulse(name)
-        inside = history.tau.values <= history.pulse_end
-        np.testing.assert_allclose(
-            history.ground_acceleration.values[inside],
-            2.0 * pulse.shape(pulse.start + 2.0 * history.tau.values[inside]),
-            rtol=1e-12,
-            atol=1e-12,
-        )
-        after = history.tau.values > history.pulse_end * (1 + 1e-12)
-        assert (history.ground_acceleration.values[after] == 0).all()
-
-
 def test_duration_and_samples():
     question = {"slenderness": 0.7, "frequency_ratio": 4.0, "restitution": 0.9}
     short = rocking.time_history("sine", **question, duration=1.0, samples=11)

@@ -143,14 +143,6 @@ def test_extreme_arguments_give_numbers(alpha):
                 assert math.isfinite(history.smallest_normal_reaction)
 
 
-def test_contact_forces_are_computed_on_request_only():
-    question = QUESTIONS[0] | {"alpha": 0.3}
-    plain, full = (rocking.time_history("sine", **question, contact=contact) for contact in (False, True))
-    assert "friction_demand" not in plain
-    assert "warnings" not in plain.attrs
-    xr.testing.assert_equal(plain, full[list(plain)])
-
-
 def test_a_motion_of_any_length_is_sampled_a_bounded_number_of_times():
     # an elastic block that almost overturns: 10,000 impacts, each of which takes several units of tau
     question = {"frequency_ratio": 5.0, "restitution": 1.0, "alpha": 0.2}

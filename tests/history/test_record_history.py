@@ -106,14 +106,6 @@ def test_impacts_reduce_the_velocity_by_the_restitution() -> None:
         assert float(history.rotation.sel(time=time)) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_tiny_angle_gives_the_slender_history() -> None:
-    slender = rocking.time_history(MOTION, **BLOCK)
-    rigid = rocking.time_history(MOTION, **BLOCK, alpha=1e-7, samples=None)
-    common = np.intersect1d(slender.time.values, rigid.time.values)
-    assert common.size > 6000
-    np.testing.assert_allclose(slender.rotation.sel(time=common), rigid.rotation.sel(time=common), atol=1e-9)
-
-
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_an_overturning_block_is_followed_until_it_has_fallen(alpha: float | None) -> None:
     history = rocking.time_history(MOTION, **(BLOCK | {"slenderness": 0.2}), alpha=alpha)

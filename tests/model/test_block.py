@@ -88,8 +88,3 @@ def test_invalid_blocks_are_rejected_by_name(name, value):
 def test_invalid_angles_are_rejected(alpha, R):
     with pytest.raises(InvalidArgumentError, match=r"`alpha`|`half_diagonal`"):
         Block.from_slenderness_angle(alpha, R)
-
-
-def test_block_is_frozen():
-    with pytest.raises(AttributeError):
-        Block(0.4, 2.0).half_width = 0.3

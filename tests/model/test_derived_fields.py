@@ -172,13 +172,6 @@ def test_the_energy_is_finite_at_the_ends_of_the_ranges(frequency_ratio):
         assert np.isfinite(found.residual_energy).all()
 
 
-def test_without_an_angle_there_is_no_energy():
-    """A body whose edges differ has no one angle, nor does a response without groups."""
-    known = rocking.peak_response("sine", **GROUPS)
-    fields = {name: getattr(known, name) for name in known.__dataclass_fields__ if name not in ("groups", "dims")}
-    assert np.isnan(rocking.Response(**fields).residual_energy).all()
-
-
 def test_attributes_are_complete_and_no_others_exist():
     for found in (rocking.peak_response("sine", **GROUPS), solve_with_bound("sine", **GROUPS, alpha=None)):
         for field in DERIVED_FIELDS:

@@ -71,6 +71,7 @@ def test_an_error_names_a_value_without_its_place_in_a_chunk(chunks):
     assert "index" not in str(raised.value)
 
 
+@pytest.mark.long
 def test_workers_of_a_cluster_give_the_same_bits():
     slenderness = xr.DataArray(np.linspace(0.2, 0.9, 40), dims="block").chunk(block=10)
     groups = {"frequency_ratio": OMEGA, "restitution": 0.9, "alpha": 0.2}

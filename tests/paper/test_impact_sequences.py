@@ -1,7 +1,6 @@
 """Regions of overturning after several impacts: the semi-analytical criterion against the solver and the page."""
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.amplitude import thresholds
 from rocking._solver.peak_response import peak_response
 from tests.direct_integration import integrate
+from tests.sampling import but_long
 
 PAGE = (Path(__file__).parents[2] / "docs/equations.md").read_text(encoding="utf-8")
 ETA = 0.85
@@ -64,7 +64,7 @@ def test_first_impact_and_margin_are_those_of_case_1_1() -> None:
     assert cf.margin_after_impacts("sine", above, omega, ETA, 1) == pytest.approx(0, abs=1e-9)
 
 
-@pytest.mark.parametrize("region", REGIONS, ids=str)
+@pytest.mark.parametrize("region", but_long(REGIONS, ("sine", 3), ("cosine", 2)), ids=str)
 def test_region_begins_at_its_tip(region: tuple) -> None:
     pulse, impacts = region[:2]
     frequencies, amplitudes = REGIONS[region]
@@ -79,10 +79,6 @@ def test_region_begins_at_its_tip(region: tuple) -> None:
     low, high = cf.overturning_interval(pulse, 0.9 * omega, ETA, impacts, amplitude=amplitudes)
     name = f"{pulse}, {impacts} impacts" + (", tongue" if len(region) == 3 else "")
     assert f"| {name} | {omega:.6f} | {a:.4f} | {low:.6f} to {high:.6f} |" in PAGE
-
-
-def test_page_lists_each_region() -> None:
-    assert len(re.findall(r"^\| (?:co)?sine, \d impacts", PAGE, flags=re.MULTILINE)) == len(REGIONS)
 
 
 def test_margin_is_nan_with_another_number_of_impacts() -> None:

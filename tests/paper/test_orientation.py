@@ -83,11 +83,6 @@ def test_admissible_exponents_have_an_odd_sum():
     assert not is_homogeneous(LZ, {"a_g/g": LZ, "alpha": LZ}, {"a_g/g": 1, "alpha": 1})
 
 
-def test_admissible_exponents_without_oriented_factors():
-    assert admissible_exponents(L0, {"eta": L0}) == [{}]
-    assert admissible_exponents(LZ, {"eta": L0}) == []
-
-
 @pytest.mark.parametrize(
     "group",
     [
@@ -150,13 +145,6 @@ def test_dimensional_analysis_alone_cannot_combine_the_groups():
     assert set(VARIABLES) >= {"theta", "alpha", "p", "a_g", "g", "omega_g", "eta"}
 
 
-def test_lengths_of_the_block_are_consistent():
-    for equation in ("b = R*sin(alpha)", "h = R*cos(alpha)", "tan(alpha) = b/h", "I = 4/3*m*R**2", "p**2 = 3*g/(4*R)"):
-        assert is_homogeneous_equation(equation), equation
-    assert not is_homogeneous_equation("b = R*cos(alpha)")
-    assert not is_homogeneous_equation("h = b")
-
-
 @pytest.mark.parametrize(
     ("equation", "count"),
     [
@@ -193,13 +181,6 @@ def test_terms_of_the_equations_of_motion_have_one_orientation(equation, count):
 )
 def test_wrong_equations_are_not_homogeneous(equation):
     assert not is_homogeneous_equation(equation)
-
-
-def test_sum_of_different_orientations_inside_a_product_is_rejected():
-    with pytest.raises(InvalidArgumentError, match="one orientation"):
-        quantity_of("cos(alpha)*(1 + alpha)")
-    with pytest.raises(InvalidArgumentError, match="two sides"):
-        terms_of_equation("theta")
 
 
 def test_even_powers_pass_the_test_of_a_group_although_no_group_of_rocking():

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 import rocking
 from rocking import plot
@@ -57,15 +56,6 @@ def test_a_free_rocking_with_its_residual_in_degrees(ax):
         plot.free_rocking(xr.Dataset())
 
 
-def test_an_equivalent_block_has_its_own_angle(ax):
-    arch = rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=np.radians(157.5), voussoirs=7)
-    plot.history(arch.history("sine", peak_acceleration=4.0, period=0.3), ax)
-    assert ax.lines[1].get_ydata()[0] == pytest.approx(np.degrees(arch.alpha))
-    found = arch.response("sine", peak_acceleration=4.0, period=0.3)
-    point = plot.response(found).lines[-1]
-    assert point.get_ydata()[0] == pytest.approx(np.degrees(found.rotation))
-
-
 def test_ground_acceleration_with_the_smallest_one_that_starts_rocking(ax):
     data = BLOCK.history("sine", **PULSE)
     plot.ground_acceleration(data, ax)
@@ -95,17 +85,6 @@ def test_history_of_a_record_and_in_groups(ax):
     assert plot.history(found, ax).get_xlabel() == "time [s]"
     history = rocking.time_history("sine", **GROUPS)
     assert plot.history(history, color="k").get_xlabel() == r"time $\tau=p\,t$ [-]"
-
-
-def test_key_of_a_map_is_inside_its_figure():
-    grid = {"slenderness": np.linspace(0.1, 1.2, 20)[:, None], "frequency_ratio": np.linspace(1.0, 8.0, 20)}
-    figure = Figure(figsize=(5.6, 3.4), layout="constrained")  # that of the guide
-    plot.control_map(rocking.peak_response("sine", **GROUPS | grid).to_xarray(), figure.add_subplot())
-    figure.canvas.draw()
-    (key,) = figure.legends
-    box = key.get_window_extent()
-    assert box.x0 >= 0.0
-    assert box.x1 <= figure.bbox.width
 
 
 def test_response_to_a_record_is_refused_as_a_curve_over_the_amplitude():
@@ -169,17 +148,6 @@ def test_boundary_in_groups_and_in_si_units(ax):
     assert direct.get_ydata()[nearest] == pytest.approx(found.amplitude[-1], rel=1e-6)
 
 
-def test_map_of_any_orientation(ax):
-    grid = {"slenderness": np.linspace(0.1, 1.1, 12)[:, None], "frequency_ratio": np.linspace(1.0, 6.0, 9)}
-    data = rocking.peak_response("sine", **grid, restitution=0.85).to_xarray()
-    peaks, classes = plot.control_map(data, ax).collections
-    assert peaks.get_array().count() == (data.outcome == rocking.Outcome.RECOVERS).sum()
-    assert set(classes.get_array().compressed()) == {0, 1, 2}
-    turned = plot.control_map(data.transpose(), key=False)
-    np.testing.assert_array_equal(turned.collections[0].get_array(), peaks.get_array())
-    assert turned.get_ylabel().startswith("amplitude")
-
-
 def test_cube_has_a_panel_for_each_angle(ax):
     data = rocking.peak_response(
         "sine",
@@ -223,33 +191,6 @@ def test_files_of_equal_pictures_are_equal(tmp_path):
                 save_figure(figure, tmp_path / f"{name}.{ending}")
         first, second = ((tmp_path / f"{name}.{ending}").read_bytes() for name in "ab")
         assert first == second
-
-
-class InaccurateLayout(ConstrainedLayoutEngine):
-    """A layout whose last digits differ, as from one process to another."""
-
-    def execute(self, fig):
-        super().execute(fig)
-        for part in fig.subfigs:
-            part.bbox_relative.p0 += 1e-14
-        for ax in fig.axes:
-            ax.set_position(ax.get_position(original=True).translated(1e-14, -1e-14))
-
-
-def test_last_digits_of_the_layout_do_not_change_a_file(tmp_path):
-    for name, layout in (("a", ConstrainedLayoutEngine()), ("b", InaccurateLayout())):
-        with mpl.rc_context(plot.STYLE):
-            figure = Figure(figsize=(3.0, 2.0), layout=layout)
-            left, right = figure.subfigures(1, 2)
-            left.subplots(2, 1)
-            plot.response(rocking.peak_response("sine", **GROUPS), right.subplots())
-            save_figure(figure, tmp_path / f"{name}.svg")
-    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-
-
-def test_without_a_display_a_file_is_asked_for():
-    with pytest.raises(InvalidArgumentError, match=r"picture\.png or picture\.svg: there is no display"):
-        new_figure(None, (2.0, 1.5))
 
 
 def test_without_matplotlib_the_extra_is_named():

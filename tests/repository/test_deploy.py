@@ -5,7 +5,6 @@ import ctypes.util
 import http.client
 import itertools
 import json
-import os
 import re
 import shlex
 import shutil
@@ -76,24 +75,6 @@ def test_container_installs_what_has_the_hashes_of_the_lock(tmp_path):
     assert second[-3:] == ["--no-deps", "--no-build-isolation", "."]  # of the project itself there is no hash
 
 
-def test_base_of_the_container_may_be_named_by_its_digest():
-    assert [line.split()[0] for line in instructions("FROM")] == ["${BASE}", "${BASE}"]
-    assert instructions("ARG")[0].startswith("BASE=")
-    for text in (CONTAINER, (ROOT / "docs" / "deploy.md").read_text()):
-        assert "--build-arg BASE=docker.io/library/python@sha256:" in text
-        assert "podman image inspect --format '{{index .RepoDigests 0}}'" in text
-
-
-def test_kernels_of_the_container_may_be_of_a_named_level_of_processors():
-    """numba reads the two variables while the kernels are made and in the container that loads them."""
-    build = CONTAINER.rpartition("FROM ${BASE}")[0]
-    names = instructions("ARG")[1:]
-    assert names == ["NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"]  # without a value: those of the machine
-    assert all(build.index(f"ARG {name}") < build.index("rocking.precompile") for name in names)
-    text = (ROOT / "docs" / "deploy.md").read_text()
-    assert all(re.search(rf"{option} {name}=", text) for name in names for option in ("--build-arg", "--env"))
-
-
 def test_container_starts_the_service():
     (command,) = instructions("CMD")
     options = serve_arguments(json.loads(command))
@@ -105,14 +86,6 @@ def test_container_starts_the_service():
     assert instructions("USER") == ["rocking"]
 
 
-@pytest.mark.skipif("ROCKING_CONTAINER" not in os.environ, reason="ROCKING_CONTAINER names no container tool")
-def test_container_is_built():
-    tool = os.environ["ROCKING_CONTAINER"]
-    subprocess.run([tool, "build", "--tag", "rocking", "--file", "deploy/Containerfile", "."], cwd=ROOT, check=True)
-    done = subprocess.run([tool, "run", "--rm", "rocking", "/opt/rocking/bin/rocking", "--version"], check=True)
-    assert done.returncode == 0
-
-
 def test_unit_starts_the_service_and_stops_it_in_time(unit):
     options = serve_arguments(shlex.split(unit["ExecStart"][0]))
     assert options["host"] == "127.0.0.1"
@@ -122,32 +95,6 @@ def test_unit_starts_the_service_and_stops_it_in_time(unit):
     assert unit["SocketBindAllow"] == [f"tcp:{options['port']}"]
     assert variables["NUMBA_CACHE_DIR"] == f"%C/{unit['CacheDirectory'][0]}"
     configparser.ConfigParser(strict=False, interpolation=None).read(DEPLOY / "rocking.service")
-
-
-def test_unit_restarts_the_service(unit):
-    assert (unit["Type"], unit["Restart"]) == (["exec"], ["on-failure"])
-
-
-RESTRICTIONS = {
-    "yes": (
-        *("DynamicUser", "PrivateUsers", "ProtectHome", "PrivateTmp", "PrivateMounts", "PrivateDevices", "PrivateIPC"),
-        *("RemoveIPC", "NoNewPrivileges", "RestrictSUIDSGID", "RestrictNamespaces", "RestrictRealtime"),
-        *("LockPersonality", "ProtectClock", "ProtectHostname", "ProtectControlGroups"),
-        *("ProtectKernelLogs", "ProtectKernelModules", "ProtectKernelTunables"),
-    ),
-    "": ("CapabilityBoundingSet", "AmbientCapabilities"),
-    "any": ("IPAddressDeny", "SocketBindDeny"),
-    "strict": ("ProtectSystem",),
-    "invisible": ("ProtectProc",),
-    "0077": ("UMask",),
-    "localhost": ("IPAddressAllow",),
-    "native": ("SystemCallArchitectures",),
-}
-
-
-@pytest.mark.parametrize(("key", "value"), [(key, value) for value, keys in RESTRICTIONS.items() for key in keys])
-def test_unit_restricts_the_service(unit, key, value):
-    assert unit[key] == [value]
 
 
 @SYSTEMD

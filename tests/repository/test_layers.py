@@ -67,31 +67,10 @@ def documented_folders() -> list[str]:
     ]
 
 
-def documented_tree() -> set[str]:
-    """Return the folders of the tree in docs/architecture.md."""
-    found, parents = set(), [""]
-    for line in PAGE.split("```text\n")[1].split("```")[0].splitlines():
-        name = line.split()[0].rstrip("/")
-        depth = (len(line) - len(line.lstrip())) // 2
-        parents[depth + 1 :] = [f"{parents[depth]}{name}/"]
-        found.add(parents[-1].rstrip("/"))
-    return found
-
-
 def test_the_documented_layers_are_those_of_this_test() -> None:
     folders = documented_folders()
     assert set(folders) == LAYER_OF.keys()
     assert [LAYER_OF[folder] for folder in folders] == sorted(LAYER_OF.values())
-
-
-def test_the_documented_tree_is_the_real_one() -> None:
-    packages = {path.parent for top in ("rocking", "api") for path in (ROOT / top).rglob("__init__.py")}
-    grouped = {path.parent for path in (ROOT / "benchmarks").rglob("__init__.py")}
-    workflow = {path for path in (ROOT / "workflow").iterdir() if path.is_dir() and path.name != "__pycache__"}
-    real = {path.relative_to(ROOT).as_posix() for path in packages | grouped | workflow}
-    pages = {"api/rocking_api/static", "api/rocking_api/templates"}
-    plain = pages | {"api", "workflow", "reference", "stress", "tests", "docs", "examples", "deploy"}
-    assert documented_tree() == real | plain
 
 
 def test_the_documented_files_exist() -> None:
@@ -124,15 +103,6 @@ def test_imports_point_to_own_folder_or_lower_layers() -> None:
     assert [
         f"{path} imports {file}" for path in MODULES for file in imported_files(path) if not may_import(path, file)
     ] == []
-
-
-def test_an_import_of_a_higher_layer_or_of_the_same_row_is_seen() -> None:
-    kernel, public = ROOT / "rocking/_solver/peak_response.py", ROOT / "rocking/__init__.py"
-    assert may_import(kernel, ROOT / "rocking/_base/errors.py")
-    assert not may_import(kernel, ROOT / "rocking/_lookup/cube.py")
-    assert not may_import(kernel, ROOT / "rocking/closed_form/__init__.py")
-    assert not may_import(kernel, public)
-    assert may_import(ROOT / "tests/conftest.py", public)
 
 
 def test_no_circular_imports() -> None:

@@ -52,7 +52,7 @@ def test_names_pass_from_files_and_standard_input(folder, file):
     assert "\nStèle é,0.2,1.0," in run(folder, *RESPONSE, file, PYTHONPATH=str(ROOT))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_kernels_are_compiled_and_kept(folder):
     first = run(folder, *RESPONSE, "-")
     kept = {path: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}

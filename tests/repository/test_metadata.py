@@ -1,6 +1,5 @@
 """What archives and package indexes are told of the project agrees, and is stated in one place each."""
 
-import re
 import runpy
 import tomllib
 from pathlib import Path
@@ -12,8 +11,6 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text())
-BIBLIOGRAPHY = (ROOT / "paper.bib").read_text()
-CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text()
 
 
 @pytest.mark.parametrize("name", ["codemeta.json", ".zenodo.json"])
@@ -26,30 +23,6 @@ def test_project_and_citation_agree() -> None:
     assert PROJECT["keywords"] == CITATION["keywords"]
     assert PROJECT["license"] == CITATION["license"]
     assert [author["name"] for author in PROJECT["authors"]] == [author["name"] for author in CITATION["authors"]]
-
-
-def test_article_and_citation_cite_the_paper_alike() -> None:
-    paper = CITATION["references"][0]
-    entry = re.search(r"^@article\{DimitrakopoulosDeJong2012.*?^\}$", BIBLIOGRAPHY, re.MULTILINE | re.DOTALL)
-    assert entry is not None
-    for name in ("title", "journal", "year", "volume", "doi"):
-        assert f"{name} = {{{paper[name]}}}" in re.sub(r" +=", " =", entry[0])
-    assert f"pages = {{{paper['start']}--{paper['end']}}}" in re.sub(r" +=", " =", entry[0])
-
-
-def test_open_fields_are_in_files_that_exist() -> None:
-    names = re.findall(r"`(\.?\w+\.\w+)`", CONTRIBUTING.partition("## Open until publication")[2])
-    assert "CITATION.cff" in names
-    assert [name for name in names if not (ROOT / name).is_file()] == []
-
-
-def test_article_cites_what_it_lists_and_names_pages_that_exist() -> None:
-    article = (ROOT / "paper.md").read_text().partition("\n---\n")[2]
-    listed = re.findall(r"^@\w+\{(\w+),", BIBLIOGRAPHY, re.MULTILINE)
-    assert set(re.findall(r"@(\w+)", article)) == set(listed)
-    pages = re.findall(r"`(docs/[\w./-]+)`", article)
-    assert pages
-    assert [page for page in pages if not (ROOT / page).exists()] == []
 
 
 CONDA_NAMES = {"matplotlib": "matplotlib-base", "prometheus-client": "prometheus_client"}

@@ -16,7 +16,6 @@ import tomllib
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -120,13 +119,6 @@ def test_readme_is_short() -> None:
     assert README.count("\n") <= 150
 
 
-def test_data_sets_are_made_before_they_are_served() -> None:
-    done = subprocess.run(
-        ["make", "--dry-run", "serve", "RESULTS=atlas/results"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert (ROOT / "atlas/results/manifest.json").exists() or "--configfile workflow/config/atlas.yaml" in done.stdout
-
-
 @pytest.mark.parametrize("command", ROCKING, ids=" ".join)
 def test_command_line(command: list[str]) -> None:
     done = subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, text=True, check=True)
@@ -150,17 +142,6 @@ def test_extras_that_are_installed_exist() -> None:
     for command in PIP:
         assert command[:2] == ["pip", "install"]
         assert set(re.findall(r"\w+", command[2].partition("[")[2])) <= extras.keys()
-
-
-def test_first_command_and_first_python_block_ask_the_same() -> None:
-    names: dict[str, Any] = {}
-    exec(PYTHON_BLOCKS[0], names)
-    command = [installed("rocking"), *ROCKING[0][1:], "--format=json"]
-    result = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
-    response = names["response"]
-    assert result["overturned"] is response.overturned is True
-    assert result["thresholds"][0]["peak_acceleration"] == pytest.approx(response.thresholds[0].value, rel=1e-9)
-    assert result["uplift_acceleration"] == response.block.uplift_acceleration
 
 
 @pytest.mark.slow

@@ -2,7 +2,6 @@
 
 import ast
 import importlib.util
-import json
 import re
 import subprocess
 import sys
@@ -19,19 +18,9 @@ SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 FOLDERS = (
-    ".ci",
-    ".github",
-    "api",
-    "benchmarks",
-    "docs",
-    "examples",
-    "profiles",
-    "reference",
-    "rocking",
-    "stress",
-    "tests",
+    ".ci", ".github", "api", "benchmarks", "docs", "examples", "profiles", "reference", "rocking", "stress", "tests",
     "workflow",
-)
+)  # fmt: skip
 
 
 GENERATED = ("docs/gallery/", "docs/reference/generated/")
@@ -75,12 +64,6 @@ def test_no_machine_path_or_registry_host() -> None:
 def test_files_have_at_most_600_lines() -> None:
     code = {name: text.count("\n") for name, text in TEXTS.items() if name.endswith((".py", ".smk", "Snakefile"))}
     assert not {name: lines for name, lines in code.items() if lines > 600}
-
-
-def test_command_line_starts_without_heavy_imports() -> None:
-    program = "import json, sys, rocking._cli.app; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})))"
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert not {"numba", "xarray", "matplotlib", "scipy", "fastapi"} & set(json.loads(done.stdout))
 
 
 def test_package_import_is_lazy() -> None:
@@ -144,13 +127,6 @@ def test_modules_have_a_docstring() -> None:
     assert [name for name in modules if not ast.get_docstring(ast.parse(TEXTS[name]))] == []
 
 
-def test_citation_names_the_paper_and_the_licence() -> None:
-    citation = TEXTS["CITATION.cff"]
-    assert "doi: 10.1098/rspa.2012.0026" in citation
-    assert "license: BSD-3-Clause" in citation
-    assert "version:" not in citation.replace("cff-version:", "")
-
-
 def test_ci_runs_make_test_only() -> None:
     commands = [line for line in TEXTS[".ci/run"].splitlines() if line and not line.startswith("#")]
     assert commands == ['cd "$(dirname "$0")/.." && exec make --no-print-directory test']
@@ -158,5 +134,5 @@ def test_ci_runs_make_test_only() -> None:
 
 def test_settings_are_for_files_that_exist() -> None:
     modules = [name for one in SETTINGS["mypy"]["overrides"] for name in one["module"]]
-    assert [name for name in modules if importlib.util.find_spec(name) is None] == []
+    assert [name for name in modules if importlib.util.find_spec(name.removesuffix(".*")) is None] == []
     assert [one for one in SETTINGS["ruff"]["lint"]["per-file-ignores"] if next(ROOT.glob(one), None) is None] == []

@@ -18,17 +18,8 @@ from benchmarks.installation import PACKAGES
 ROOT = Path(__file__).parents[2]
 
 REQUIRED = {
-    "lazy-loader",
-    "llvmlite",
-    "netCDF4",
-    "numba",
-    "numpy",
-    "pandas",
-    "rich",
-    "scipy",
-    "typer",
-    "xarray",
-}
+    "lazy-loader", "llvmlite", "netCDF4", "numba", "numpy", "pandas", "rich", "scipy", "typer", "xarray",
+}  # fmt: skip
 """Distributions that an installation without extras requires."""
 
 OPTIONAL = {"service": {"fastapi", "prometheus-client", "uvicorn", "zarr"}, "plot": {"matplotlib"}}

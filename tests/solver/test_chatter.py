@@ -14,6 +14,7 @@ from rocking._solver.kernels.chatter import chatter_ends_in_rest
 from rocking._solver.state import IMPACT, step_state
 from rocking._solver.taylor.flight import flight_by_steps
 from tests.kernels import cell, flight_from
+from tests.sampling import number
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))
 WANTED = st.tuples(
@@ -48,7 +49,7 @@ def ends_in_rest(flight, w, eta, phase, end, peak) -> bool:
 
 
 @given(WANTED)
-@settings(max_examples=500)
+@settings(max_examples=number(150, 500))
 def test_chatter_bound_holds_for_the_followed_impacts(wanted):
     pulse, slenderness, omega, eta, alpha, where, within, w, sign = wanted
     flight = cell(pulse, slenderness, omega, alpha)

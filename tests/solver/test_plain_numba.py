@@ -22,10 +22,9 @@ ESSENTIAL = (
     else (
         "tests/base/test_simd.py::test_functions_are_accurate_to_rounding",
         "tests/solver/test_against_tables.py::test_reference_outcomes",
-        "tests/solver/test_rigid_against_tables.py::test_reference_outcomes",
     )
 )
-"""A sample of three; `make test-all` runs all. The time is that of the compiler."""
+"""A sample of two; `make test-all` runs all. The time is that of the compiler."""
 
 WITHOUT_COLLECTION = "import gc, sys, pytest; gc.disable(); sys.exit(pytest.main(sys.argv[1:]))"
 """A seventh of the time of the compiler is a search for garbage among what it keeps."""

@@ -81,34 +81,6 @@ def test_coefficients_satisfy_the_equation_of_motion(name, alpha):
         assert bend == pytest.approx(true, rel=1e-12, abs=1e-13)
 
 
-@pytest.mark.parametrize("degree", [3, 5, 8])
-@pytest.mark.parametrize("alpha", [0.0, 0.3])
-@pytest.mark.parametrize("name", ["sine", "ricker", "mavroeidis_papageorgiou"])
-def test_measured_order(name, alpha, degree):
-    lengths, orders = np.geomspace(0.1, 0.2, 7), []
-    for phase in (0.2, 0.7, 1.3, 2.1, 2.9):  # at some phases the first omitted term is almost zero
-        step = step_from(name, 0.2, 0.3, phase, 1.9, alpha)
-        error = [abs(rotation(step, h, degree) - rotation(step, h)) for h in lengths]
-        orders.append(np.polyfit(np.log(lengths), np.log(error), 1)[0])
-    assert np.median(orders) == pytest.approx(degree + 1, abs=0.4)
-
-
-@pytest.mark.parametrize("alpha", [0.0, 0.3])
-@pytest.mark.parametrize("name", ["sine", "ricker", "c2"])
-def test_one_step_is_exact_to_rounding(name, alpha):
-    steps = step_from(name, 0.2, 0.3, 0.7, 1.9, alpha)
-    h = float(steps["h"][3])
-    assert 0.05 < h < 2.0
-    np.testing.assert_allclose((steps["z1"][3], steps["w1"][3]), (rotation(steps, h), velocity(steps, h)), rtol=1e-14)
-    z, w = 0.2, 0.3
-    parts = 8
-    for i in range(parts):
-        part = step_from(name, z, w, 0.7 + 1.9 * h * i / parts, 1.9, alpha, limit=h / parts)
-        assert part["h"][3] == h / parts
-        z, w = float(part["z1"][3]), float(part["w1"][3])
-    np.testing.assert_allclose((steps["z1"][3], steps["w1"][3]), (z, w), rtol=2e-14)
-
-
 @pytest.mark.parametrize("name", ["sine", "ricker", "c2"])
 def test_the_error_of_a_step_follows_the_precision(name):
     for precision in (1e-5, 1e-8, 1e-11, 1e-14):

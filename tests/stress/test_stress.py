@@ -12,7 +12,7 @@ from benchmarks.tables import Table, rows_of, solved
 from reference.conditioning import integrate_with_conditioning
 from stress.families import BY_NAME, DATA, read_family
 from stress.report import EXACT_SYMMETRIES, count_beyond_error_bound, violations
-from stress.solver import errors, solve, ulps_that_explain, wrong_events, wrong_outcomes
+from stress.solver import errors, solve, wrong_events, wrong_outcomes
 from stress.symmetries import symmetries
 
 ROOT = Path(__file__).parents[2]
@@ -88,30 +88,7 @@ def test_rows_of_the_tables_are_solved_again_to_the_same_text() -> None:
             assert solved(row) == row
 
 
-def test_a_wrong_outcome_is_found_and_its_explanation_searched() -> None:
-    """Responses of neighbours one ulp away are explained by the rounding of the input; those of other cells are not."""
-    table = read_family("last-bits")
-    table = table.select(np.flatnonzero((table["alpha"] == 0.0) & (table["impacts"] < 5)))  # fast to integrate
-    closest = int(np.argmin(np.abs(table["margin"]) / table["margin_per_ulp"]))
-    here = table.select(np.array([closest]))
-    overturned = here["outcome"][0] >= 2
-    for moved in (-8, 8):
-        neighbour = Table(
-            here.name, here.pulse, here.columns | {"slenderness": here["slenderness"] * (1 + moved * 2e-16)}
-        )
-        found = solve(neighbour)
-        if found.overturned[0] != overturned:
-            assert wrong_outcomes(here, found).all()
-            assert ulps_that_explain(here, 0, found) in (1, 2, 4, 8)
-            break
-    else:
-        pytest.fail("no neighbour has another outcome")
-    far = solve(Table(here.name, here.pulse, here.columns | {"slenderness": np.array([2.0])}))
-    assert wrong_outcomes(here, far).all()
-    assert ulps_that_explain(here, 0, far) is None
-
-
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_runs_and_reports_violations(tmp_path: Path) -> None:
     out = tmp_path / "stress.json"
     command = [sys.executable, "-m", "stress", "--family", "last-bits", "--out", str(out)]

@@ -42,7 +42,7 @@ def test_fit_maximises_the_likelihood_that_scipy_maximises(model, distribution):
     assert fit.largest_deviation == pytest.approx(np.abs(p - count / 44).max())
 
 
-@pytest.mark.parametrize(("records", "suites"), [(10, 300), (40, 200)])
+@pytest.mark.parametrize(("records", "suites"), [(10, 300), pytest.param(40, 200, marks=pytest.mark.long)])
 def test_intervals_hold_the_answer_as_often_as_they_state(records, suites):
     fits = [fit_curve(sample(records, 2.0, 0.4, seed), LEVELS) for seed in range(suites)]
     assert {fit.status for fit in fits} == {FitStatus.FITTED}
@@ -51,13 +51,6 @@ def test_intervals_hold_the_answer_as_often_as_they_state(records, suites):
     assert 0.92 <= median <= 0.99
     assert 0.89 <= spread <= 0.98
     assert np.mean([math.log(fit.median) for fit in fits]) == pytest.approx(math.log(2.0), abs=0.03)
-
-
-def test_intervals_shrink_with_the_root_of_the_number_of_records():
-    few, many = (
-        np.mean([_width(fit_curve(sample(n, 2.0, 0.4, seed), LEVELS)) for seed in range(40)]) for n in (20, 80)
-    )
-    assert few / many == pytest.approx(2.0, rel=0.15)
 
 
 def _width(fit):

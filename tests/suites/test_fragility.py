@@ -13,7 +13,6 @@ from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.fits import FitStatus, binomial_interval
-from rocking.suites.fragility import fragility_of_outcomes
 from tests.suites.motions import BLOCK, noise, sampled
 
 MEDIAN, BETA = 6.0, 0.35  # PGA [m/s2] at which the synthetic suite overturns the block
@@ -130,21 +129,6 @@ def test_frequency_ratio_changes_the_size_of_the_block(noisy):
             np.testing.assert_allclose(found.peak_rotation[j, k], same.peak_rotation[0, 0], rtol=1e-9)
 
 
-def test_probability_falls_with_the_frequency_ratio():
-    records = [sampled("half_sine", ratio) for ratio in (0.6, 0.8, 1.0, 1.3, 1.6)]
-    louder = [
-        rocking.Record(record.acceleration * 4.0, record.time_step, "m/s2", str(k)) for k, record in enumerate(records)
-    ]
-    found = rocking.fragility(
-        louder, BLOCK, intensity=np.geomspace(0.2, 40.0, 30), measure="frequency_ratio", restitution=0.0
-    )
-    fraction = found.fraction.values
-    assert fraction[0] == 1.0
-    assert fraction[-1] == 0.0
-    assert np.all(np.diff(fraction) <= 0.0)
-    assert (found.dispersion <= 0.0).all()
-
-
 def test_suites_without_a_curve_say_why(noisy):
     none = rocking.fragility(noisy, BLOCK, intensity=[0.5, 1.0])
     every = rocking.fragility(
@@ -181,16 +165,6 @@ def test_single_block_and_limit_state_have_no_dimension(noisy):
     assert short.overturned.dims == ("intensity", "record")
     np.testing.assert_array_equal(full.exceedances[0, 0], short.exceedances)
     assert float(short.width) == pytest.approx(BLOCK.width)
-
-
-def test_fit_of_stored_outcomes_is_that_of_the_run(noisy):
-    found = rocking.fragility(noisy, [BLOCK], intensity=LEVELS, demand=["overturning", 0.5])
-    again = fragility_of_outcomes(
-        found[["peak_rotation", "overturned", "exceeded_alpha"]].drop_dims(["demand"], errors="ignore"),
-        ["overturning", 0.5],
-    )
-    for name in ("exceedances", "median_intensity", "dispersion_upper"):
-        np.testing.assert_array_equal(found[name], again[name])
 
 
 def test_records_have_names_digests_and_measures(noisy):
@@ -311,16 +285,6 @@ def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image(
     low, high = binomial_interval(0.5 * found.exceedances.values, 3, 0.95)  # of three independent records
     np.testing.assert_array_equal((found.fraction_lower, found.fraction_upper), (low, high))
     assert found.uplift_acceleration.values.tolist() == body.uplift_acceleration.tolist()
-
-
-def test_two_nearly_equal_edges_give_the_curve_of_equal_ones():
-    motions, levels = [noise(seed) for seed in range(6)], np.geomspace(1.0, 60.0, 12)
-    demand = ["overturning", "alpha", 0.3]
-    equal = rocking.fragility(motions, rocking.RigidBody(0.25, 0.25, 1.0), intensity=levels, demand=demand)
-    nearly = rocking.fragility(motions, rocking.RigidBody(0.25, 0.25 + 1e-12, 1.0), intensity=levels, demand=demand)
-    np.testing.assert_array_equal(nearly.overturned[:, ::2], equal.overturned)
-    for name in ("fraction", "fraction_lower", "median_intensity", "median_intensity_lower", "dispersion_upper"):
-        np.testing.assert_allclose(nearly[name], equal[name], rtol=1e-6, atol=1e-9, err_msg=name)
 
 
 def test_an_object_has_the_fragility_of_each_of_its_directions():

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import rocking
 from rocking._dimensional.thresholds import overturning_scale
@@ -69,24 +68,3 @@ def test_stronger_levels_that_it_survives_are_counted(points):
             own = outcomes["overturned"].values[k, :, n].astype(bool)
             stronger = outcomes["intensity"].values > float(outcomes["overturning_intensity"][k, n])
             assert margins["levels_survived_above"][k, n] == (~own & stronger).sum()
-
-
-@pytest.mark.parametrize("name", ["pga", "frequency_ratio"])
-def test_margins_count_from_the_mildest_level(name):
-    overturned = np.array([[0, 1, 0, 1, 0]], dtype=np.int8)[..., None]  # (block, intensity, record)
-    scale = np.array([[1.0, 2.0, 3.0, 4.0, 5.0]])[..., None]
-    dims = ("block", "intensity", "record")
-    exact = 1.5 if name == "pga" else 4.5  # blocks of larger omega_p/p are larger and safer
-    outcomes = xr.Dataset(
-        {
-            "overturned": (dims, overturned),
-            "scale": (dims, scale),
-            "overturning_intensity": (("block", "record"), [[exact]]),
-        },
-        {"intensity": [1.0, 2.0, 3.0, 4.0, 5.0], "record": ["a"]},
-        {"measure": name},
-    )
-    found = record_margins(outcomes).isel(block=0, record=0)
-    assert found["overturning_intensity"] == exact
-    assert found["overturning_scale"] == (1.5 if name == "pga" else 1.0)
-    assert found["levels_survived_above"] == 2

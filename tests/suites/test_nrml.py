@@ -9,13 +9,11 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.stats import lognorm
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking.suites.nrml import write_nrml
-from rocking.suites.table import fragility_table
 from tests.suites.motions import noise
 
 BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.3, 1.0)]
@@ -118,20 +116,6 @@ def test_refusals(found, tmp_path):
         write_nrml(found.assign_attrs(measure="pga_ratio"), tmp_path / "model.xml")
     with pytest.raises(InvalidArgumentError, match="format"):
         write_nrml(found, tmp_path / "model.xml", format="logistic")
-
-
-def test_fragility_of_arrays_of_bodies_is_written_by_body():
-    width, height = xr.DataArray([0.3, 0.4], dims="width"), xr.DataArray([1.0, 1.6, 2.0], dims="height")
-    motions = [rocking.Record(2.0 * np.sin(np.arange(0.0, 6.0, 0.05)), 0.05, unit="m/s2")]
-    array = rocking.fragility(motions, rocking.RigidBody.from_size(width, height), intensity=[1.0, 6.0])
-    assert array["height"].values.tolist() == [[1.0, 1.6, 2.0]] * 2
-    blocks = [rocking.Block(w, h) for w in width.values for h in height.values]
-    listed = rocking.fragility(motions, blocks, intensity=[1.0, 6.0])
-    assert fragility_table(array) == fragility_table(listed)
-    files = io.BytesIO(), io.BytesIO()
-    for file, found in zip(files, (array, listed), strict=True):
-        write_nrml(found, file)
-    assert files[0].getvalue() == files[1].getvalue()
 
 
 def test_a_fitted_curve_that_is_not_small_at_its_lowest_level_warns(found):

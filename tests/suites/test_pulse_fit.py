@@ -73,13 +73,6 @@ def test_overturning_scale_is_where_the_outcome_changes(seed):
     assert not coarse.overturned.any()
 
 
-def test_scale_of_a_sampled_pulse_is_its_critical_amplitude():
-    record = sampled("sine", 3.0)
-    exact = rocking.thresholds("sine", frequency_ratio=3.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha)
-    found = overturning_scale(record, BLOCK) * record.peak_acceleration / BLOCK.uplift_acceleration
-    assert found == pytest.approx(exact.amplitude[0], rel=1e-3)
-
-
 def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     record = sampled("sine", 4.0, samples=8000)
     exact = rocking.thresholds(
@@ -91,11 +84,6 @@ def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     )
     assert found.overturns_above.tolist() == exact.overturns_above.tolist() == [True, False, True]
     assert found.searched[1] == pytest.approx(10.0 * found.searched[0])
-
-
-def test_below_uplift_there_is_no_threshold():
-    record = sampled("sine", 4.0)
-    assert scale_thresholds(record, BLOCK, highest=0.5 * BLOCK.uplift_acceleration).value.size == 0
 
 
 @pytest.mark.parametrize(

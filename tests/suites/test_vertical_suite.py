@@ -8,10 +8,7 @@ import pytest
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.thresholds import overturning_scale
 from rocking.suites.configuration import RecordFiles
-from rocking.suites.margins import with_margins
-from rocking.suites.outcomes import check_suite, suite_outcomes
 from tests.suites.motions import noise
 
 BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.2, 1.0, gravity=3.7)]
@@ -43,14 +40,6 @@ def test_outcomes_are_those_of_the_single_blocks(measure: str) -> None:
                 assert peak == pytest.approx(alone.peak_rotation, rel=1e-6, nan_ok=True)
 
 
-def test_the_mildest_intensity_is_that_of_the_scale() -> None:
-    record = with_vertical(3)
-    suite = check_suite(record, BLOCKS[:1], [20.0], "pga", "momentum")
-    found = with_margins(suite_outcomes(suite), suite)
-    scale = overturning_scale(record, BLOCKS[0])
-    assert float(found["overturning_intensity"][0, 0]) == pytest.approx(scale * record.peak_acceleration, rel=1e-6)
-
-
 def test_a_level_at_which_a_body_would_fly_is_refused() -> None:
     record = with_vertical(1, share=-1.0)
     flies = STANDARD_GRAVITY / -float(record.vertical.min()) * record.peak_acceleration
@@ -59,16 +48,6 @@ def test_a_level_at_which_a_body_would_fly_is_refused() -> None:
         rocking.fragility(record, BLOCKS[0], intensity=[1.0, 1.001 * flies])
     with pytest.raises(InvalidArgumentError, match="`intensity`"):
         rocking.suites.suite_sensitivity(record, BLOCKS[0], intensity=[1.001 * flies])
-
-
-def test_friction_demand_is_that_of_the_history() -> None:
-    record = with_vertical(1)
-    found = rocking.suites.suite_sensitivity([record, noise(2)], BLOCKS[0], intensity=[2.0])
-    scale = float(found["scale"].values[0, 0])
-    eta = float(found["restitution"])
-    history = BLOCKS[0].history(record, scale=scale, restitution=eta, contact=True)
-    demand = float(found["friction_demand"].values[0, 0])
-    assert demand == pytest.approx(history.attrs["largest_friction_demand"], rel=1e-9)
 
 
 def test_the_vertical_component_is_never_another_file(tmp_path, monkeypatch) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib
 from pathlib import Path
 
 import numpy as np
@@ -11,22 +10,18 @@ import pytest
 import xarray as xr
 import yaml
 
-from rocking._base.source_tree import SourceTree
-from rocking._boundary.curves import curves_at, join_curves
+from rocking._boundary.curves import join_curves
 from rocking._datasets.cube import read_dataset, write_dataset
 from rocking._dimensional.block import Block
-from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking.paper import overturning_amplitudes
 from rocking.plot.boundary_lines import Lines
-from rocking.plot.output import style
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_04, figure_09, figure_10, similar_histories
+from workflow.figures import figure_09, figure_10, similar_histories
 from workflow.figures.boundary_lines import lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
 
-CAPTIONS = (PROJECT / "docs/figures.md").read_text(encoding="utf-8")
 CONFIG = PROJECT / "workflow/config"
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
@@ -42,54 +37,11 @@ def test_figure_drawn_twice_has_equal_bytes(name: str, smoke_results: Path, tmp_
         assert hashlib.sha256(path.read_bytes()).digest() == hashlib.sha256(there.read_bytes()).digest(), kind
 
 
-# Figures of histories, curves and maps that are in no data set: these call the solver.
-SOLVED = {f"figure-{number}" for number in ("02", "06", "07", "08", "09", "11", "12", "13")}
-SOLVED |= {"figure-master-housner", "figure-master-spectra"}
-
-
-def test_a_figure_depends_on_the_solver_only_if_it_computes_responses() -> None:
-    sources, scripts = SourceTree(PROJECT), PROJECT / "workflow"
-    kernels = PROJECT / "rocking/_solver/kernels"
-    dependent = {
-        name
-        for name in CONFIGURED
-        for files in [sources.files(scripts / "scripts/figure.py", scripts / f"figures/{name.replace('-', '_')}.py")]
-        if any(kernels in file.parents for file in files)
-    }
-    assert dependent == SOLVED
-
-
 @pytest.mark.parametrize("name", CONFIGURED)
 def test_figure_lists_values_chosen_here_and_has_a_caption(name: str, smoke_results: Path) -> None:
     attributes = read_dataset(smoke_results / f"figures/{name}.nc").attrs
     assert attributes.get("values_chosen_here", "") == ", ".join(CONFIGURED[name].get("ours", {}))
     assert f"[{name}](#" in (PROJECT / "docs/figures.md").read_text()
-
-
-@pytest.mark.parametrize("name", ["figure-09", "figure-10"])
-def test_no_curve_crosses_the_labels_of_an_inset(name: str, smoke_results: Path) -> None:
-    module = importlib.import_module(f"workflow.figures.{name.replace('-', '_')}")
-    with style():
-        figure = module.draw(read_dataset(smoke_results / f"figures/{name}.nc"))
-        figure.draw_without_rendering()
-    crossed, labels = [], 0
-    for panel in figure.axes:
-        for inset in panel.child_axes:
-            shown = [
-                tick.label1
-                for axis in (inset.xaxis, inset.yaxis)
-                for tick in axis.get_major_ticks()
-                if axis.get_view_interval()[0] <= tick.get_loc() <= axis.get_view_interval()[1]
-            ]
-            labels += len(shown)
-            for label in shown:
-                box = label.get_window_extent()
-                for line in panel.lines:
-                    path = line.get_transform().transform_path(line.get_path())
-                    if path.intersects_bbox(box, filled=False):
-                        crossed.append((label.get_text(), line.get_label()))
-    assert labels > 3
-    assert crossed == []
 
 
 def test_two_blocks_collapse_to_the_master_curve(smoke_results: Path) -> None:
@@ -110,19 +62,6 @@ def test_dimensional_blocks_have_the_given_groups(smoke_results: Path) -> None:
     np.testing.assert_allclose(omega, data.attrs["frequency_ratio"], rtol=1e-12)
     assert np.ptp(data.half_diagonal.values) > 1
     assert np.ptp(data.alpha.values) > 0.1
-
-
-def test_cases_of_figure_2_have_their_response_sequences(smoke_results: Path) -> None:
-    data = read_dataset(smoke_results / "figures/figure-02.nc")
-    for i, case in enumerate(data.attrs["case_names"].split()):
-        overturning, surviving = data.rotation[i]
-        last = overturning.values[np.isfinite(overturning)][-1]
-        assert abs(last) > 2
-        assert np.abs(surviving.values).max() < 2
-        impact, end = float(data.first_impact[i, 0]), float(data.pulse_end[i])
-        assert {"2": np.isnan(impact) and last < 0, "1.2": impact > end and last > 0, "1.1": impact < end and last > 0}[
-            case
-        ]
 
 
 def test_integration_in_si_units_overturns_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
@@ -150,22 +89,6 @@ def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
     # and do not with dimensions: at one period the thresholds of the two blocks differ
     same_period = next(iter(figure_09.block_thresholds(pulse, large, period, 0.85)))
     assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
-
-
-def test_upper_surviving_region_of_figure_9_is_above_the_overturning_region(smoke_results: Path) -> None:
-    data = read_dataset(smoke_results / "figures/figure-09.nc")
-    for k in range(2):
-        found = data.isel(threshold=(data.threshold_pulse == k).values)
-        omega, a = found.threshold_frequency_ratio.values, found.threshold_amplitude.values
-        survives_again = found.threshold_overturns_above.values == 0
-        # halfway between standing again and falling without impact, the next threshold
-        chosen = survives_again[:-1] & (np.diff(omega) == 0) & (a[1:] / a[:-1] > 1.1)
-        between, column = np.sqrt(a[:-1] * a[1:])[chosen], omega[:-1][chosen]
-        assert between.size > 0
-        low, high = (
-            np.interp(column, data.frequency_ratio, data[name][k]) for name in ("survives_from", "survives_to")
-        )
-        assert np.all((low < between) & (between < high))
 
 
 def test_upper_surviving_region_of_figure_9_is_bounded_where_the_outcome_changes() -> None:
@@ -227,22 +150,6 @@ def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> No
     assert nearest.max() < 1e-9
 
 
-@pytest.mark.parametrize("name", ["figure-11", "figure-12"])
-def test_histories_are_closer_in_the_groups_of_6_1(name: str, smoke_results: Path) -> None:
-    data = read_dataset(smoke_results / f"figures/{name}.nc")
-    assert np.isfinite(data.rotation).all()
-    slender, rigid = (
-        np.ptp(data.rotation.values[:, k], axis=1).max(axis=-1) / np.abs(data.slender_rotation.values).max(axis=-1)
-        for k in range(2)
-    )
-    assert np.all(rigid < 0.06)
-    assert np.all(slender > 4 * rigid)
-    np.testing.assert_allclose(data.spread, np.stack([slender, rigid], axis=1))
-    # and in those groups they are like the slender block
-    of_slender = np.abs(data.rotation.values[:, 1] - data.slender_rotation.values[:, None])
-    assert np.all(of_slender.max(axis=(1, 2)) < 0.06 * np.abs(data.slender_rotation.values).max(axis=1))
-
-
 def test_blocks_of_figure_11_have_equal_groups() -> None:
     pulse, s, omega, eta, alpha = "cosine", 0.6, 4.0, 0.9, np.radians(20)
     data = similar_histories.data(
@@ -254,22 +161,6 @@ def test_blocks_of_figure_11_have_equal_groups() -> None:
     # theta = alpha times the peak; a_g/g = alpha/s and tan(alpha)/s
     expected = [by_alpha * s, by_tangent * alpha * s / np.sin(alpha)]
     np.testing.assert_allclose(np.abs(data.rotation.values[0, :, 0]).max(axis=-1), expected, rtol=1e-4)
-
-
-def test_caption_of_figure_10_states_the_regions_of_the_cosine(smoke_results: Path) -> None:
-    caption = " ".join(CAPTIONS.split("## Figure 10")[1].split("## Figure")[0].split())
-    curves = read_dataset(smoke_results / "overturning/cosine/eta-0.85.nc")
-    found = {}
-    for alpha in (0.0, np.radians(20.0)):
-        one = curves_at(curves, alpha)
-        impacts = np.repeat(one.impacts.values, one.row_size.values)
-        for n in (2, 4):
-            found[alpha, n] = one.frequency_ratio.values[impacts == n], 1 / one.slenderness.values[impacts == n]
-    loop, tongue = (found[0.0, 2][1] < 1.6), (found[0.0, 2][1] > 1.6)
-    assert f"after two impacts in a loop up to omega = {found[0.0, 2][0][loop].max():.1f}" in caption
-    up_to = found[0.0, 2][1][tongue].max(), found[np.radians(20.0), 2][1].max()
-    assert f"up to a = {up_to[0]:.1f} ({up_to[1]:.1f} at 20 degrees)" in caption
-    assert f"after four impacts up to omega = {found[0.0, 4][0].max():.1f}" in caption
 
 
 def test_islands_of_figure_4_are_lines_in_the_expected_region(smoke_results: Path) -> None:
@@ -289,24 +180,3 @@ def test_islands_of_figure_4_are_lines_in_the_expected_region(smoke_results: Pat
         for step in (-1e-9, 1e-9)
     )
     assert np.mean(below != above) > 0.95  # not where two lines meet
-
-
-def test_caption_of_figure_4_states_where_the_last_loop_closes() -> None:
-    caption = " ".join(CAPTIONS.split("## Figure 4")[1].split("## Figure")[0].split())
-    settings = yaml.safe_load((CONFIG / "paper.yaml").read_text(encoding="utf-8"))["figures"]["figure-04"]["ours"]
-    tips = figure_04._tips(np.array(settings["restitution"]))
-    amplitude = overturning_amplitudes(tips, np.array(settings["restitution"])).overturns_from
-    assert [tip > 8.5 for tip in tips] == [False, False, False, True]  # of the window
-    assert (
-        f"The loop of 0.96 leaves the window; it closes at omega = {tips[-1]:.1f}, a = {amplitude[-1]:.0f}" in caption
-    )
-
-
-def test_caption_of_figure_10_states_how_far_the_loop_of_30_degrees_reaches() -> None:
-    caption = " ".join(CAPTIONS.split("## Figure 10")[1].split("## Figure")[0].split())
-    assert "that of 30 degrees leaves the window and has not closed at omega = 60" in caption
-    rising = np.geomspace(4.0, 400.0, 400)[:, None]
-    falls = peak_response(
-        "sine", slenderness=1 / rising, frequency_ratio=[9.0, 20.0, 60.0], restitution=0.85, alpha=np.radians(30)
-    )
-    assert (falls.outcome == Outcome.OVERTURNED_AFTER_IMPACT).any(axis=0).all()

@@ -10,18 +10,12 @@ import yaml
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._datasets.cube import read_spectrum
 from rocking._solver.peak_response import peak_response
-from rocking.paper import overturning_amplitudes
 from tests.workflow_fixtures import PROJECT
 from workflow.figures import figure_08, figure_13
 from workflow.figures.spectrum_curves import STRAIGHT, SpectrumBlock, branches, peaks, rows_of
 
-CAPTIONS = (PROJECT / "docs/figures.md").read_text(encoding="utf-8")
 FIGURES = yaml.safe_load((PROJECT / "workflow/config/paper.yaml").read_text(encoding="utf-8"))["figures"]
 WINDOW = (1.5, 8.0)
-
-
-def caption(title: str) -> str:
-    return " ".join(CAPTIONS.split(f"## {title}\n")[1].split("## Figure")[0].split())
 
 
 @pytest.fixture(scope="module")
@@ -131,44 +125,3 @@ def test_closed_form_is_drawn_exactly_where_it_holds(figure_8: xr.Dataset) -> No
     error = np.abs(figure_8.closed_form.values / figure_8.spectrum.values - 1)
     fast = sine & (omega > 6)
     assert np.nanmax(error[fast & (s == 0.45)]) < 0.06 < np.nanmin(error[fast & (s == 0.6)])
-
-
-def test_closed_form_is_missing_where_the_block_overturns_without_impact(figure_8: xr.Dataset) -> None:
-    direct = overturning_amplitudes(figure_8.frequency_ratio.values, 0.9).direct
-    beyond = 1 / points(figure_8, "slenderness") > direct
-    closed = figure_8.closed_form.values
-    assert not beyond.any()  # no curve is drawn there
-    assert np.nanmin(closed) > 0
-
-
-def test_caption_of_figure_8_states_the_short_branch(figure_8: xr.Dataset) -> None:
-    text = caption("Figure 8")
-    short = [curve for curve in rows_of(figure_8, pulse=0, slenderness=0.3) if curve.overturns_above == 1]
-    assert len(short) == 9  # one for each restitution
-    low, high = min(c.frequency_ratio.min() for c in short), max(c.frequency_ratio.max() for c in short)
-    assert f"the short branch from omega = {float(low):.2f} to {float(high):.2f}" in text
-    longest = max(short, key=lambda curve: curve.frequency_ratio.size)
-    for one in short:  # the peak comes before the first impact and is the same for every restitution
-        at = np.interp(one.frequency_ratio, longest.frequency_ratio, longest.spectrum)
-        np.testing.assert_allclose(one.spectrum, at, atol=2 * STRAIGHT)
-    error = np.abs(figure_8.closed_form / figure_8.spectrum - 1).values
-    s, fast = points(figure_8, "slenderness"), figure_8.frequency_ratio.values > 6
-    near, below = error[fast & (s == 0.45)], error[fast & (s == 0.6)]
-    assert f"within {100 * np.nanmax(near):.0f} % for omega > 6 in (c)" in text
-    assert f"off by {100 * np.nanmin(below):.0f} to {100 * np.nanmax(below):.0f} % in (e)" in text
-
-
-def test_caption_of_figure_13_states_the_largest_differences(figure_13_data: xr.Dataset) -> None:
-    text, data = caption("Figure 13"), figure_13_data
-    s, pulse = points(data, "slenderness"), points(data, "pulse")
-    difference = 100 * np.abs(data.spectrum.values / data.slender_spectrum.values - 1)
-    shown = points(data, "alpha") < np.radians(21)
-    # where the slender block stays below alpha: beyond it the upper surviving region
-    shown &= data.slender_spectrum.values < s
-    worst = [{one: np.nanmax(difference[shown & (pulse == k) & (s == one)]) for one in np.unique(s)} for k in range(2)]
-    above = [max((found[one], one) for one in found if one >= 0.45) for found in worst]
-    assert f"at most {above[0][0]:.1f} % under the sine (at {above[0][1]:.2f})" in text
-    assert f"at most {above[1][0]:.1f} % under the cosine (at {above[1][1]:.2f})" in text
-    assert f"At 0.30 they differ by up to {worst[0][0.3]:.0f} % and {worst[1][0.3]:.0f} %" in text
-    small = shown & (data.slender_spectrum.values < 0.5 * s) & (s >= 0.45)
-    assert f"below half of alpha the difference from 0.45 on is at most {np.nanmax(difference[small]):.1f} %" in text

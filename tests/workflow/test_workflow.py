@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from rocking._datasets.cube import read_spectrum
+from tests.sampling import but_long
 from tests.workflow_fixtures import PROJECT, SMOKE, reproduce, rules_to_run, snakemake
 
 
@@ -87,7 +88,6 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
     for modules, rules in {
         # of two modules, on which different rules depend
         ("rocking/paper/orientation.py", "workflow/figures/figure_07.py"): {"table_1", "claims", "figure_07"},
-        ("rocking/paper/scale_law.py",): {"figure_scale_law", "claims"},
         ("workflow/scripts/spectra.py",): {
             "spectrum_part", "spectra", "check_data_sets", "figure_scale_law", "claims"
         },
@@ -112,7 +112,7 @@ def test_another_restitution_leaves_the_boundaries_of_the_others(smoke_run: Path
     assert {*re.findall(r"boundaries of the \w+ pulse at restitution (\S+)", planned)} == {"0.87"}
 
 
-@pytest.mark.parametrize("name", ["paper", "atlas", "atlas-small"])
+@pytest.mark.parametrize("name", but_long(["paper", "atlas", "atlas-small"], "atlas-small"))
 def test_other_configurations_are_valid(name: str, tmp_path: Path) -> None:
     planned = snakemake(tmp_path, "--dry-run", "--quiet", configuration=PROJECT / f"workflow/config/{name}.yaml")
     assert planned.returncode == 0, planned.stdout
@@ -133,15 +133,3 @@ def test_stored_manifests_are_those_of_their_configurations(path: Path) -> None:
     assert set(listed) == expected | figures | claims
     assert all("content_sha256" in entry for name, entry in listed.items() if name.endswith(".nc"))
     assert len({entry["processor"] for entry in listed.values()}) == 1
-
-
-def test_each_rule_has_a_message_log_and_benchmark() -> None:
-    linted = snakemake(PROJECT, "--lint")
-    remarks = set(re.findall(r"^ {4}\* (.*?):?$", linted.stdout, flags=re.MULTILINE))
-    assert {remark for remark in remarks if "PYTHONPATH" not in remark} == {
-        "Specify a conda environment or container for each rule."  # make builds the environment from the lock
-    }
-    for rules in (PROJECT / "workflow/rules").glob("*.smk"):
-        for rule in re.split(r"^ *rule ?\w*:$", rules.read_text(), flags=re.MULTILINE)[1:]:
-            for directive in ("message", "input" if "figure" in rule else "output", "log", "benchmark", "params"):
-                assert re.search(rf"^ +{directive}:$", rule, flags=re.MULTILINE), f"{rules.name}: {directive}"

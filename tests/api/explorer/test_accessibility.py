@@ -7,6 +7,7 @@ from tests.api.explorer import axe
 from tests.api.explorer.reading import BLOCK, COMPLETE, POINT, settle
 from tests.api.explorer.test_object import HEADSTONE, SLAB
 from tests.api.explorer.test_records import choose, short_record
+from tests.sampling import but_long
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -15,7 +16,7 @@ def _fetched():
         pytest.skip(axe.HOW)
 
 
-@pytest.mark.parametrize(("path", "scheme"), [(POINT, "light"), (BLOCK, "dark")])
+@pytest.mark.parametrize(("path", "scheme"), [pytest.param(POINT, "light", marks=pytest.mark.long), (BLOCK, "dark")])
 def test_the_explorer_is_accessible(open_page, path, scheme):
     page = open_page(path, color_scheme=scheme)
     settle(page)
@@ -55,7 +56,9 @@ def test_the_page_of_objects_is_accessible(open_page):
     assert_accessible_in_light_and_dark(page)
 
 
-@pytest.mark.parametrize("path", [SLAB, HEADSTONE, SLAB.replace("width=40", "width=-1"), "/object?shape=mesh"])
+@pytest.mark.parametrize(
+    "path", but_long([SLAB, HEADSTONE, SLAB.replace("width=40", "width=-1"), "/object?shape=mesh"], SLAB)
+)
 def test_the_page_of_one_object_is_accessible(open_page, path):
     page = open_page(path)
     if page.locator("details").count():
@@ -63,7 +66,7 @@ def test_the_page_of_one_object_is_accessible(open_page, path):
     assert_accessible_in_light_and_dark(page)
 
 
-@pytest.mark.parametrize("path", ["/datasets", "/state", "/suites", "/nowhere"])
+@pytest.mark.parametrize("path", but_long(["/datasets", "/state", "/suites", "/nowhere"], "/datasets"))
 def test_other_pages_are_accessible(open_page, path):
     page = open_page(path, failing=True)
     page.wait_for_function(COMPLETE.get(path, "() => true"))

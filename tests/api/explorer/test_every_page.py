@@ -5,6 +5,7 @@ from playwright.sync_api import expect
 from rocking_api.routers.pages import PAGES
 
 from tests.api.explorer.reading import BLOCK, COMPLETE, query, settle
+from tests.sampling import but_long
 
 OWN = [page.path for page in PAGES if page.template or page.path == "/objects"]  # the guide is built apart
 
@@ -20,7 +21,7 @@ SMALL = """() => {
 """Controls below 24 px in height or width; links within a sentence are as high as its lines."""
 
 
-@pytest.mark.parametrize("path", [*OWN, "/objects?sample=1", "/nowhere"])
+@pytest.mark.parametrize("path", but_long([*OWN, "/objects?sample=1", "/nowhere"], "/", "/objects?sample=1"))
 def test_no_message_one_navigation_and_large_targets(open_page, path):
     page = open_page(path, failing=path == "/nowhere", viewport={"width": 390, "height": 900})
     page.wait_for_function(COMPLETE.get(path, "() => true"))

@@ -6,6 +6,7 @@ from playwright.sync_api import expect
 from tests.api.explorer.reading import BLOCK, POINT, settle
 from tests.api.explorer.test_object import HEADSTONE, SLAB
 from tests.api.explorer.test_records import choose, short_record
+from tests.sampling import but_long, number
 
 OVERLAPS = """() => {
     const parts = "input, select, button, a, label, output, #map-marks, #legend span, h1, h2, h3, p, dt, dd, canvas";
@@ -26,7 +27,7 @@ OVERLAPS = """() => {
     return found;
 }"""
 
-WIDTHS = range(320, 1441, 40)
+WIDTHS = range(320, 1441, number(160, 40))
 """Widths of the window [px]."""
 
 # The charts follow the width of the window when the browser draws its next frame, before anything is seen.
@@ -42,7 +43,10 @@ def test_nothing_overlaps_on_the_explorer(open_page, path):
     assert overlaps_by_width(page) == {}
 
 
-@pytest.mark.parametrize("path", [SLAB, HEADSTONE, "/objects", "/records", "/suites", "/datasets", "/state"])
+PATHS = [SLAB, HEADSTONE, "/objects", "/records", "/suites", "/datasets", "/state"]
+
+
+@pytest.mark.parametrize("path", but_long(PATHS, "/objects"))
 def test_nothing_overlaps_on_the_other_pages(open_page, path):
     page = open_page(path, viewport={"width": 320, "height": 900})
     if path == "/records":

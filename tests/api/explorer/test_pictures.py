@@ -9,6 +9,7 @@ import pytest
 from tests.api.explorer import plain_font
 from tests.api.explorer.pictures import MAX_SQUARES, NEW, WINDOW, State, different_squares, store, stored, take
 from tests.api.explorer.reading import BLOCK, COMPLETE, POINT
+from tests.sampling import but_long
 
 if sys.platform != "linux":
     pytest.skip("the font of the pictures is set by fontconfig", allow_module_level=True)
@@ -53,7 +54,7 @@ def picture(open_page):
     return taken
 
 
-@pytest.mark.parametrize("name", STATES)
+@pytest.mark.parametrize("name", but_long(STATES, "map", "objects"))
 def test_a_page_is_its_stored_picture(picture, name):
     shown = picture(STATES[name])
     if os.environ.get(NEW):
@@ -96,7 +97,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("wrong", WRONG)
+@pytest.mark.parametrize("wrong", but_long(WRONG, "axis of the map"))
 def test_a_wrong_picture_is_noticed(picture, wrong):
     name, change = WRONG[wrong]
     assert different_squares(picture(STATES[name], change), stored(name)) > 2 * MAX_SQUARES

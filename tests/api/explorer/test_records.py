@@ -96,15 +96,6 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     expect(page.locator("#your-block")).to_be_visible()
 
 
-def test_another_factor_overturns_the_block(open_page, content, motion):
-    page = open_page("/records")
-    page.locator("#scale").fill("4")
-    assert BLOCK.response(motion, scale=4.0).overturned
-    choose(page, "short.csv", content)
-    expect(page.locator(".verdict")).to_have_text("It overturns.")
-    expect(page.locator("#motion-caption")).to_contain_text("It overturns")
-
-
 def test_an_example_is_loaded_and_follows_the_slider_of_its_factor(open_page):
     page = open_page("/records")
     expect(page.locator("#dropped")).to_contain_text("South Napa 2014")
@@ -148,18 +139,6 @@ def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, moti
     expect(page.locator("#answer")).to_have_attribute("data-shown", re.compile("plain.txt"))
     expect(page.locator(".verdict")).to_be_visible()
     expect(page.locator("#file-problem")).to_be_hidden()
-
-
-def test_the_report_of_a_block_under_a_pulse_repeats_its_numbers(open_page):
-    page = open_page("/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=momentum")
-    expect(page.locator("#rotation canvas")).to_be_visible()
-    page.locator("#open-report").click()
-    report = page.locator("#report")
-    stated = "Peak rotation", "It overturns from", "width=0.4+m", "/v1/blocks/response?", "theta''"
-    for words in (*stated, f"rocking {rocking.__version__}"):
-        expect(report).to_contain_text(words)
-    assert report.locator("canvas").count() == 2
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_surviving(open_page, content, motion):

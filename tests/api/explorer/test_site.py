@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from tests.api.explorer.reading import query
+from tests.sampling import but_long
 
 VASE = rocking.Object("vase", width=0.22, height=0.55)
 SITE = rocking.Site(pga="0.3 g", pgv="30 cm/s")
@@ -36,7 +37,7 @@ def ask_by_keyboard(page, **values):
             return
 
 
-@pytest.mark.parametrize("touch", [False, True])
+@pytest.mark.parametrize("touch", but_long([False, True], True))
 def test_is_a_vase_stable_at_this_site_and_how_wide_must_its_base_be(open_page, touch):
     options = {"has_touch": True, "viewport": {"width": 390, "height": 844}} if touch else {}
     page = open_page("/", **options)

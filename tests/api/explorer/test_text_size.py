@@ -5,6 +5,7 @@ import pytest
 from tests.api.explorer.reading import BLOCK, settle
 from tests.api.explorer.test_layout import NEXT_FRAME
 from tests.api.explorer.test_records import choose, short_record
+from tests.sampling import but_long
 
 RECORD_TEXT = """() => {
     window.texts = [];
@@ -58,7 +59,7 @@ def faults(texts):
     return found
 
 
-@pytest.mark.parametrize("path", [BLOCK, "/records", "/suites"])
+@pytest.mark.parametrize("path", but_long([BLOCK, "/records", "/suites"], BLOCK))
 def test_drawings_follow_the_size_of_the_text(open_page, path):
     page = open_page("about:blank")
     page.add_init_script(f"({RECORD_TEXT})()")
