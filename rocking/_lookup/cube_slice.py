@@ -50,7 +50,7 @@ class Layers:
         self._lock = Lock()
 
     def __reduce__(self) -> tuple[type[Layers], tuple[tuple[int, ...], Callable[[int], Nodes]]]:
-        return Layers, (self._nodes.shape, self._read)  # a copy reads the nodes anew
+        return Layers, (self._kept[0].shape, self._read)  # a copy reads the nodes anew
 
     @property
     def nbytes(self) -> int:
