@@ -65,8 +65,8 @@ class Kind(Generic[Made]):
         parameters = inspect.signature(self.make).parameters.items()
         return frozenset(name for name, one in parameters if one.default is inspect.Parameter.empty)
 
-    def read(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """The parameters in SI units; texts have their units, labelled arrays stay as they are.
+    def read(self, given: Mapping[str, Any], *, numbers: bool = False) -> dict[str, Any]:
+        """The parameters in SI units, `numbers` or arrays; texts have their units, labelled arrays stay as they are.
 
         Raises
         ------
@@ -83,7 +83,8 @@ class Kind(Generic[Made]):
         for name in self.fields:
             if name in self.needed and given.get(name) is None:
                 raise InvalidArgumentError(name, None, f"required for {self.name}({', '.join(self.fields)})")
-        return {name: _read(self.fields[name], value) for name, value in given.items() if value is not None}
+        read = Quantity.read if numbers else _read
+        return {name: read(self.fields[name], value) for name, value in given.items() if numbers or value is not None}
 
     def __call__(self, **given: Any) -> Made:
         """Make one from what `read` reads; an error has the value that was given."""

@@ -239,7 +239,7 @@ def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
     if base not in _KINDS:
         one_of("pulse", base, pulse_names())
         raise InvalidArgumentError(next(iter(given)), next(iter(given.values())), f"for {base}: no parameters")
-    return _build_pulse(sign, base, **(_KINDS[base].read(given) if given else {}))
+    return _build_pulse(sign, base, **(_KINDS[base].read(given, numbers=True) if given else {}))
 
 
 def split_pulses(text: str) -> list[str]:
