@@ -115,6 +115,7 @@ OBJECTS: dict[str, Any] = {
     "motions": [noise(k) for k in range(4)], "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
     "fragility": FRAGILITY, "site": rocking.Site(pga=3.0, pgv=0.4), "argument": Orientation.L0,
+    "description": "rectangle(width=0.5m, height=2m)",
     "group_set": GroupSet.RIGID_SMALL_ROTATION, "problem": Problem(0.3, 2.0, 5.0, 10.0), "groups": Groups(5.0, 0.6),
 }  # fmt: skip
 """Arguments that are no numbers."""
@@ -142,6 +143,7 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
     "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
     "resolution": (0.01, ""), "skip": (0, ""),
+    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -150,7 +152,7 @@ TEXTS = {
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
-    "column", "standards", "detail",
+    "column", "standards", "detail", "directions", "body",
 }  # fmt: skip
 """Options and arguments that take none."""
 
@@ -164,6 +166,8 @@ VARIANTS = (
     {"width", "height", "offset", "mass_height", "peak_acceleration", "period", "duration"},
     {"width", "height", "peak_acceleration", "period", "period_min", "period_max"},
     {"pga", "pgv"},
+    {"left", "right", "mass_height", "gyration", "peak_acceleration", "period", "duration", "pga"},
+    {"diameter", "height", "peak_acceleration", "period", "duration", "pga"},
 )
 """Options that are given together, beside those that go with all."""
 
@@ -190,7 +194,7 @@ SUITE: dict[str, Any] = {
 
 QUERY: dict[str, Any] = {
     "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
-    "mass_height": 0.8, "skip": 0,
+    "mass_height": 0.8, "skip": 0, "limit": 2,
     "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
     "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
 }  # fmt: skip

@@ -12,6 +12,7 @@ from scipy import stats
 
 import rocking
 from rocking import EquivalentBlock, InvalidArgumentError, paper
+from rocking._base.units import Scalar
 from rocking._datasets.cube import write_dataset
 from rocking._spectra.cubes import spectrum
 from rocking.paper import Orientation
@@ -267,7 +268,14 @@ def scalars(function: Callable[..., Any]) -> list[str]:
         parameters = inspect.signature(function).parameters.values()
     except ValueError:  # an enumeration, an error
         return []
-    return [one.name for one in parameters if SCALAR.fullmatch(str(one.annotation))]
+    return [one.name for one in parameters if is_scalar(one.annotation)]
+
+
+def is_scalar(annotation: Any) -> bool:
+    """Whether an annotation, a text in modules that import annotations from the future, is that of a number."""
+    if isinstance(annotation, str):
+        return bool(SCALAR.fullmatch(annotation))
+    return any(annotation in (one, one | None) for one in (float, int, Scalar))
 
 
 def public_functions(module: ModuleType, prefix: str = "") -> Iterator[tuple[str, list[str]]]:
