@@ -34,8 +34,8 @@ SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
 ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
-SMALLEST_SCALE = 1e-6
-"""Smallest factor of a record [-]."""
+SCALES = 1e-6, q.HIGHEST_SCALE
+"""Smallest and largest factor of a record [-]."""
 
 
 def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:
@@ -124,7 +124,7 @@ MassHeight = _in_range(q.MASS_HEIGHT, 1e-4, 1e4, kind=float | None)
 Gravity = _in_range(q.GRAVITY, 1e-3, 1e3)
 PeakAcceleration = _in_range(q.PEAK_ACCELERATION, 1e-6, 1e6, examples=[4.0])
 Period = _in_range(q.PERIOD, 1e-4, 1e4, examples=[0.5])
-Scale = Annotated[float, described(q.SCALE.restricted(SMALLEST_SCALE, q.HIGHEST_SCALE))]
+Scale = Annotated[float, described(q.SCALE.restricted(*SCALES))]
 Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
 """An impact at a share k of the half base."""
 BodyRestitution = Annotated[

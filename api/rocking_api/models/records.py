@@ -11,7 +11,18 @@ from pydantic import BaseModel, create_model
 from rocking_api.models.answer import QUERY, Answer
 from rocking_api.models.blocks import NOTES, BodyParams, Edge, ScaleThreshold, SizeParams
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.quantity import BaselineOrder, Contact, Format, Scale, Skip, TimeStep, Unit, between, said
+from rocking_api.models.quantity import (
+    SCALES,
+    BaselineOrder,
+    Contact,
+    Format,
+    Scale,
+    Skip,
+    TimeStep,
+    Unit,
+    between,
+    said,
+)
 from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
 
 MAX_SCALES = 2000
@@ -66,8 +77,8 @@ class RecordHistoryParams(RecordParams):
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
-    scale_min: Scale | None = said("smallest factor [-]; absent: that of uplift", None)
-    scale_max: Scale | None = said("largest factor [-]; absent: ten times that of uplift", None)
+    scale_min: float | None = between(*SCALES, "smallest factor [-]; absent: that of uplift", default=None)
+    scale_max: float | None = between(*SCALES, "largest factor [-]; absent: ten times that of uplift", default=None)
     points: int = between(2, MAX_SCALES, "factors, evenly spaced in their logarithm [-]", default=200)
     format: Format = None
 
