@@ -123,7 +123,8 @@ class Quantity:
         if not self.unit or (isinstance(value, str) and value.partition("(")[0].strip() in self.words):
             return value
         try:
-            if isinstance(value, str) and (si or self.unit not in USUAL):  # a number, or a percentage
+            # a number, or a percentage; Python also takes digits of other scripts, and underscores
+            if isinstance(value, str) and (si or self.unit not in USUAL) and value.isascii() and "_" not in value:
                 with suppress(ValueError):
                     value = float(value)
             return self.number(value)
