@@ -71,7 +71,7 @@ _PARTS = 16
 """Values between the two ends of an interval that is bisected, solved by one call."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lines:
     """Bodies under samples, each a line of strengths.
 

@@ -111,6 +111,8 @@ def spread_impact(momentum: Any, share: float) -> Any:
     eta = (S - k^2 b^2)/(S + k^2 b^2), S = r^2 + h^2, from that of k = 1, `momentum`; of a rectangle
     (4 - 3 s (1 + k^2))/(4 - 3 s (1 - k^2)), s = sin^2 alpha (Kalliontzis et al. 2016, after a secondary source).
     """
+    if share == 1.0:
+        return np.maximum(momentum, 0.0)  # to the last digit
     kept, lost = 1.0 + momentum, share * share * (1.0 - momentum)
     return np.maximum((kept - lost) / (kept + lost), 0.0)
 
