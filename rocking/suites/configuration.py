@@ -17,13 +17,10 @@ from numpy.typing import NDArray
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._base.quantities import RESTITUTION
-from rocking._dimensional.body_kinds import body
-from rocking._dimensional.rigid_body import RigidBody
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
-from rocking._model.block import AbstractBlock
-from rocking.suites.body_arrays import blocks_of, has_equal_edges
+from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES
@@ -211,11 +208,21 @@ def _blocks(given: Any) -> tuple[AbstractBlock, ...]:
 
 def _block(section: str, given: Any) -> AbstractBlock:
     """A body with equal edges from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
+    if isinstance(given, Mapping) and given.keys() == {"width", "height"}:
+        return RectangularBlock(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
+    # others need numba, which the rules of a workflow do not
+    from rocking._dimensional.block import Block  # noqa: PLC0415
+    from rocking._dimensional.body_kinds import body  # noqa: PLC0415
+    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
+    from rocking.suites.body_arrays import blocks_of, has_equal_edges  # noqa: PLC0415
+
     try:
         made = body(given)
     except InvalidArgumentError as error:
         place = section if error.parameter == "body" else f"{section}.{error.parameter}"
         raise InvalidArgumentError(place, error.value, error.allowed) from None
+    if isinstance(made, Block):
+        return RectangularBlock(made.width, made.height, made.gravity)
     if isinstance(made, AbstractBlock):
         return made
     if not (isinstance(made, RigidBody) and has_equal_edges(made)):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import rocking
+import rocking._base.quantities as quantities
 from rocking import Outcome
-from rocking._base import quantities
 from rocking._excitation.pulses import SinusoidalPulse
 from rocking._solver.kernels.event_loop import on_impact, start_flight
 from tests.kernels import cell

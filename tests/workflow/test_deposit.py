@@ -41,7 +41,9 @@ def test_archive_holds_every_product_and_verifies_itself(folder: Path, smoke_res
     held = {path.relative_to(folder / "data").as_posix() for path in (folder / "data").rglob("*") if path.is_file()}
     assert held == {*products, "manifest.json"}
     done = verified(folder)
-    assert (done.returncode, done.stdout) == (0, f"all {len(products) + 5} files are as listed\n")
+    problems = {path.name for path in (PROJECT / "reference" / "problems").iterdir()}
+    assert {path.name for path in (folder / "reference-problems").iterdir()} == problems
+    assert (done.returncode, done.stdout) == (0, f"all {len(products) + len(problems) + 5} files are as listed\n")
     if shutil.which("sha256sum"):
         subprocess.run(["sha256sum", "--check", "--quiet", "SHA256SUMS"], cwd=folder, check=True)
 

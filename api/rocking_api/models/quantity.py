@@ -21,7 +21,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from rocking._base import quantities as q
+import rocking._base.quantities as q
 from rocking._base.quantity import Quantity
 from rocking._excitation.pulses import pulse_names, pulse_parameters
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
