@@ -93,7 +93,7 @@ def once(tmp_path_factory: pytest.TempPathFactory, testrun_uid: str) -> Callable
         base = base.parent  # shared by all workers
 
     def made(name: str, make: Callable[[Path], None]) -> Path:
-        folder, complete = base / f"{name}-{testrun_uid}", base / f"{name}.complete"
+        folder, complete = base / f"{name}-{testrun_uid}", base / f"{name}-{testrun_uid}.complete"
         with (base / f"{name}.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not complete.exists():

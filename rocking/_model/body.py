@@ -50,16 +50,17 @@ def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gr
     `tilt`: angle by which the base is inclined towards this edge [rad].
     """
     b, c, h, r = distance, other, height, gyration
-    square = r * r + h * h
-    about_edge = square + b * b
-    radius = np.hypot(h, b)
-    return Edge(
-        alpha=np.arctan2(b, h) - tilt,  # below (2.1)
-        frequency_parameter=np.sqrt(gravity * radius / about_edge),  # below (2.2)
-        # angular momentum about the new edge, (2.4) for a rectangle
-        restitution=(square - b * c) / (square + c * c),
-        inertia_ratio=radius * radius / about_edge,
-    )
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond 1e150 m nan follows, which a response refuses
+        square = r * r + h * h
+        about_edge = square + b * b
+        radius = np.hypot(h, b)
+        return Edge(
+            alpha=np.arctan2(b, h) - tilt,  # below (2.1)
+            frequency_parameter=np.sqrt(gravity * radius / about_edge),  # below (2.2)
+            # angular momentum about the new edge, (2.4) for a rectangle
+            restitution=(square - b * c) / (square + c * c),
+            inertia_ratio=radius * radius / about_edge,
+        )
 
 
 def rebound_of(alpha: Array) -> Array:
