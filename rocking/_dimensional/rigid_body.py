@@ -120,6 +120,9 @@ class RigidBody(RespondingBody):
         )
         vars(self).update(_given=checked, labels=labels, index=index, sides=sides)  # it is frozen
         for edge, sign in ((self.right, 1.0), (self.left, -1.0)):
+            if not np.all(edge.frequency_parameter > 0.0):  # squares of lengths are no numbers, or their p is 0
+                name = max(checked, key=lambda one: float(np.max(checked[one])))
+                raise InvalidArgumentError(name, float(np.max(checked[name])), "at most 1e150 m")
             if not np.all(edge.alpha > 0.0):
                 limit = math.degrees(float(np.min(edge.alpha + sign * self.tilt)))
                 bound = f"less than {limit:.4g}" if sign > 0.0 else f"more than {-limit:.4g}"

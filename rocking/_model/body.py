@@ -50,7 +50,7 @@ def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gr
     `tilt`: angle by which the base is inclined towards this edge [rad].
     """
     b, c, h, r = distance, other, height, gyration
-    with np.errstate(over="ignore", invalid="ignore"):  # beyond 1e150 m nan follows, which a response refuses
+    with np.errstate(over="ignore", invalid="ignore"):  # beyond 1e150 m, which a body refuses
         square = r * r + h * h
         about_edge = square + b * b
         radius = np.hypot(h, b)
