@@ -22,7 +22,7 @@ from rocking._base.quantities import (
     WIDTH,
 )
 from rocking._base.quantity import Quantity
-from rocking._dimensional.body_kinds import BODIES, RIGID
+from rocking._dimensional.body_kinds import RIGID, WITHOUT_FILES
 
 INPUTS = (
     NAME,
@@ -46,7 +46,7 @@ STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are re
 
 BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
 
-_KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
+_KINDS = [WITHOUT_FILES[make.__name__] for make in RIGID if make.__name__ in WITHOUT_FILES]
 
 _OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination", "sides", "rebound"}
 

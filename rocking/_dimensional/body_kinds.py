@@ -21,6 +21,9 @@ BODIES: dict[str, Kind[RespondingBody]] = {
 }
 """Where only parameters are given, the first kind that has them."""
 
+WITHOUT_FILES = {name: kind for name, kind in BODIES.items() if not kind.reads_files}
+"""What may be described by strangers: over HTTP, and in tables."""
+
 
 def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingBody:
     """The body of a description, such as `"hollow(width=40cm, height=1.6m, wall=2cm)"`.
@@ -44,22 +47,32 @@ def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingB
     >>> body("cylinder", diameter="30 cm", height="1.2 m")
     <rocking.RigidBody: body on edges 0.15 m left and 0.15 m right of its mass at 0.6 m>
     """
+    kind, given = described(description, parameters)
+    return kind(**given)
+
+
+def described(
+    description: str | Mapping[str, Any] | None,
+    parameters: Mapping[str, Any],
+    kinds: Mapping[str, Kind[RespondingBody]] = BODIES,
+) -> tuple[Kind[RespondingBody], dict[str, Any]]:
+    """The kind of a body and its parameters as they are stated; the arguments and errors are those of `body`."""
     from rocking._base.errors import InvalidArgumentError, one_of  # noqa: PLC0415
 
     text: Any = description
     if isinstance(text, Mapping):
-        parameters = {str(key): value for key, value in text.items() if key != "kind"} | parameters
+        parameters = {str(key): value for key, value in text.items() if key != "kind"} | dict(parameters)
         text = text.get("kind")
-        kind = kind_with(BODIES, parameters)
-        if text is None and kind is not None:
-            return kind(**parameters)
+    kind = kind_with(kinds, parameters)
+    if text is None and kind is not None:
+        return kind, dict(parameters)
     parts = split_kind(text, "body") if isinstance(text, str) else None
     if parts is None or parts[0]:
         stated = ", ".join(parameters) if text is None else text
-        raise InvalidArgumentError("body", stated, f"the name or the parameters of one of: {signatures()}")
+        raise InvalidArgumentError("body", stated, f"the name or the parameters of one of: {signatures(kinds)}")
     if parts[2].keys() & parameters.keys():
         raise InvalidArgumentError("body", text, "each parameter once")
-    return BODIES[one_of("body", parts[1], BODIES)](**parts[2], **parameters)
+    return kinds[one_of("body", parts[1], kinds)], {**parts[2], **parameters}
 
 
 def signatures(kinds: Mapping[str, Kind[Any]] = BODIES) -> str:
