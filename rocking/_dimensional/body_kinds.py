@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rocking._base.kinds import Kind, kind_with, split_kind
+from rocking._base.quantity import Quantity
 from rocking._dimensional.bodies.composite import hollow, on_pedestal
 from rocking._dimensional.bodies.rigid import cylinder, mesh, offset_mass, outline, rectangle, two_edges
 from rocking._dimensional.bodies.structures import arch, frame, on_pivots, structure
@@ -23,6 +24,17 @@ BODIES: dict[str, Kind[RespondingBody]] = {
 
 WITHOUT_FILES = {name: kind for name, kind in BODIES.items() if not kind.reads_files}
 """What may be described by strangers: over HTTP, and in tables."""
+
+KIND = Quantity("body", "", "kind of body, where its parameters do not say it")
+
+_TABLED = [WITHOUT_FILES[make.__name__] for make in RIGID if make.__name__ in WITHOUT_FILES]
+
+
+def columns_beside(own: Iterable[Quantity], *left_out: str) -> tuple[Quantity, ...]:
+    """The columns of tables of bodies: the kind, and the parameters of rigid ones that are not among a table's own."""
+    taken = {name for one in own for name in one.names} | {"gravity", *left_out}
+    found = {name: one for kind in _TABLED for name, one in kind.fields.items() if one.names[0] not in taken}
+    return (KIND, *found.values())
 
 
 def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingBody:

@@ -9,7 +9,8 @@ from typing import Any
 from pydantic import BaseModel, create_model
 
 from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import NOTES, BodyParams, Edge, ScaleThreshold, SizeParams
+from rocking_api.models.blocks import NOTES, Edge, ScaleThreshold
+from rocking_api.models.body_params import BodyParams, JsonBody
 from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.quantity import (
     SCALES,
@@ -23,7 +24,7 @@ from rocking_api.models.quantity import (
     between,
     said,
 )
-from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
+from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, ContactResponse, Motion, declared, with_fields
 
 MAX_SCALES = 2000
 """Most factors of a curve over the scale [-]."""
@@ -37,8 +38,8 @@ CAUTION = (
 )
 
 
-class RecordFileParams(SizeParams):
-    """A block in SI units, and what the file of the record does not state."""
+class RecordFileParams(BodyParams):
+    """A body in SI units, and what the file of the record does not state."""
 
     name: str = said("name of the file, for messages", "record", max_length=200)
     unit: Unit = None
@@ -57,8 +58,8 @@ class RecordParams(RecordFileParams):
     scale: Scale = 1.0
 
 
-class RecordResponseParams(BodyParams, RecordParams):
-    """The same, the place of the centre of mass, and whether to search thresholds and to fit a pulse."""
+class RecordResponseParams(RecordParams):
+    """The same, and whether to search thresholds and to fit a pulse."""
 
     thresholds: bool = said("find all scales at which the outcome changes, which takes most of the time", True)
     fit: bool = said("fit a pulse, and compare how both overturn the block", False)
@@ -93,6 +94,7 @@ class RecordBody(RecordFileParams):
     """A record in a JSON body, with the parameters of its route."""
 
     record: str = said("text of the file")
+    body: JsonBody  # type: ignore[assignment]  # a text once it is read
 
 
 @cache
@@ -181,6 +183,22 @@ class RecordHistoryResponse(RecordAnswer, Motion):
     vertical_acceleration: list[float] | None = said(
         "of the ground over g, upwards [-]; null: the record has no vertical component", None
     )
+
+
+@declared(OF_SOLVER[1:-1])
+class RecordBodyHistoryResponse(RecordAnswer):
+    """A motion under a record of a body with other edges than those of a block, in SI units."""
+
+    query: RecordHistoryParams = QUERY
+    time: list[float] = said("from the first sample [s]")
+    impact_time: list[float] = said("times of the impacts [s]")
+    rotation: list[float] = said("theta, positive about the right edge [rad]")
+    angular_velocity: list[float] = said("theta' [rad/s]")
+    edge: list[int] = said("edge in contact: 1 right, -1 left, 0 both [-]")
+    ground_acceleration: list[float] = said("horizontal [m/s2]")
+    vertical_acceleration: list[float] = said("upwards [m/s2]")
+    top_displacement: list[float] = said("horizontal displacement of the top [m]")
+    contact: ContactResponse | None = said("null unless requested", None)
 
 
 @declared(OF_SOLVER, many=True)

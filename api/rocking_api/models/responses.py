@@ -136,9 +136,11 @@ class ContactResponse(BaseModel):
     horizontal_reaction: list[float] = said("H/(m g) at the pivot [-]; 0 in the slender limit")
     normal_reaction: list[float] = said("N/(m g) [-]; 0 and below: the block lifts off")
     friction_demand: list[float | None] = said("|H|/N [-]; null where N <= 0; 0 in the slender limit")
-    friction_demand_over_slope: list[float | None] = said("|H|/(N tan alpha) [-]; null where N <= 0")
+    friction_demand_over_slope: list[float | None] | None = said(
+        "|H|/(N tan alpha) [-]; null where N <= 0, and without one alpha", None
+    )
     largest_friction_demand: float | None = said("also between the samples [-]; null if it lifts off")
-    largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]")
+    largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]", None)
     smallest_normal_reaction: float = said("over the weight [-]; 0 and below: it lifts off")
     impulse_ratio: float | None = said(
         "horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
