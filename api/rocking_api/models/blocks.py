@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, SerializeAsAny
+from pydantic import BaseModel
 
 from rocking._dimensional.fields import FIELDS
 from rocking_api.models import quantity as q
-from rocking_api.models.answer import ECHO, QUERY, Answer
+from rocking_api.models.answer import BY_SOLVER, Echoed, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
-from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, PointResponse, declared, with_fields
+from rocking_api.models.responses import PointResponse, declared, with_fields
 
-MAX_BLOCKS = 10_000
-"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
+MAX_BLOCKS = 10_000  # most blocks of a body [-]: each is an object, unlike the points of /v1/response
 
 
 class BlockParams(BodyParams):
@@ -68,13 +66,11 @@ _OF_TABLE = [
 
 
 @declared(_OF_TABLE, many=True)
-class BlocksResponse(Answer):
+class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
     """Many bodies: one value for each, in the order of the body; SI units, degrees and groups."""
 
-    query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
     name: list[str] | None = q.said("labels; null without any", None)
     body: list[str] | None = q.said("what each is; null if all are blocks", None)
-    metadata: Metadata = METADATA_FIELD
     source: str = BY_SOLVER
 
 
@@ -140,22 +136,19 @@ class Margins(BaseModel):
 
 
 @with_fields("pulse", "edges")
-class BodyResponse(Answer):
+class BodyResponse(InUnits[BlockParams]):
     """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
-    query: BlockParams = QUERY
     edge: Edge
     thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
     notes: list[str] = NOTES
     source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
 @with_fields("pulse", "block")
-class BlockResponse(Answer):
+class BlockResponse(InUnits[BlockParams]):
     """What happens to the block."""
 
-    query: BlockParams = QUERY
     response: PointResponse = q.said("the same request and response in dimensionless groups")
     thresholds: list[Threshold] | None = q.said(
         f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
@@ -163,4 +156,3 @@ class BlockResponse(Answer):
     margins: Margins | None = q.said("null if they were not found in time, see `warnings`")
     notes: list[str] = NOTES
     data_version: str | None = q.said("sha256 of the data set that gave the response; null: the solver did")
-    metadata: Metadata = METADATA_FIELD

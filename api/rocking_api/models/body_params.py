@@ -17,14 +17,9 @@ from rocking_api.models.params import Params
 
 P = TypeVar("P", bound=Params)
 
-MAX_VERTICES = 200
-"""Most vertices of an outline [-]."""
-
-EXAMPLES = {quantities.WIDTH.name: 0.4, quantities.HEIGHT.name: 1.6}
-"""Values that the pages of the description fill in."""
-
-APART = ("restitution", "gravity")
-"""Parameters of kinds that belong to every body."""
+MAX_VERTICES = 200  # most vertices of an outline [-]
+EXAMPLES = {quantities.WIDTH.name: 0.4, quantities.HEIGHT.name: 1.6}  # values that the pages of the description fill in
+APART = ("restitution", "gravity")  # parameters of kinds that belong to every body
 
 Text = Annotated[str, Field(max_length=2000)]
 _Point = Annotated[list[float], Field(min_length=2, max_length=2)]

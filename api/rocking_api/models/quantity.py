@@ -34,8 +34,7 @@ SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
 ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
-SCALES = 1e-6, q.HIGHEST_SCALE
-"""Smallest and largest factor of a record [-]."""
+SCALES = 1e-6, q.HIGHEST_SCALE  # smallest and largest factor of a record [-]
 
 
 def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:

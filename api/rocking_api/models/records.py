@@ -8,10 +8,9 @@ from typing import Any
 
 from pydantic import BaseModel, create_model
 
-from rocking_api.models.answer import QUERY, Answer
+from rocking_api.models.answer import BY_SOLVER, InUnits, Q
 from rocking_api.models.blocks import NOTES, Edge, ScaleThreshold
 from rocking_api.models.body_params import BodyParams, JsonBody
-from rocking_api.models.metadata import METADATA_FIELD, Metadata
 from rocking_api.models.quantity import (
     SCALES,
     BaselineOrder,
@@ -24,13 +23,10 @@ from rocking_api.models.quantity import (
     between,
     said,
 )
-from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, ContactResponse, Motion, declared, with_fields
+from rocking_api.models.responses import OF_SOLVER, ContactResponse, Motion, declared, with_fields
 
-MAX_SCALES = 2000
-"""Most factors of a curve over the scale [-]."""
-
-MAX_DRAWN = 100_000
-"""Most samples of a drawing [-]."""
+MAX_SCALES = 2000  # most factors of a curve over the scale [-]
+MAX_DRAWN = 100_000  # most samples of a drawing [-]
 
 CAUTION = (
     "A fitted pulse describes a record and does not replace it: what it leaves out moves blocks as well, so that the "
@@ -127,12 +123,11 @@ class RecordDescription(BaseModel):
     digest: str = said("sha256 of the time step and the samples of all components")
 
 
-class RecordAnswer(Answer):
+class RecordAnswer(InUnits[Q]):
     """Base of the models of what is found under a record."""
 
     record: RecordDescription = said("the record, as read")
     source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
 class FittedPulse(BaseModel):
@@ -155,29 +150,27 @@ _SCALES = said("all scales at which the outcome changes, ascending; null: not as
 
 
 @with_fields("record", "block")
-class RecordResponse(RecordAnswer):
+class RecordResponse(RecordAnswer[RecordResponseParams]):
     """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
 
-    query: RecordResponseParams = QUERY
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
     pulse: FittedPulse | None = said("null unless requested", None)
 
 
 @with_fields("record", "edges")
-class RecordBodyResponse(RecordAnswer):
+class RecordBodyResponse(RecordAnswer[RecordResponseParams]):
     """What happens to a body whose centre of mass is not that of the block."""
 
-    query: RecordResponseParams = QUERY
     edge: Edge
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
 
 
-class RecordHistoryResponse(RecordAnswer, Motion):
+@declared(OF_SOLVER[:-1])
+class RecordHistoryResponse(Motion, RecordAnswer[RecordHistoryParams]):
     """A motion under a record."""
 
-    query: RecordHistoryParams = QUERY
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")
     vertical_acceleration: list[float] | None = said(
@@ -186,10 +179,9 @@ class RecordHistoryResponse(RecordAnswer, Motion):
 
 
 @declared(OF_SOLVER[1:-1])
-class RecordBodyHistoryResponse(RecordAnswer):
+class RecordBodyHistoryResponse(RecordAnswer[RecordHistoryParams]):
     """A motion under a record of a body with other edges than those of a block, in SI units."""
 
-    query: RecordHistoryParams = QUERY
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")
     rotation: list[float] = said("theta, positive about the right edge [rad]")
@@ -202,10 +194,9 @@ class RecordBodyHistoryResponse(RecordAnswer):
 
 
 @declared(OF_SOLVER, many=True)
-class RecordScalesResponse(RecordAnswer):
+class RecordScalesResponse(RecordAnswer[RecordScalesParams]):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
-    query: RecordScalesParams = QUERY
     scale: list[float] = said("factors of the record [-]")
     peak_acceleration: list[float] = said("PGA of the scaled record [m/s2]")
     thresholds: list[ScaleThreshold] = said(
@@ -214,10 +205,9 @@ class RecordScalesResponse(RecordAnswer):
     )
 
 
-class RecordPulseResponse(RecordAnswer):
+class RecordPulseResponse(RecordAnswer[RecordPulseParams]):
     """The pulse fitted to the velocity of a record, and both motions for a drawing."""
 
-    query: RecordPulseParams = QUERY
     pulse: FittedPulse = said("parameters of the pulse")
     time: list[float] = said("from the first sample [s]; every few samples of a long record")
     record_acceleration: list[float] = said("of the record, factor included [m/s2]")

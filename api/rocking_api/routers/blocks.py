@@ -31,11 +31,8 @@ from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
 
-MAX_BODY = 4 * 1024 * 1024
-"""Largest body with blocks [bytes]."""
-
-_FORMS: tuple[Form, ...] = ("json", "csv")
-"""Formats of a table of blocks, and of its response."""
+MAX_BODY = 4 * 1024 * 1024  # largest body with blocks [bytes]
+_FORMS: tuple[Form, ...] = ("json", "csv")  # formats of a table of blocks, and of its response
 
 _EXAMPLE = {
     "blocks": [
