@@ -128,6 +128,12 @@ class BlockInGroups(ShapeParams):
 
     frequency_ratio: q.FrequencyRatio
 
+    @property
+    def groups(self) -> dict[str, Any]:
+        """Keyword arguments of the solver."""
+        alpha = alpha_of(self.alpha_deg)
+        return {"frequency_ratio": self.frequency_ratio, "restitution": self.restitution, "alpha": alpha}
+
 
 class SpectrumParams(LookupOptions):
     """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
