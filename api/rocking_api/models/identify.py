@@ -6,13 +6,11 @@ from typing import Annotated
 
 from pydantic import Field
 
-from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.metadata import METADATA_URL_FIELD
+from rocking_api.models.answer import InGroups
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import TableFormat, TimeStep, between, said, with_intervals
 
-MAX_SAMPLES = 20_000
-"""Most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped."""
+MAX_SAMPLES = 20_000  # most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped
 
 Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 
@@ -42,10 +40,9 @@ class Trace(IdentifyParams):
     frequency_parameter=(list[float], "p", "rad/s"),
     drift=(float, "drift of the sensor", "rad/s"),
 )
-class IdentifyResponse(Answer):
+class IdentifyResponse(InGroups[IdentifyParams]):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
-    query: IdentifyParams = QUERY
     edge: list[str] = said("both, or right and left")
     impact_time: list[float] = said("times of the impacts of the fit [s]")
     offset: float = said("rotation at rest, at the first impact [rad]")
@@ -55,7 +52,6 @@ class IdentifyResponse(Answer):
     rotation: list[float] = said("rotation as given [rad]")
     fitted: list[float | None] = said("rotation of the block [rad]; null where nothing is fitted")
     warnings: list[str] = said("why the intervals are wider than the samples alone would have them")
-    metadata_url: str = METADATA_URL_FIELD
 
 
 TRACE_NUMBERS = ("offset", "drift", "drift_lower", "drift_upper", "noise", "sample_noise")

@@ -26,8 +26,7 @@ _FAIL_FAST = Field(fail_fast=True, max_length=MAX_NUMBERS)  # one error for an a
 _KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
 """Names that need no look at the registered pulses."""
 
-MAX_DURATION = 1e9
-"""Duration of a history, tau = p t [-]."""
+MAX_DURATION = 1e9  # duration of a history, tau = p t [-]
 
 
 class Params(BaseModel):

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
-from pydantic import Field, SerializeAsAny
+from pydantic import Field
 
 from rocking._datasets.cube import AXES
 from rocking._model.checks import check_window
@@ -26,21 +26,17 @@ from rocking_api.http.encoding import (
 )
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import ECHO, QUERY, Answer
-from rocking_api.models.metadata import METADATA_URL_FIELD
+from rocking_api.models.answer import Echoed, Solved
 from rocking_api.models.params import ShapeParams, alpha_of
 from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between, said
-from rocking_api.models.responses import BY_SOLVER, OUTCOMES
+from rocking_api.models.responses import OUTCOMES
 from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
-DIGITS = 4
-"""Decimals of the peaks in JSON [-]: enough for a picture, at a third of the length."""
-
-MAX_AGE = 600
-"""How long a client may store a map without revalidation [s]."""
+DIGITS = 4  # decimals of the peaks in JSON [-]: enough for a picture, at a third of the length
+MAX_AGE = 600  # how long a client may store a map without revalidation [s]
 
 
 class MapParams(ShapeParams):
@@ -55,10 +51,9 @@ class MapParams(ShapeParams):
     format: Format = None
 
 
-class MapResponse(Answer):
+class MapResponse(Echoed[MapParams], Solved[MapParams]):
     """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
-    query: Annotated[SerializeAsAny[MapParams], ECHO] = QUERY
     frequency_ratio: list[float] = said("omega_g/p of the columns [-]")
     slenderness: list[float] = said("1/a of the rows [-]")
     peak_rotation: list[float | None] = said(
@@ -66,8 +61,6 @@ class MapResponse(Answer):
     )
     outcome: list[int] = said("final outcome as an index into `outcomes` [-]")
     outcomes: list[str] = said("names of the outcomes")
-    source: str = BY_SOLVER
-    metadata_url: str = METADATA_URL_FIELD
 
 
 @pair(

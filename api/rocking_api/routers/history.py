@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from rocking._base.errors import finite
 from rocking._history.contact import ATTRIBUTES, COLUMNS
 from rocking._history.time_history import time_history
+from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
 from rocking_api.http.errors import TooLargeError
@@ -18,6 +19,9 @@ from rocking_api.models.params import HistoryParams, alpha_of
 from rocking_api.models.responses import ContactResponse, HistoryResponse
 from rocking_api.routers.twin import pair
 from rocking_api.service import ServiceDep
+
+SAMPLED = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "top_displacement")
+"""Variables of motions that are sent where they are known."""
 
 router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
 
@@ -58,19 +62,19 @@ def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag)
 
 def motion_columns(motion: xr.Dataset, time: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """The samples of a motion against its variable of time, and of the reactions, if it has any."""
-    sampled = (time, "rotation", "angular_velocity", "ground_acceleration", "vertical_acceleration")
-    columns = {name: motion[name].values.tolist() for name in sampled if name in motion}
+    columns = {name: motion[name].values.tolist() for name in (time, *SAMPLED) if name in motion}
     return columns, {name: motion[name].values.tolist() for name in COLUMNS if name in motion}
 
 
 def motion_fields(motion: xr.Dataset, reactions: dict[str, Any]) -> dict[str, Any]:
-    """The fields of `Motion` beside the samples."""
-    return {
-        "overturned": bool(motion.attrs["overturned"]),
-        "outcome": motion.attrs["outcome"],
-        "peak_rotation": finite(float(motion.attrs["peak_rotation"])),
-        "impacts": int(motion.attrs["impacts"]),
-        "warnings": [motion.attrs["warnings"]] if reactions and motion.attrs["warnings"] else [],
+    """The fields of `Motion` beside the samples; of another body without a peak."""
+    about = motion.attrs
+    peak = {"peak_rotation": finite(float(about["peak_rotation"]))} if "peak_rotation" in about else {}
+    return peak | {
+        "overturned": Outcome[about["outcome"]] >= Outcome.OVERTURNED_DIRECTLY,
+        "outcome": about["outcome"],
+        "impacts": int(about["impacts"]),
+        "warnings": [about["warnings"]] if reactions and about["warnings"] else [],
         "impact_time": motion["impact_time"].values.tolist(),
         "contact": _contact(motion, reactions) if reactions else None,
     }
@@ -79,7 +83,7 @@ def motion_fields(motion: xr.Dataset, reactions: dict[str, Any]) -> dict[str, An
 def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
     """Reactions of a motion, by sample, and their extremes."""
     fields: dict[str, Any] = {name: [finite(value) for value in column] for name, column in reactions.items()}
-    fields |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES}
+    fields |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES if name in motion.attrs}
     return ContactResponse.model_construct(
         **fields, lifts_off=bool(motion.attrs["lifts_off"]), warnings=motion.attrs["warnings"]
     )

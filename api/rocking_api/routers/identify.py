@@ -29,8 +29,7 @@ from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-MAX_BODY = 1024 * 1024
-"""Largest trace [bytes]."""
+MAX_BODY = 1024 * 1024  # largest trace [bytes]
 
 _FORMS: tuple[Form, ...] = ("json", "csv")
 
@@ -54,8 +53,7 @@ def _example() -> dict[str, list[float]]:
     return {"time": [round(time, 2) for time in times], "rotation": rotation}
 
 
-EXAMPLE = _example()
-"""A trace for the description of the route."""
+EXAMPLE = _example()  # A trace for the description of the route
 
 _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMPLE.values(), strict=True))
 

@@ -6,10 +6,15 @@ from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse
 
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.metadata import GROUPS_METADATA, MetadataResponse
+from rocking_api.models.answer import Bare
+from rocking_api.models.metadata import GROUPS_METADATA, Metadata
 from rocking_api.service import ServiceDep
 
 router = APIRouter(tags=["response"], route_class=ParamsRoute)
+
+
+class MetadataResponse(Metadata, Bare):
+    """The same as an answer."""
 
 
 @router.get("/v1/metadata", summary="Model, assumptions and limits of use")

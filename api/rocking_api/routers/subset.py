@@ -23,8 +23,7 @@ from rocking_api.service import Service, ServiceDep
 
 router = APIRouter(prefix="/v1/datasets", tags=["datasets"], route_class=ParamsRoute)
 
-VARIABLES = "peak_rotation,outcome,impacts,exceeded_alpha"
-"""Variables that are sent unless others are named."""
+VARIABLES = "peak_rotation,outcome,impacts,exceeded_alpha"  # variables that are sent unless others are named
 
 FOUND: dict[int | str, dict[str, Any]] = {
     200: {"content": {MEDIA_TYPES["nc"]: {}, MEDIA_TYPES["csv"]: {}}, "description": "the part of the cube"}

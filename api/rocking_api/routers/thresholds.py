@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, SerializeAsAny
+from pydantic import BaseModel
 
 from rocking._boundary.amplitude import thresholds
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import ECHO, QUERY, Answer
-from rocking_api.models.metadata import METADATA_URL_FIELD
+from rocking_api.models.answer import Echoed, Solved
 from rocking_api.models.params import BlockInGroups, alpha_of
 from rocking_api.models.quantity import said
-from rocking_api.models.responses import BY_SOLVER
 from rocking_api.routers.twin import pair
 from rocking_api.service import ServiceDep
 
@@ -41,16 +39,13 @@ class AmplitudeThreshold(BaseModel):
     impacts: int = said("impacts before it overturns there [-]")
 
 
-class AmplitudeResponse(Answer):
+class AmplitudeResponse(Echoed[AmplitudeParams], Solved[AmplitudeParams]):
     """All amplitudes at which the outcome changes."""
 
-    query: Annotated[SerializeAsAny[AmplitudeParams], ECHO] = QUERY
     thresholds: list[AmplitudeThreshold] = said("ascending in amplitude")
     largest_surviving_amplitude: float | None = said(
         "amplitude below which the block does not overturn [-]; null: no overturning was found"
     )
-    source: str = BY_SOLVER
-    metadata_url: str = METADATA_URL_FIELD
 
 
 @pair(router, "/thresholds", "Amplitudes at which the outcome of a block changes", response_model=AmplitudeResponse)
