@@ -13,13 +13,16 @@ rule claims:
         master="results/figures/figure-master-spectra.nc",
         momentum="results/figures/figure-master-housner.nc",
     output:
-        **CLAIM_FILES,
+        table=CLAIM_FILES["table"],
+        text=report(CLAIM_FILES["text"], caption="../report/claims.rst", category="Claims"),
         record=record_of("claims", CLAIMS_PROVENANCE),
     log:
         "logs/claims.log",
     benchmark:
         "logs/benchmarks/claims.tsv"
     priority: 1
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(1000),
         runtime=60,
