@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,7 +89,7 @@ class BodyThresholds(EqualByValue):
             return np.full(self.value.shape[:-1], math.nan)
         return self.value[..., 0]
 
-    @property
+    @cached_property
     def changes(self) -> tuple[Threshold, ...]:
         """Those of one body, one for each.
 
