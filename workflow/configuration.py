@@ -173,11 +173,9 @@ _TWO_BLOCKS = Annotated[
 ]
 _HISTORIES = {"pulses": PULSE_LIST, "restitution": ETA, "alpha_deg": ANGLES, "frequency_ratio": OMEGA}
 _AXIS = {"points": integer(4, 1000)}
-_MASTER = {
-    "alpha_deg": ANGLES,
-    "slenderness": _range(SLENDERNESS_OF_BOUNDARY, **_AXIS),
-    "frequency_ratio": _range(OMEGA, **_AXIS),
-}
+_GRID = {"slenderness": _range(SLENDERNESS_OF_BOUNDARY, **_AXIS), "frequency_ratio": _range(OMEGA, **_AXIS)}
+_MASTER = {"alpha_deg": ANGLES, **_GRID}
+MOTIONS = sorted(path.name for path in Path(__file__).with_name("motions").glob("*.csv"))
 
 FIGURES = section(
     **{
@@ -222,6 +220,15 @@ FIGURES = section(
         ),
         "figure-S1": section(ours=section(slenderness=number(1e-4, 1), frequency_ratio=OMEGAS)),
         "figure-scale-law": section(ours=section(restitution=several(number(0.01, 1)), reference=ETA)),
+        "figure-scale-law-excitations": section(
+            ours=section(
+                restitution=several(number(0.01, 1)),
+                reference=ETA,
+                records=several(leaf(f"a file of workflow/motions, {', '.join(MOTIONS)}", MOTIONS.__contains__)),
+                frequency_parameter=_range(number(0.01, 100), **_AXIS),
+                **_GRID,
+            )
+        ),
         "figure-master-spectra": section(ours=section(restitution=ETA, **_MASTER)),
         "figure-master-housner": section(ours=section(**_MASTER)),
         "table-1": section(),
@@ -366,6 +373,7 @@ def _not_made(config: Mapping[str, Any]) -> Iterator[str]:
         ):
             for value in set(given) - set(made):
                 yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"
-    law = chosen(config, "figure-scale-law")
-    if law["reference"] not in law["restitution"]:
-        yield f"figures.figure-scale-law: reference = {law['reference']}; allowed: one of its {law['restitution']}"
+    for figure in ("figure-scale-law", "figure-scale-law-excitations"):
+        law = chosen(config, figure)
+        if law["reference"] not in law["restitution"]:
+            yield f"figures.{figure}: reference = {law['reference']}; allowed: one of its {law['restitution']}"
