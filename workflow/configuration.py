@@ -35,6 +35,7 @@ DATA_OF_FIGURES = {
 }
 """The pulses of the figures that are drawn from data sets."""
 
+MOTIONS = sorted(path.name for path in Path(__file__).with_name("motions").glob("*.csv"))
 DERIVED_NAMES = [field.name for field in DERIVED_FIELDS]
 
 
@@ -193,9 +194,12 @@ def _of_figures(config: Mapping[str, Any]) -> Iterator[str]:
         ):
             for value in set(given) - set(made):
                 yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"
-    law = chosen(config, "figure-scale-law")
-    if law["reference"] not in law["restitution"]:
-        yield f"figures.figure-scale-law: reference = {law['reference']}; allowed: one of its {law['restitution']}"
+    for figure in ("figure-scale-law", "figure-scale-law-excitations"):
+        law = chosen(config, figure)
+        if law["reference"] not in law["restitution"]:
+            yield f"figures.{figure}: reference = {law['reference']}; allowed: one of its {law['restitution']}"
+        for name in set(law.get("records", ())) - set(MOTIONS):
+            yield f"figures.{figure}: records = {name!r}; allowed: a file of workflow/motions, {', '.join(MOTIONS)}"
     for figure in ("figure-05", "figure-06"):
         blocks = chosen(config, figure)
         if len(blocks["slenderness_angle"]) != len(blocks["half_diagonal"]):

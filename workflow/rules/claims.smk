@@ -12,6 +12,7 @@ rule claims:
         histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
         master="results/figures/figure-master-spectra.nc",
         momentum="results/figures/figure-master-housner.nc",
+        excitations="results/figures/figure-scale-law-excitations.nc",
     output:
         table=CLAIM_FILES["table"],
         text=report(CLAIM_FILES["text"], caption="../report/claims.rst", category="Claims"),
