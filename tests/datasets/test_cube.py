@@ -72,7 +72,7 @@ def test_a_file_holds_the_samples_of_its_pulse_and_follows_cf(tmp_path: Path) ->
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize(
-    "product", ["spectra/cosine/eta-0.89.nc", "overturning/sine/eta-0.85.nc", "figures/figure-08.nc"]
+    "product", ["spectra/cosine/eta-0.90.nc", "overturning/sine/eta-0.85.nc", "figures/figure-08.nc"]
 )
 def test_products_follow_cf_and_acdd(smoke_results: Path, product: str) -> None:
     path = smoke_results / product

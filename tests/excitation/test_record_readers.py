@@ -115,7 +115,7 @@ def test_reading_takes_at_most_four_times_the_memory_of_the_file(header: str, ro
 
 
 def test_a_missing_file_is_an_invalid_argument(tmp_path) -> None:
-    with pytest.raises(InvalidArgumentError, match="a file that can be read"):
+    with pytest.raises(InvalidArgumentError, match="no such file"):
         rocking.read_record(tmp_path / "none.at2")
 
 
@@ -197,7 +197,7 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
         rocking.read_record(path, component="NS_g", vertical="up")
     with pytest.raises(RecordFileError, match="argument `component`"):
         rocking.read_record(path, vertical="EW_g")
-    with pytest.raises(InvalidArgumentError, match=r"`vertical` = .* a file that can be read"):
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = .*: no such file"):
         rocking.read_record(path, component="NS_g", vertical=tmp_path / "none.at2")
     path.write_text(at2())
     with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):
