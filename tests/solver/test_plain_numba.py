@@ -23,7 +23,7 @@ ESSENTIAL = (
         "tests/solver/records/test_against_table.py::test_outcome_and_peak_of_each_case[0]",
     )
 )
-"""A sample of two: vectors, slender blocks under records; `make test-all` runs all. The time is that of the compiler."""
+"""A sample: vectors, slender blocks under records; `make test-all` runs all. The time is that of the compiler."""
 
 WITHOUT_COLLECTION = "import gc, sys, pytest; gc.disable(); sys.exit(pytest.main(sys.argv[1:]))"
 """A seventh of the time of the compiler is a search for garbage among what it keeps."""
