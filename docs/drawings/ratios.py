@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 from rocking.plot.style import BLUE, VERMILION
 
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
-sections = Path("../benchmarks.md").read_text().split("Time of the fastest baseline over")[1]
+sections = Path("../benchmarks.md").read_text(encoding="utf-8").split("Time of the fastest baseline over")[1]
 best, scipy = re.split(r"\nThe fastest method of SciPy", sections)[:2]
 
 figure, axes = plt.subplots(1, 2, figsize=(7.0, 3.2), sharey=True, layout="constrained")
