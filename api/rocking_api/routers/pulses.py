@@ -14,18 +14,16 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._excitation import pulses
 from rocking._excitation.impulse import impulse_of
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import QUERY, ListAnswer
+from rocking_api.models.answer import ListAnswer
 from rocking_api.models.params import ListParams
 from rocking_api.models.quantity import between, said
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-MAX_DRAWN = 2000
-"""Most samples of a pulse for a drawing [-]."""
+MAX_DRAWN = 2000  # most samples of a pulse for a drawing [-]
 
 
-DIGITS = 4
-"""Decimals of the samples [-]: enough for a drawing, at a fifth of the length."""
+DIGITS = 4  # decimals of the samples [-]: enough for a drawing, at a fifth of the length
 
 
 class PulsesParams(ListParams):
@@ -60,10 +58,9 @@ class PulseDescription(BaseModel):
     acceleration: list[float] = said("f at these times [-], to four decimals; the largest absolute value of f is 1")
 
 
-class PulsesResponse(ListAnswer):
+class PulsesResponse(ListAnswer[PulsesParams]):
     """Excitations."""
 
-    query: PulsesParams = QUERY
     pulses: list[PulseDescription] = said("those of the package, then those registered in this process")
 
 
