@@ -242,6 +242,10 @@ CALLS |= {
         [{"motion": "sine", "peak_acceleration": 4.0, "period": [0.5], "restitution": 0.9},
          {"motion": RECORD, "scale": 1.0, "size": [1.0]}],
     ),
+    "suites.distribution": (
+        rocking.suites.distribution,
+        [{"ensemble": rocking.fragility(RECORD, BLOCK, intensity=[3.0]), "confidence": 0.9}],
+    ),
     "RigidBody.thresholds": (
         BODY.thresholds,
         [{"motion": "sine", "period": 0.5, "highest": 9.0, "resolution": 0.01}],
