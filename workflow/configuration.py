@@ -293,7 +293,10 @@ def _check_suite(config: Mapping[str, Any], folder: Path) -> None:
     if {*config} != {"title", "suite"} or not isinstance(config["title"], str):
         raise ConfigurationError(f"configuration: keys {', '.join(config)}; allowed: title, a text, and suite")
     try:
-        suite_configuration(config["suite"], folder).records.paths()
+        suite = suite_configuration(config["suite"], folder)
+        suite.records.paths()
+        if not isinstance(suite.blocks, tuple):
+            raise InvalidArgumentError("blocks", config["suite"]["blocks"], "bodies with equal edges")
     except InvalidArgumentError as error:
         value = reprlib.repr(error.value)
         raise ConfigurationError(f"suite.{error.parameter} = {value}: allowed: {error.allowed}") from None

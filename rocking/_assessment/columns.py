@@ -48,7 +48,7 @@ BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
 
 _KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
 
-_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination", "sides", "rebound"}
+_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination"}
 
 SHAPES = (
     BODY,

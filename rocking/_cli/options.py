@@ -27,9 +27,11 @@ from rocking._base.quantities import (
     OFFSET,
     PEAK_ACCELERATION,
     PERIOD,
+    REBOUND,
     RESTITUTION,
     RIGHT,
     SCALE,
+    SIDES,
     SLENDERNESS,
     TIME_STEP,
     WIDTH,
@@ -72,7 +74,7 @@ def _bodies(incomplete: str) -> list[str]:
     return [name for name in BODIES if name.startswith(incomplete)]
 
 
-BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT)
+BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT, SIDES, REBOUND)
 """Parameters of bodies that are options of their own."""
 
 
@@ -88,11 +90,13 @@ class BodyOptions:
     diameter: Annotated[str | None, option(DIAMETER, panel=_UNITS)] = None
     left: Annotated[str | None, option(LEFT, panel=_UNITS)] = None
     right: Annotated[str | None, option(RIGHT, panel=_UNITS)] = None
+    sides: Annotated[str | None, option(SIDES, panel=_UNITS)] = None
+    rebound: Annotated[str | None, option(REBOUND, panel=_UNITS)] = None
     body: Annotated[
         str | None,
         typer.Option(
             help=f"A body of any kind in place of these, such as 'hollow(width=40cm, height=1.6m, wall=2cm)': "
-            f"{signatures().replace('[', '(').replace(']', ')')}.",
+            f"{signatures().replace('[', '(').replace(']', ')')}; rigid ones also with sides and rebound.",
             rich_help_panel=_UNITS,
             metavar="[KIND]",
             autocompletion=_bodies,
