@@ -24,6 +24,7 @@ from rocking._dimensional.fields import FIELDS, JUDGED, SHOWN, ResponseFields
 from rocking._dimensional.margins import Margins, margins_of
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.thresholds import WORDS, BodyThresholds, block_thresholds, thresholds_of
+from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import ContactExtremes, contact_extremes
 from rocking._model.block import AbstractBlock
@@ -177,13 +178,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         None if they are not searched, or not found in time.
         """
         found = self.thresholds if self.searches_thresholds else None
-        if found is None:
-            return None
-        peak = self.problem.motion.peak_acceleration if isinstance(self.problem.motion, Record) else 1.0
-        return [
-            {found.strength: one.value, "peak_acceleration": one.value * peak, "overturns_above": one.overturns_above}
-            for one in found
-        ]
+        return None if found is None else changes_of(found, self.problem.motion)
 
     def _searched(self, search: Callable[[StopFlag], T]) -> T | None:
         return run_with_timeout(search, self.seconds, StopFlag() if self.stop is None else self.stop)
@@ -337,7 +332,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         self._need_one("summary")
         kinds = self.problem.kinds
         return {
-            one.label: _shown(one, JUDGED[one](self) if one in JUDGED else getattr(self, one.name))
+            one.label: shown(one, JUDGED[one](self) if one in JUDGED else getattr(self, one.name))
             for one in SHOWN
             if kinds <= one.kinds
         }
@@ -432,7 +427,16 @@ def respond(
     return BodyResponse(found, problem, edges, thresholds, seconds, stop=stop)
 
 
-def _shown(about: ResponseField, value: Any) -> Any:
+def changes_of(found: BodyThresholds, motion: AbstractPulse | Record) -> list[dict[str, Any]]:
+    """The thresholds of one body, of a record with the peak accelerations too, and whether it overturns above."""
+    peak = motion.peak_acceleration if isinstance(motion, Record) else 1.0
+    return [
+        {found.strength: one.value, "peak_acceleration": one.value * peak, "overturns_above": one.overturns_above}
+        for one in found
+    ]
+
+
+def shown(about: ResponseField, value: Any) -> Any:
     """A value as the command line and the service show it."""
     if about is OUTCOME:
         return value.name

@@ -200,6 +200,15 @@ def thresholds_of(
     )
 
 
+def scale_window(problem: Problem) -> tuple[float, float]:
+    """Factors of a record from that at which one body uplifts to ten times it, or where it would lose its weight."""
+    record: Any = problem.motion
+    if problem.is_block:
+        return search_range(record, problem.block, None)[:2]
+    uplift, limit = record_range(replace(problem, peak_acceleration=np.asarray(record.peak_acceleration)))
+    return float(uplift[0]), min(HIGHEST[1] * float(uplift[0]), float(limit[0]))
+
+
 def _pulse_changes(
     problem: Problem, k: int, uplift: float, highest: float, stop: StopFlag | None
 ) -> tuple[Array, Flags]:

@@ -29,9 +29,7 @@ class SinusoidSeries(ExcitationSeries):
     family: ClassVar[Family] = Family.SINUSOIDS
     terms: Terms
 
-    @property
-    def least_arc_frequency(self) -> float:
-        return 0.0
+    least_arc_frequency: ClassVar[float] = 0.0
 
 
 @final

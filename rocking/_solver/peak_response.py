@@ -19,7 +19,7 @@ from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of, is_labelled, labelled_response
 from rocking._model.response import Response, dimensions_of
-from rocking._numba.cancellation import StopFlag
+from rocking._numba.cancellation import NEVER_STOPPED, StopFlag
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
@@ -260,7 +260,12 @@ def _solve_alike(
         else:
             _solve_by_steps(pulse, chunk, precision, flag, records[part])
 
-    fill_chunks(fill, size, chunk_size, cores, stop)
+    if size > chunk_size:
+        fill_chunks(fill, size, chunk_size, cores, stop)
+        return records
+    fill(slice(0, size), NEVER_STOPPED if stop is None else stop.array)
+    if stop is not None:
+        stop.check()
     return records
 
 

@@ -121,6 +121,22 @@ def as_blocks(bodies: Sequence[AbstractBody]) -> tuple[AbstractBlock, ...] | Rig
     return RigidBody(**columns, sides=rows[0].sides)
 
 
+def as_block(body: AbstractBody) -> AbstractBlock:
+    """One body with equal edges as a block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If its edges differ.
+    """
+    made = body if isinstance(body, AbstractBlock) else None
+    if isinstance(body, RigidBody) and has_equal_edges(body):
+        (made,) = blocks_of(body)
+    if made is None:
+        raise InvalidArgumentError("body", body.description, "a body with equal edges")
+    return made
+
+
 def _over(found: xr.Dataset, names: tuple[Hashable, ...], shape: tuple[int, ...]) -> xr.Dataset:
     """A data set whose dimension `block` is split into several."""
 

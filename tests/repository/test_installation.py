@@ -40,7 +40,7 @@ LIMITS = {"source files of other packages": 10, "files": 1600, "folders": 450}
 INSIDE = (
     (
         "tests/cli/test_cli.py",
-        "tests/api/test_api_over_http.py",
+        "tests/api/test_api_pulse_store.py",
         "tests/api/test_guide.py",
         "tests/api/test_api_state.py",
     )

@@ -15,7 +15,6 @@ ESSENTIAL = (
     (
         "tests/base/test_simd.py",
         "tests/solver/test_against_tables.py",
-        "tests/solver/test_rigid_against_tables.py",
         "tests/solver/records/test_against_table.py",
     )
     if ALL

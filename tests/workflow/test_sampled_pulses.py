@@ -47,7 +47,7 @@ def configuration(pulses: list[Any]) -> dict[str, Any]:
         ({"name": "a", "acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulses.1: `time` = 1.0 at index 2"),
         ({"name": "a", "acceleration": [0, 1, 0], "period": -1}, "pulses.1: `period` = -1.0"),
         ({"name": "a"}, "pulses.1: `file` = None"),
-        ({"name": "a", "file": "none.csv"}, "none.csv' is not allowed; allowed: a file that can be read"),
+        ({"name": "a", "file": "none.csv"}, "none.csv': no such file"),
         ({"name": "a", "file": "bad.csv"}, "bad.csv, line 2: x"),
         ({"name": "a", "file": 5}, "pulses.1: `file` = 5"),
         ({"name": "a", "file": "bad.csv", "acceleration": [0, 1]}, "either a file or the key acceleration"),
