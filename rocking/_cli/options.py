@@ -33,6 +33,7 @@ from rocking._base.quantities import (
     SCALE,
     SIDES,
     SLENDERNESS,
+    START,
     TIME_STEP,
     WIDTH,
 )
@@ -104,19 +105,22 @@ class BodyOptions:
     ] = None
 
 
+Pulse = Annotated[
+    str,
+    typer.Option(
+        help="Pulse, such as sine or 'mavroeidis_papageorgiou(cycles=3, phase=90deg)', or a file of samples: "
+        "columns of numbers (accelerations, or times and accelerations) or JSON; a leading minus mirrors it.",
+        metavar="[NAME|FILE]",
+        autocompletion=_pulses,
+    ),
+]
+
+
 @dataclass(frozen=True, kw_only=True)
 class ShapeOptions(BodyOptions):
     """A pulse without amplitude and a block: its slenderness angle, or its size."""
 
-    pulse: Annotated[
-        str,
-        typer.Option(
-            help="Pulse, such as sine or 'mavroeidis_papageorgiou(cycles=3, phase=90deg)', or a file of samples: "
-            "columns of numbers (accelerations, or times and accelerations) or JSON; a leading minus mirrors it.",
-            metavar="[NAME|FILE]",
-            autocompletion=_pulses,
-        ),
-    ]
+    pulse: Pulse
     restitution: Annotated[str | None, option(RESTITUTION)] = None
     alpha: Annotated[str | None, option(ALPHA, panel=_GROUPS)] = None
 
@@ -129,6 +133,14 @@ class ProblemOptions(ShapeOptions):
     frequency_ratio: Annotated[float | None, option(FREQUENCY_RATIO, panel=_GROUPS)] = None
     peak_acceleration: Annotated[str | None, option(PEAK_ACCELERATION, panel=_UNITS)] = None
     period: Annotated[str | None, option(PERIOD, panel=_UNITS)] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class HistoryOptions(ProblemOptions):
+    """The same, or a body that is released."""
+
+    pulse: Pulse = ""
+    start: Annotated[str | None, option(START, panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -145,6 +145,7 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
     "resolution": (0.01, ""), "skip": (0, ""),
     "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"), "rebound": (0.4, ""),
+    "start": (0.05, " rad"),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -169,6 +170,7 @@ VARIANTS = (
     {"pga", "pgv"},
     {"left", "right", "mass_height", "gyration", "peak_acceleration", "period", "duration", "pga"},
     {"diameter", "height", "peak_acceleration", "period", "duration", "pga"},
+    {"width", "height", "start", "duration"},
 )
 """Options that are given together, beside those that go with all."""
 
