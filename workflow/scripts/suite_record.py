@@ -30,6 +30,7 @@ def main(
     `sensitivity`, if the suite asks for it: friction demand, and outcomes with other restitution and sampling.
     """
     chosen = suite_configuration(suite, Path())
+    assert isinstance(chosen.blocks, tuple)  # by `workflow.configuration`
     motion = chosen.records.read(file)
     checked = check_suite(motion, chosen.blocks, chosen.intensity, chosen.measure, chosen.restitution)
     found = with_margins(suite_outcomes(checked, threads=1), checked, threads=1)
