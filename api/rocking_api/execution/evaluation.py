@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from rocking._base.errors import OutsideCubeError
 from rocking._lookup.collection import CubeCollection
 from rocking._lookup.cube import Points
 from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, FROM_CUBE
@@ -53,7 +54,12 @@ def evaluate(
 ) -> tuple[BoundedResponse, tuple[str, ...]]:
     """Responses of checked points (points,), and the sha256 of each data set that gave some of them."""
     cube = cubes.cube(options.pulse, options.method, may_read)
-    found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
+    try:
+        found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
+    except OutsideCubeError as error:
+        if error.parameter != "alpha":
+            raise
+        raise OutsideCubeError("alpha_deg", options.alpha_deg, error.allowed) from None
     return found, tuple([one.sha256 for one in used])
 
 
