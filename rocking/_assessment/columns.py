@@ -22,7 +22,7 @@ from rocking._base.quantities import (
     WIDTH,
 )
 from rocking._base.quantity import Quantity
-from rocking._dimensional.body_kinds import BODIES, RIGID
+from rocking._dimensional.body_kinds import columns_beside
 
 INPUTS = (
     NAME,
@@ -44,22 +44,10 @@ INPUTS = (
 
 STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are read as one of these
 
-BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
-
-_KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
-
-_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination", "sides", "rebound"}
-
-SHAPES = (
-    BODY,
-    *{name: one for kind in _KINDS for name, one in kind.fields.items() if one.names[0] not in _OWN}.values(),
-)
+SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination", "sides", "rebound")
 """Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
 
-_OTHERS = [kind for kind in _KINDS if kind.needed.isdisjoint(("width", "diameter"))]
-_FIRST = [name for kind in _OTHERS for name in kind.fields if name in kind.needed and kind.fields[name].unit == "m"][:1]
-
-REQUIRED = (("width", "diameter", *_FIRST), ("height", "mass_height"))
+REQUIRED = (("width", "diameter", "left"), ("height", "mass_height"))
 """Columns that the header of a table has, one of each group."""
 
 CLAUSES = {

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rocking._assessment.columns import INPUTS, REQUIRED, SHAPES, STAND_INS
 from rocking._assessment.objects import Object, RowDetails
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.body_kinds import WITHOUT_FILES, described
 from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import (
     BadRow,
@@ -143,7 +144,8 @@ def _made(given: dict[str, Any]) -> Object:
     if kind is None and not shapes:
         return Object(**given)
     stated = {name: given.pop(name) for name in [*given] if name not in _ABOUT}
-    return Object.from_body(stated if kind is None else {**stated, "kind": kind}, **given)
+    made, parameters = described(kind, stated, WITHOUT_FILES)
+    return Object.from_body(made(**parameters), **given)
 
 
 _SHAPES = {one.name for one in SHAPES}

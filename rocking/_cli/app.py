@@ -93,8 +93,8 @@ def response(
     file: Annotated[
         str | None,
         typer.Argument(
-            help="Table of many blocks: CSV, XLSX or ODS, - for standard input; columns width, height, "
-            "peak_acceleration, period and optionally name and restitution, with units in the header or in the cells.",
+            help="Table of many bodies: CSV, XLSX or ODS, - for standard input; columns width, height or those of "
+            "another kind, peak_acceleration, period, optionally name and restitution; units in header or cells.",
             metavar="FILE",
         ),
     ] = None,

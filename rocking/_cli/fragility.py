@@ -191,13 +191,13 @@ def configuration_errors() -> Iterator[None]:
     try:
         yield
     except InvalidArgumentError as error:
-        message = f"{error.parameter} = {error.value!r} is not allowed; allowed: {error.allowed}"
+        message = str(error).replace("`", "")
         raise typer.BadParameter(message, param_hint="CONFIGURATION") from None
 
 
 def _read(path: Path) -> dict[str, Any]:
     """The mapping in a file, by the ending of its name."""
-    from rocking._base.errors import InvalidArgumentError
+    from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 
     try:
         text = path.read_text(encoding="utf-8")
@@ -207,7 +207,9 @@ def _read(path: Path) -> dict[str, Any]:
             found = json_format.loads(text)
         else:
             found = _yaml(text)
-    except (OSError, ValueError, RecursionError) as error:  # brackets within brackets
+    except OSError as error:
+        raise UnreadableFileError("file", str(path), error) from None
+    except (ValueError, RecursionError) as error:  # brackets within brackets
         raise InvalidArgumentError("file", str(path), f"a readable configuration ({error})") from None
     if not isinstance(found, dict):
         raise InvalidArgumentError("file", str(path), "a mapping of keys to values")

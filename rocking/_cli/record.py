@@ -66,16 +66,16 @@ def record(
 @contextmanager
 def file_errors() -> Iterator[None]:
     """Convert an error of a file into an error of the command line: file, line, what was found, what was expected."""
-    from rocking._base.errors import InvalidArgumentError, RecordFileError
+    from rocking._base.errors import RecordFileError, UnreadableFileError
 
     try:
         yield
     except RecordFileError as error:
         raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
-    except InvalidArgumentError as error:
+    except UnreadableFileError as error:
         if error.parameter != "path":
             raise
-        raise typer.BadParameter(f"{error.value}: not {error.allowed}", param_hint="FILE") from None
+        raise typer.BadParameter(f"{error.value}: {error.reason}", param_hint="FILE") from None
 
 
 def with_options_named(message: str) -> str:

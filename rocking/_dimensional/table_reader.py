@@ -26,7 +26,7 @@ from rocking._base.cells import (
     read_cell,
     split_number,
 )
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
 from rocking._dimensional.table_header import (
@@ -120,7 +120,7 @@ def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
     try:
         return sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
     except OSError as error:
-        raise InvalidArgumentError(argument, str(source), f"a file that can be read ({error.strerror})") from None
+        raise UnreadableFileError(argument, str(source), error) from None
 
 
 def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:

@@ -9,6 +9,7 @@ import xarray as xr
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Scalar
+from rocking._dimensional.body import RespondingBody
 from rocking._dimensional.equivalent_block import EquivalentBlock
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import AbstractBlock, RectangularBlock
@@ -90,6 +91,21 @@ def blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
     if rectangular:
         return [RectangularBlock(*row) for row in rows]
     return [EquivalentBlock(alpha, p, restitution=eta, gravity=gravity) for alpha, p, eta, gravity in rows]
+
+
+def as_block(body: RespondingBody) -> AbstractBlock:
+    """One body with equal edges as a block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If its edges differ.
+    """
+    if isinstance(body, AbstractBlock):
+        return body
+    if not (isinstance(body, RigidBody) and has_equal_edges(body)):
+        raise InvalidArgumentError("body", body.description, "a body with equal edges")
+    return blocks_of(body)[0]
 
 
 def _over(found: xr.Dataset, names: tuple[Hashable, ...], shape: tuple[int, ...]) -> xr.Dataset:

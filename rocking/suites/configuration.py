@@ -213,21 +213,14 @@ def _block(section: str, given: Any) -> AbstractBlock:
     # others need numba, which the rules of a workflow do not
     from rocking._dimensional.block import Block  # noqa: PLC0415
     from rocking._dimensional.body_kinds import body  # noqa: PLC0415
-    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
-    from rocking.suites.body_arrays import blocks_of, has_equal_edges  # noqa: PLC0415
+    from rocking.suites.body_arrays import as_block  # noqa: PLC0415
 
     try:
-        made = body(given)
+        made = as_block(body(given))
     except InvalidArgumentError as error:
         place = section if error.parameter == "body" else f"{section}.{error.parameter}"
         raise InvalidArgumentError(place, error.value, error.allowed) from None
-    if isinstance(made, Block):
-        return RectangularBlock(made.width, made.height, made.gravity)
-    if isinstance(made, AbstractBlock):
-        return made
-    if not (isinstance(made, RigidBody) and has_equal_edges(made)):
-        raise InvalidArgumentError(section, given, "a body with equal edges")
-    return blocks_of(made)[0]
+    return RectangularBlock(made.width, made.height, made.gravity) if isinstance(made, Block) else made
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:

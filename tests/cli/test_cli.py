@@ -497,9 +497,8 @@ def test_a_name_of_a_pulse_is_no_file(tmp_path, monkeypatch):
 
 
 def test_errors_of_a_file_of_a_pulse_name_the_line(triangle, tmp_path):
-    missing = refused("response", "--pulse", str(tmp_path / "no.csv"), *GROUPS[2:])
-    assert "one of sine" in missing
-    assert "a file that can be read (No such file" in missing
+    assert "no.csv': no such file" in refused("response", "--pulse", str(tmp_path / "no.csv"), *GROUPS[2:])
+    assert "one of sine" in refused("response", "--pulse", "sinus", *GROUPS[2:])
     (tmp_path / "triangle.csv").write_text("0,0\n1,one\n")
     damaged = refused("response", "--pulse", triangle, *GROUPS[2:])
     assert "--pulse" in damaged

@@ -113,7 +113,7 @@ def test_baseline_is_removed_on_request_only():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["nowhere.csv", *SIZES], "nowhere.csv: not a file that can be read"),
+        (["nowhere.csv", *SIZES], "nowhere.csv: no such file"),
         ([NAPA, "--width", "0.5", "--height", "2m"], "--width"),
         ([NAPA, *SIZES, "--scale", "0"], "--scale"),
         ([NAPA, *SIZES, "--restitution", "plastic"], "--restitution"),

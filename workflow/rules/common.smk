@@ -15,15 +15,13 @@ from rocking._datasets.provenance import settings_digest, settings_text
 from rocking._base.source_tree import SourceTree
 from rocking._interpolation.slices import windows_of
 from rocking.suites.configuration import DEFAULTS, suite_configuration
-from workflow import parts, records
+from workflow import records
 from workflow.configuration import (
     BYTES,
     ConfigurationError,
     check,
     nodes_of_cube,
-    nodes_of_part,
     restitutions,
-    tenths,
 )
 from workflow.pulses import configured_pulse, different, samples_file
 from workflow.run_lock import RUN_ID, RunningError, acquire
@@ -53,11 +51,6 @@ def record_of(job, provenance):
     return f"{records.FOLDER}/{records.record_name(job, provenance)}"
 
 
-def part_of(job, provenance):
-    """Path of a part of a product."""
-    return f"{parts.FOLDER}/{parts.part_name(job, provenance)}"
-
-
 def memory(megabytes):
     """Memory of a job [MB], more with each attempt, for engines that end jobs which need more than they state."""
     return lambda wildcards, attempt: math.ceil(attempt * megabytes)
@@ -78,19 +71,15 @@ def overturning_files(pulse, etas):
     return [f"results/overturning/{pulse}/eta-{named(eta)}.nc" for eta in etas]
 
 
+def part_files(pulse, etas):
+    """Solved nodes of the cubes of a pulse, kept for the cubes of other restitutions."""
+    return [f"{records.PARTS}/spectra/{pulse}-{named(eta)}.nc" for eta in etas]
+
+
 def window_of(eta, etas):
     """The restitutions, of those by name, from which the interval above one is interpolated."""
     place = [*etas].index(eta)
     return [*etas.values()][slice(*windows_of(len(etas), place, place + 1))]
-
-
-def parts_of(etas, tenths, code):
-    """Paths of the parts with the cubes of some restitutions, made by some code, with the pulse as a wildcard."""
-    return [
-        part_of(f"spectra/{{pulse}}-{tenth}", code | {"restitution": some})
-        for tenth, some in tenths.items()
-        if {*some} & {*etas}
-    ]
 
 
 def provenance(rule_name, scripts, settings, products):

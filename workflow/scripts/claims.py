@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from markdown_it import MarkdownIt
 
 from rocking._boundary.curves import curves_at
 from rocking._datasets.cube import read_dataset, read_spectrum
@@ -48,9 +49,10 @@ def main(
     restitution: Sequence[float],
     table: Path,
     text: Path,
+    page: Path,
     provenance: Mapping[str, str],
 ) -> None:
-    """Collect the claims and write them as JSON (`table`) and as Markdown (`text`).
+    """Collect the claims and write them as JSON (`table`), Markdown (`text`) and HTML (`page`).
 
     `boundaries`, `cubes`: of the sine. Plotted data: `collapse` of figure 6, `similar_blocks` of figure 9, `histories`
     of figures 11 and 12, `master` of figure-master-spectra, `momentum` of figure-master-housner, `excitations` of
@@ -83,6 +85,8 @@ def main(
     }
     table.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     text.write_text(as_markdown(records), encoding="utf-8")
+    body = MarkdownIt().enable("table").render(as_markdown(records))
+    page.write_text(f"{HEAD}\n{body}", encoding="utf-8")
 
 
 def section_3(boundaries: Sequence[Path], cubes: Sequence[xr.Dataset], restitution: Sequence[float]) -> Iterator[Claim]:
@@ -150,6 +154,15 @@ much; else "{FAILS}". "Could fail if" says what would have contradicted the clai
 solution of this package.
 a = a_g/(g alpha), or a_g/(g tan alpha) for blocks that are not slender; omega = omega_g/p; eta: coefficient of
 restitution."""
+
+HEAD = """\
+<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>Claims of the paper</title>
+<style>
+  body { font: 15px/1.4 sans-serif; margin: 2em }
+  table { border-collapse: collapse }
+  th, td { border: 1px solid #bbb; padding: .3em .5em; text-align: left; vertical-align: top }
+</style>"""
 
 COLUMNS = ("place", "printed", "criterion", "fails_if", "found", "verdict")
 

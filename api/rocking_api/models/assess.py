@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
+from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
@@ -15,32 +15,17 @@ from rocking._base.quantity import Quantity
 from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
-from rocking_api.models.answer import ECHO, QUERY, Answer
-from rocking_api.models.metadata import METADATA_URL_FIELD
+from rocking_api.models.answer import Echoed, Solved
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import BaselineOrder, TableFormat, between, said
-from rocking_api.models.responses import BY_SOLVER
 
-MAX_OBJECTS = 2000
-"""Most rows of a table [-]."""
-
-MAX_RECORDS = 100
-"""Most records of a site [-]."""
-
-MAX_SAMPLES = 20_000
-"""Most variants of an object [-]."""
-
-MAX_MODES = 20
-"""Most modes of a building [-]."""
-
-MAX_SHAPES = 50
-"""Most pulse shapes of a site [-]."""
-
-MAX_LEVELS = 1000
-"""Most levels of a hazard curve [-]."""
-
-MAX_RECORD = 1_000_000
-"""Most samples of a component of a record [-]."""
+MAX_OBJECTS = 2000  # most rows of a table [-]
+MAX_RECORDS = 100  # most records of a site [-]
+MAX_SAMPLES = 20_000  # most variants of an object [-]
+MAX_MODES = 20  # most modes of a building [-]
+MAX_SHAPES = 50  # most pulse shapes of a site [-]
+MAX_LEVELS = 1000  # most levels of a hazard curve [-]
+MAX_RECORD = 1_000_000  # most samples of a component of a record [-]
 
 Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
 Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
@@ -202,10 +187,9 @@ class UnreadRow(BaseModel):
     reason: str = said("what was found and what is allowed")
 
 
-class AssessResponse(Answer):
+class AssessResponse(Echoed[AssessParams], Solved[AssessParams]):
     """Objects at a site, the worst first."""
 
-    query: Annotated[SerializeAsAny[AssessParams], ECHO] = QUERY
     rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]
     motions: list[str] = said("motions of the site; from both sides each")
     highest_factor: float = said("highest factor on the motions that was searched [-]")
@@ -218,5 +202,3 @@ class AssessResponse(Answer):
     )
     columns: dict[str, str] = said("what columns of the table were read as, by their headers")
     skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
-    source: str = BY_SOLVER
-    metadata_url: str = METADATA_URL_FIELD

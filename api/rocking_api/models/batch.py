@@ -20,11 +20,8 @@ from rocking_api.models.params import GROUPS, BatchParams, LookupOptions
 
 Columns = Mapping[str, NDArray[np.float64]]
 
-CHUNK_LINES = 10_000
-"""Lines of CSV that are parsed at once: 5 ms, for which numpy holds the interpreter lock."""
-
-MAX_LINE = 1000
-"""Characters of a line of CSV."""
+CHUNK_LINES = 10_000  # lines of CSV that are parsed at once: 5 ms, for which numpy holds the interpreter lock
+MAX_LINE = 1000  # characters of a line of CSV
 
 
 @dataclass(frozen=True)

@@ -2,41 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, SerializeAsAny
+from pydantic import BaseModel
 
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.fields import FIELDS
 from rocking_api.models import quantity as q
-from rocking_api.models.answer import ECHO, QUERY, Answer
-from rocking_api.models.metadata import METADATA_FIELD, Metadata
+from rocking_api.models.answer import BY_SOLVER, Echoed, InUnits
+from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, PointResponse, declared, with_fields
+from rocking_api.models.responses import PointResponse, declared, with_fields
 
-MAX_BLOCKS = 10_000
-"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
-
-
-class SizeParams(Params):
-    """A block in SI units."""
-
-    width: q.Width
-    height: q.Height
-    restitution: q.BodyRestitution = "momentum"
-    gravity: q.Gravity = STANDARD_GRAVITY
-
-
-class BodyParams(SizeParams):
-    """The same, and the place of its centre of mass."""
-
-    offset: q.Offset = 0.0
-    mass_height: q.MassHeight = None
+MAX_BLOCKS = 10_000  # most blocks of a body [-]: each is an object, unlike the points of /v1/response
 
 
 class BlockParams(BodyParams):
-    """A block and a pulse in SI units."""
+    """A body and a pulse in SI units."""
 
     pulse: q.PulseName
     peak_acceleration: q.PeakAcceleration
@@ -55,12 +38,11 @@ class BlocksParams(Params):
     format: q.TableFormat = None
 
 
-class BlockRow(Params):
-    """One of many blocks in a JSON body, in SI units."""
+class BlockRow(BodyShape):
+    """One of many bodies in JSON, in SI units."""
 
+    body: JsonBody  # type: ignore[assignment]  # a text once it is read
     name: str = q.said("label", "", max_length=200)
-    width: q.Width
-    height: q.Height
     peak_acceleration: q.PeakAcceleration
     period: q.Period
     restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: that of all", None)
@@ -76,7 +58,7 @@ class BlockRows(BlocksParams):
 
 
 _OF_TABLE = [
-    one
+    one if one.missing or one.kinds >= {"edges"} else replace(one, missing="the body has other edges than a block")
     for one in FIELDS
     if {"pulse", "block"} <= one.kinds and one.name not in ("half_diagonal", "frequency_parameter")
 ]
@@ -84,12 +66,11 @@ _OF_TABLE = [
 
 
 @declared(_OF_TABLE, many=True)
-class BlocksResponse(Answer):
-    """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
+class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
+    """Many bodies: one value for each, in the order of the body; SI units, degrees and groups."""
 
-    query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
     name: list[str] | None = q.said("labels; null without any", None)
-    metadata: Metadata = METADATA_FIELD
+    body: list[str] | None = q.said("what each is; null if all are blocks", None)
     source: str = BY_SOLVER
 
 
@@ -155,22 +136,19 @@ class Margins(BaseModel):
 
 
 @with_fields("pulse", "edges")
-class BodyResponse(Answer):
+class BodyResponse(InUnits[BlockParams]):
     """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
-    query: BlockParams = QUERY
     edge: Edge
     thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
     notes: list[str] = NOTES
     source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
 @with_fields("pulse", "block")
-class BlockResponse(Answer):
+class BlockResponse(InUnits[BlockParams]):
     """What happens to the block."""
 
-    query: BlockParams = QUERY
     response: PointResponse = q.said("the same request and response in dimensionless groups")
     thresholds: list[Threshold] | None = q.said(
         f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
@@ -178,4 +156,3 @@ class BlockResponse(Answer):
     margins: Margins | None = q.said("null if they were not found in time, see `warnings`")
     notes: list[str] = NOTES
     data_version: str | None = q.said("sha256 of the data set that gave the response; null: the solver did")
-    metadata: Metadata = METADATA_FIELD

@@ -23,11 +23,8 @@ from rocking_api.models.quantity import PulseName, said
 
 P = TypeVar("P", bound=Params)
 
-MAX_SAMPLES = 10_000
-"""Most samples of a pulse over HTTP [-]: some milliseconds for the parser, and for each block."""
-
-MAX_BODY = 500_000
-"""Largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits."""
+MAX_SAMPLES = 10_000  # most samples of a pulse over HTTP [-]: some milliseconds for the parser, and for each block
+MAX_BODY = 500_000  # largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits
 
 Samples = Annotated[list[float], Field(min_length=2, max_length=MAX_SAMPLES, fail_fast=True)]
 

@@ -34,8 +34,7 @@ SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
 ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
-SCALES = 1e-6, q.HIGHEST_SCALE
-"""Smallest and largest factor of a record [-]."""
+SCALES = 1e-6, q.HIGHEST_SCALE  # smallest and largest factor of a record [-]
 
 
 def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:
@@ -58,9 +57,31 @@ def with_intervals(**estimates: tuple[Any, str, str]) -> Callable[[type[Model]],
     return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
 
 
-def _in_range(quantity: Quantity, low: float, high: float, text: str = "", kind: Any = float, **more: Any) -> Any:
+_ENDS = {
+    "m": (1e-4, 1e4),
+    "m/s2": (1e-6, 1e6),
+    "s": (1e-4, 1e4),
+    "-": (1e-6, 1e6),
+    "kg": (1e-6, 1e12),
+    "kg m2": (1e-9, 1e15),
+}
+_OWN_ENDS = {"gravity": (1e-3, 1e3)}
+"""Smallest and largest values that the service takes, by unit or by name, where a quantity has an open end there."""
+
+
+def served(quantity: Quantity) -> Quantity:
+    """The quantity on the range of the service."""
+    ends = _OWN_ENDS.get(quantity.name) or _ENDS.get(quantity.unit)
+    if ends is None:
+        return quantity
+    low = -ends[1] if quantity.lower == -math.inf else max(quantity.lower, ends[0])
+    low = quantity.lower if quantity.closed in ("both", "left") and math.isfinite(quantity.lower) else low
+    return quantity.restricted(low, min(quantity.upper, ends[1]))
+
+
+def si(quantity: Quantity, text: str = "", kind: Any = float, **more: Any) -> Any:
     """A field in SI units within the range of the service; a text may state another unit, as "40 cm"."""
-    own = quantity.restricted(low, high)
+    own = served(quantity)
 
     def read(value: Any) -> Any:
         return value if value is None else own.read(value, si=True)
@@ -117,13 +138,11 @@ AlphaDeg = Annotated[
 
 # blocks and motions in SI units
 
-Width = _in_range(q.WIDTH, 1e-4, 1e4, examples=[0.4])
-Height = _in_range(q.HEIGHT, 1e-4, 1e4, examples=[1.6])
-Offset = _in_range(q.OFFSET, -1e4, 1e4, q.OFFSET.meaning + ", less than half of it")
-MassHeight = _in_range(q.MASS_HEIGHT, 1e-4, 1e4, kind=float | None)
-Gravity = _in_range(q.GRAVITY, 1e-3, 1e3)
-PeakAcceleration = _in_range(q.PEAK_ACCELERATION, 1e-6, 1e6, examples=[4.0])
-Period = _in_range(q.PERIOD, 1e-4, 1e4, examples=[0.5])
+Width = si(q.WIDTH, examples=[0.4])
+Height = si(q.HEIGHT, examples=[1.6])
+Gravity = si(q.GRAVITY)
+PeakAcceleration = si(q.PEAK_ACCELERATION, examples=[4.0])
+Period = si(q.PERIOD, examples=[0.5])
 Scale = Annotated[float, described(q.SCALE.restricted(*SCALES))]
 Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
 """An impact at a share k of the half base."""

@@ -21,11 +21,8 @@ from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-MAX_BODY = 8 * 1024 * 1024
-"""Largest table with records [bytes]."""
-
-MAX_PAIRS = 500_000
-"""Most objects times motions, a pair of components being twelve [-]."""
+MAX_BODY = 8 * 1024 * 1024  # largest table with records [bytes]
+MAX_PAIRS = 500_000  # most objects times motions, a pair of components being twelve [-]
 
 _FORMS: tuple[Form, ...] = ("json", "csv")
 

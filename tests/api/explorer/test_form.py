@@ -21,6 +21,7 @@ from tests.api.explorer.reading import BLOCK, pixels, query, settle
 )
 def test_the_sentence_gives_the_verdict_of_the_package(open_page, units, typed, metres):
     page = open_page()
+    page.locator("#pulse").select_option("sine")
     page.locator("#units").select_option(units)
     for name, value in zip(("width", "height", "acceleration"), typed, strict=True):
         page.locator(f"#{name}").fill(value)
@@ -114,7 +115,7 @@ def test_a_size_out_of_range_is_told_as_it_was_typed(open_page):
 def test_the_motion_is_previewed_with_its_period(open_page):
     page = open_page()
     note = page.locator("#pulse-note")
-    expect(note).to_contain_text("It lasts 1 T.")
+    expect(note).to_contain_text("It lasts 2.46 T.")
     for name, duration in (("half_sine", "0.5"), ("ricker", "4")):
         page.locator("#pulse").select_option(name)
         expect(note).to_contain_text(f"It lasts {duration} T.")

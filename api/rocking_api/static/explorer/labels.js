@@ -104,6 +104,6 @@ export function responseLabel(found) {
   if (found.overturned) return found.impacts > 0 ? `overturns after ${impacts(found.impacts)}` : outcome;
   if (found.outcome === "NO_UPLIFT") return outcome;
   const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
-  const beyond = found.exceeded_alpha ? "; it exceeds α" : "";
+  const beyond = found.exceeded_alpha ? "; beyond α" : "";
   return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${found.impacts === null ? "" : " during the pulse"}${beyond}`;
 }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, RecordFileError, integer, number, one_of
+from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError, integer, number, one_of
 from rocking._base.units import Scalar
 from rocking._excitation.records.readers import columns, esm, knet, peer_at2, seismic, volumes
 from rocking._excitation.records.readers.lines import MAX_LINE, TextFile
@@ -95,7 +95,7 @@ def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
         with Path(path).open("rb") as stream:
             return stream.read(MAX_BYTES + 1)
     except OSError as error:
-        raise InvalidArgumentError(parameter, str(path), f"a file that can be read ({error.strerror})") from None
+        raise UnreadableFileError(parameter, str(path), error) from None
 
 
 def _with_vertical(found: Record, upwards: Record) -> Record:
