@@ -6,6 +6,7 @@ that names the key, its value and what is allowed.
 
 import math
 import reprlib
+import textwrap
 from collections.abc import Iterator, Mapping
 from itertools import chain, pairwise
 from pathlib import Path
@@ -35,6 +36,7 @@ DATA_OF_FIGURES = {
 }
 """The pulses of the figures that are drawn from data sets."""
 
+MOTIONS = sorted(path.name for path in Path(__file__).with_name("motions").glob("*.csv"))
 DERIVED_NAMES = [field.name for field in DERIVED_FIELDS]
 
 
@@ -69,17 +71,20 @@ def check(config: Mapping[str, Any], folder: Path = Path()) -> None:
 
 def _line(error: ValidationError) -> str:
     """The line for an error that the schema finds."""
-    key, value, keys = ".".join(map(str, error.absolute_path)) or "configuration", error.instance, error.schema
+    key, value, rules = ".".join(map(str, error.absolute_path)) or "configuration", error.instance, error.schema
     if isinstance(value, dict):
-        allowed = keys.get("properties", {})
+        allowed = rules.get("properties", {})
         found = [f"unknown key {name}" for name in value if name not in allowed]
         missing = [
-            *keys.get("required", ()),
-            *chain(*(keys.get("dependentRequired", {}).get(name, ()) for name in value)),
+            *rules.get("required", ()),
+            *chain(*(rules.get("dependentRequired", {}).get(name, ()) for name in value)),
         ]
         found += [f"missing key {name}" for name in missing if name not in value]
-        return f"{key}: {', '.join(found)}; the keys are {', '.join(allowed) or 'none'}"
-    required = f"missing key {', '.join(keys['required'])}" if "required" in keys else f"allowed: {keys['description']}"
+        names = textwrap.shorten(", ".join(allowed), 160, placeholder=" ...") or "none"
+        return f"{key}: {', '.join(found)}; the keys are {names}"
+    required = (
+        f"missing key {', '.join(rules['required'])}" if "required" in rules else f"allowed: {rules['description']}"
+    )
     return f"{key} = {reprlib.repr(value)}: {required}"
 
 
@@ -193,9 +198,12 @@ def _of_figures(config: Mapping[str, Any]) -> Iterator[str]:
         ):
             for value in set(given) - set(made):
                 yield f"figures.{figure}: {name} = {value}; allowed: {made}, of which there are data"
-    law = chosen(config, "figure-scale-law")
-    if law["reference"] not in law["restitution"]:
-        yield f"figures.figure-scale-law: reference = {law['reference']}; allowed: one of its {law['restitution']}"
+    for figure in ("figure-scale-law", "figure-scale-law-excitations"):
+        law = chosen(config, figure)
+        if law["reference"] not in law["restitution"]:
+            yield f"figures.{figure}: reference = {law['reference']}; allowed: one of its {law['restitution']}"
+        for name in set(law.get("records", ())) - set(MOTIONS):
+            yield f"figures.{figure}: records = {name!r}; allowed: a file of workflow/motions, {', '.join(MOTIONS)}"
     for figure in ("figure-05", "figure-06"):
         blocks = chosen(config, figure)
         if len(blocks["slenderness_angle"]) != len(blocks["half_diagonal"]):

@@ -59,12 +59,6 @@ class Points:
         full = broadcast(given, [s, w, eta, alpha])
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
-    @classmethod
-    def of_one(cls, *groups: float) -> Points:
-        """The arguments of one block, checked numbers in the order of the fields."""
-        table = np.array(groups).reshape(4, 1)
-        return cls(table[0], table[1], table[2], table[3])
-
     def __getitem__(self, index: Any) -> Points:
         return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
 

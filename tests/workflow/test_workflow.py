@@ -42,7 +42,7 @@ def test_every_product_is_made_and_listed(smoke_results: Path) -> None:
         "table-1",
     ]
     expected = {f"figures/{name}.{kind}" for name in figures for kind in ("svg", "png", "nc")}
-    expected |= {"claims.json", "claims.md"}
+    expected |= {"claims.json", "claims.md", "claims.html"}
     for pulse in ("sine", "cosine"):
         for kind in ("spectra", "overturning"):
             expected |= {f"{kind}/{pulse}/eta-{eta}.nc" for eta in ("0.85", "0.90")}
@@ -164,7 +164,7 @@ def test_stored_manifests_are_those_of_their_configurations(path: Path) -> None:
         for eta in configuration["restitution"]
     }
     figures = {f"figures/{name}.{kind}" for name in configuration.get("figures", ()) for kind in ("svg", "png", "nc")}
-    claims = {"claims.json", "claims.md"} if "claims" in configuration else set()
+    claims = {"claims.json", "claims.md", "claims.html"} if "claims" in configuration else set()
     assert set(listed) == expected | figures | claims
     assert all("content_sha256" in entry for name, entry in listed.items() if name.endswith(".nc"))
     assert len({entry["processor"] for entry in listed.values()}) == 1

@@ -1,5 +1,5 @@
 # The claims of the paper against the results.
-CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md"}
+CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md", "page": "results/claims.html"}
 CLAIMS_PROVENANCE = provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values())
 
 
@@ -12,9 +12,11 @@ rule claims:
         histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
         master="results/figures/figure-master-spectra.nc",
         momentum="results/figures/figure-master-housner.nc",
+        excitations="results/figures/figure-scale-law-excitations.nc",
     output:
         table=CLAIM_FILES["table"],
-        text=report(CLAIM_FILES["text"], caption="../report/claims.rst", category="Claims"),
+        text=CLAIM_FILES["text"],
+        page=report(CLAIM_FILES["page"], caption="../report/claims.rst", category="Claims"),
         record=record_of("claims", CLAIMS_PROVENANCE),
     log:
         "logs/claims.log",

@@ -9,10 +9,24 @@ FIGURE_INPUTS = {
         figure: {pulse: overturning_files(pulse, restitutions(config, figure))[0] for pulse in ("sine", "cosine")}
         for figure in ("figure-10", "figure-master-spectra")
     },
+    "figure-scale-law-excitations": {
+        "motions": [
+            os.path.relpath(PROJECT / "workflow/motions" / name)
+            for name in _figures["figure-scale-law-excitations"]["ours"]["records"]
+        ]
+    },
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
-READ_BY_CLAIMS = ["figure-06", "figure-09", "figure-11", "figure-12", "figure-master-spectra", "figure-master-housner"]
+READ_BY_CLAIMS = [
+    "figure-06",
+    "figure-09",
+    "figure-11",
+    "figure-12",
+    "figure-master-spectra",
+    "figure-master-housner",
+    "figure-scale-law-excitations",
+]
 
 # for `snakemake --report`: the captions of the guide, by figure; a changed one repeats no job
 GUIDE = (PROJECT / "docs/figures.md").read_text(encoding="utf-8") if (PROJECT / "docs/figures.md").exists() else ""

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
 from rocking._base.quantities import RESTITUTION
-from rocking._excitation.pulses import PULSE_NAMES, as_pulse
+from rocking._excitation.pulses import as_pulse
 from rocking._model.checks import impact_share
 from rocking_api.models import quantity as q
 
@@ -22,9 +22,6 @@ MAX_NUMBERS = 1_000_000
 """Most numbers of a list in JSON [-]; the points of a batch have a limit of their own, see `Settings`."""
 
 _FAIL_FAST = Field(fail_fast=True, max_length=MAX_NUMBERS)  # one error for an array, not one for each entry
-
-_KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
-"""Names that need no look at the registered pulses."""
 
 MAX_DURATION = 1e9  # duration of a history, tau = p t [-]
 
@@ -128,6 +125,12 @@ class BlockInGroups(ShapeParams):
 
     frequency_ratio: q.FrequencyRatio
 
+    @property
+    def groups(self) -> dict[str, Any]:
+        """Keyword arguments of the solver."""
+        alpha = alpha_of(self.alpha_deg)
+        return {"frequency_ratio": self.frequency_ratio, "restitution": self.restitution, "alpha": alpha}
+
 
 class SpectrumParams(LookupOptions):
     """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
@@ -194,16 +197,3 @@ def _checks_of(kind: type[Params]) -> dict[str, Callable[[Any], object]]:
             unit = re.search(r"\[([^]]+)\]", field.description or "")
             found[name] = partial(in_range, name, **ends, closed=closed, unit=unit[1] if unit else "-")
     return found
-
-
-def check_point(params: ResponseParams) -> None:
-    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond."""
-    if not (
-        params.pulse in _KNOWN
-        and q.SLENDERNESS.lower <= params.slenderness < q.SLENDERNESS.upper
-        and q.FREQUENCY_RATIO.lower <= params.frequency_ratio <= q.FREQUENCY_RATIO.upper
-        and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
-        and (not params.alpha_deg or q.ALPHA_DEG.lower <= params.alpha_deg <= q.ALPHA_DEG.upper)
-        and 0.0 <= params.absolute_tolerance < math.inf
-    ):
-        params.check()

@@ -6,15 +6,16 @@ import math
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
+import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._base.quantities import GROUPS
 from rocking._dimensional.margins import Margins as FoundMargins
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import BodyResponse as Found
 from rocking._dimensional.response import respond
 from rocking._dimensional.table import BlockTable, read_table, respond_table
-from rocking._lookup.cube import Points
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
@@ -155,7 +156,7 @@ def _point(
         restitution=groups["restitution"],
     )
     dimensionless.check()
-    points = Points.of_one(*(groups[name] for name in ("slenderness", "frequency_ratio", "restitution", "alpha")))
+    points = np.array([groups[one.name] for one in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:
         found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres

@@ -25,7 +25,7 @@ from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
 from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", route_class=ParamsRoute)
 
 NODES = 201
 """Nodes of the grid on which curves are traced on request [-]: half as fine as the workflow, seconds for wavelets."""

@@ -38,7 +38,7 @@ from rocking_api.models import records as m
 from rocking_api.models.blocks import ScaleThreshold
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.responses import OUTCOMES
-from rocking_api.routers.history import motion_columns, motion_fields
+from rocking_api.routers.curves import motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 P = TypeVar("P", bound=m.RecordFileParams)

@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any
 
+import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._lookup.cube import Points, UnreadError
+import rocking_api.models.quantity as q
+from rocking._base.quantities import RESTITUTION
+from rocking._excitation.pulses import PULSE_NAMES
+from rocking._lookup.cube import UnreadError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate, evaluate_many
 from rocking_api.http.body import body_form
@@ -31,7 +35,6 @@ from rocking_api.models.params import (
     LookupOptions,
     ResponseParams,
     TableParams,
-    check_point,
 )
 from rocking_api.models.pulses import options_of, with_samples
 from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
@@ -43,6 +46,9 @@ MAX_JSON = 2 * 1024 * 1024
 """Largest JSON body [bytes], fifty thousand blocks: pydantic holds the interpreter lock for 0.015 s to read it."""
 
 
+_KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
+"""Names that need no look at the registered pulses."""
+
 MAX_INLINE_RESTITUTION = 0.9
 """Restitution above which one block is computed in a thread [-]. Up to it a block has at most a few hundred impacts,
 half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of a second."""
@@ -51,11 +57,11 @@ half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of 
 @router.get("/response", summary="One block")
 async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep) -> PointResponse:
     """Whether it overturns, and its peak rotation."""
-    check_point(params)
+    _check(params)
     if not service.kernels.is_loaded:
         await service.kernels.wait()
     alpha = math.radians(params.alpha_deg or 0.0)
-    points = Points.of_one(params.slenderness, params.frequency_ratio, params.restitution, alpha)
+    points = np.array((params.slenderness, params.frequency_ratio, params.restitution, alpha)).reshape(4, 1)
     try:
         if params.restitution > MAX_INLINE_RESTITUTION:
             raise UnreadError
@@ -64,6 +70,19 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
         found = await service.single.run(lambda stop: evaluate(service.cubes, params, points, stop))
     service.metrics.points(SOURCES[found[0].from_cube.item()], 1)
     return point_response(params, *found)
+
+
+def _check(params: ResponseParams) -> None:
+    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond."""
+    if not (
+        params.pulse in _KNOWN
+        and q.SLENDERNESS.lower <= params.slenderness < q.SLENDERNESS.upper
+        and q.FREQUENCY_RATIO.lower <= params.frequency_ratio <= q.FREQUENCY_RATIO.upper
+        and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
+        and (not params.alpha_deg or q.ALPHA_DEG.lower <= params.alpha_deg <= q.ALPHA_DEG.upper)
+        and 0.0 <= params.absolute_tolerance < math.inf
+    ):
+        params.check()
 
 
 @router.post(
