@@ -237,7 +237,6 @@ def test_the_vertical_component_is_a_column_of_the_body(client, motion):
         one["scale"]
         for one in post(client, body, route="scales", points=5, scale_max=2.0, **columns).json()["thresholds"]
     ]
-    assert post(client, body, route="pulse", **columns).status_code == 200
 
 
 def test_errors_of_the_vertical_component_name_the_parameter(client, motion):

@@ -6,6 +6,7 @@
 
 import json
 import re
+import runpy
 import shlex
 import shutil
 import socket
@@ -18,6 +19,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from tests.repository.test_docs import PRINTED
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
@@ -136,6 +139,15 @@ def test_extras_that_are_installed_exist() -> None:
     for command in PIP:
         assert command[:2] == ["pip", "install"]
         assert set(re.findall(r"\w+", command[2].partition("[")[2])) <= extras.keys()
+
+
+def test_example_that_asks_a_server(
+    server_port: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROCKING_SERVER", f"http://127.0.0.1:{server_port}")
+    runpy.run_path(str(ROOT / "examples/ask_a_server.py"))
+    output = capsys.readouterr().out
+    assert [text for text in PRINTED["ask_a_server"] if text not in output] == []
 
 
 @pytest.mark.slow
