@@ -110,8 +110,8 @@ def margins_of(
     def size(ratio: float) -> float:
         return float(block.half_diagonal * (ratio / omega) ** 2)  # p = sqrt(3 g/(4 R)): larger is higher (2.2)
 
-    periods = tuple(Threshold(period(w), not above) for w, above in reversed(changes))
-    sizes = tuple(Threshold(size(w), above) for w, above in changes)
+    periods = tuple([Threshold(period(w), not above) for w, above in reversed(changes)])
+    sizes = tuple([Threshold(size(w), above) for w, above in changes])
     smallest, largest = size(low), size(high)
     overturns_small, overturns_large = found.overturns_at_ends
     nearest_acceleration = _nearest(problem.peak_acceleration, accelerations)
@@ -133,7 +133,7 @@ def margins_of(
 
 
 def _nearest(value: float, candidates: Iterable[Threshold]) -> float | None:
-    return min((one.value for one in candidates), key=lambda candidate: abs(math.log(candidate / value)), default=None)
+    return min([one.value for one in candidates], key=lambda candidate: abs(math.log(candidate / value)), default=None)
 
 
 def _factor(value: float | None, of: float) -> float | None:

@@ -142,7 +142,7 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
 def _respond_other(problem: Problem, stop: StopFlag | None) -> dict[str, Any]:
     found, body = respond(problem, stop=stop), problem.body
     size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
-    return size | {one.label: shown(one, getattr(found, one.name)) for one in found.fields}
+    return size | shown(found.fields, [getattr(found, one.name) for one in found.fields])
 
 
 def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> dict[str, list[Any]]:

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 
 import rocking
-from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import UNITS
 from tests.api.conftest import assert_problem, client_of
@@ -134,7 +133,7 @@ def test_scales_are_those_of_the_library(client, motion):
     assert [math.nan if peak is None else peak for peak in found["peak_rotation"]] == pytest.approx(
         expected.peak_rotation.tolist(), nan_ok=True
     )
-    thresholds = scale_thresholds(motion, block, highest=2.0)
+    thresholds = block.thresholds(motion, highest=2.0)
     assert [one["scale"] for one in found["thresholds"]] == thresholds.value.tolist()
     table = post(client, route="scales", points=30, scale_max=2.0, format="csv").text.splitlines()
     assert table[0].startswith("scale,peak_acceleration,peak_rotation,overturned")
