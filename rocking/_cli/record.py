@@ -31,9 +31,9 @@ def record(
     block: RecordOptions,
     output: OutputOptions,
     thresholds: Annotated[
-        bool, said("Whether to find all scales at which the outcome changes.", "", "--thresholds/--no-thresholds")
+        bool, said("Find all factors at which the outcome changes.", "", "--thresholds/--no-thresholds")
     ] = True,
-    fit: Annotated[bool, said("Fit a pulse, and compare how both overturn the block.", "", "--fit")] = False,
+    fit: Annotated[bool, said("Fit a pulse and compare when both overturn the block.", "", "--fit")] = False,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
     from rocking._base.errors import InvalidArgumentError
@@ -107,7 +107,7 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingB
 
 
 def _measures(motion: Record) -> dict[str, Any]:
-    """What is printed of a record, by name."""
+    """The printed values of a record, by name."""
     from rocking._base.errors import finite
 
     return {
@@ -127,7 +127,7 @@ def _measures(motion: Record) -> dict[str, Any]:
 
 
 def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
-    """What is printed of the pulse that is fitted to a record, by name."""
+    """The printed values of the pulse fitted to a record, by name."""
     from rocking._base.errors import finite
     from rocking.suites.pulse_fit import fit_pulse
 

@@ -69,7 +69,7 @@ def test_without_results_the_solver_is_used_and_health_reports_it(tmp_path):
         assert "make reproduce" in health["problems"]["spectra"]
         assert client.get("/v1/response", params=QUERY).json()["source"] == "solver"
         assert client.get("/v1/datasets").json()["datasets"] == []
-        assert_problem(client.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "restitution")
+        assert_problem(client.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "pulse")
 
 
 def test_with_a_damaged_cube_the_solver_is_used_and_health_reports_it(client, own_results):

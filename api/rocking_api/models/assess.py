@@ -49,9 +49,7 @@ class AssessParams(Params):
         "pulses, separated by commas; absent: all that leave the ground at rest", None, examples=["sine,ricker"]
     )
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
-    floor_periods: str | None = said(
-        "periods of a building of which the objects are on a floor [s], separated by commas", None
-    )
+    floor_periods: str | None = said("periods of the building [s], for objects on a floor, separated by commas", None)
     floor_damping: str = said("damping ratios of these modes [-], one or one for each", "0.05")
     floor_participation: str = said(
         "participation factors times mode shapes at the floor [-], one or one for each", "1"
