@@ -36,7 +36,7 @@ class Params(BaseModel):
 
     @classmethod
     def check_field(cls, name: str, value: Any) -> None:
-        """Refuse a value that is out of the range that the schema of its field states, whatever the others are."""
+        """Refuse a value outside the range of its field, independently of other fields."""
         check = _checks_of(cls).get(name)
         if check is not None and value is not None:
             check(value)
@@ -175,7 +175,7 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "restitution": lambda value: impact_share(value) is not None or RESTITUTION.convert(value),
     "alpha_deg": alpha_of,
 }
-"""Checks of parameters whose range is not all of what is allowed, or which may be arrays."""
+"""Checks of parameters that a range does not describe, or that may be arrays."""
 
 
 @cache
