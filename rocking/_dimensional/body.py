@@ -1,4 +1,4 @@
-"""Bodies with two edges and their responses in SI units: what `rocking.RigidBody` and bodies of one's own share."""
+"""Bodies with two edges and their responses in SI units: what `rocking.RigidBody` and bodies of your own share."""
 
 from __future__ import annotations
 
