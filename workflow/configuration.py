@@ -147,7 +147,10 @@ def _of_grid(config: Mapping[str, Any]) -> Iterator[str]:
 def _suite(config: Mapping[str, Any], folder: Path) -> Iterator[str]:
     """Errors of a suite, whose keys `rocking.suites.configuration` describes."""
     try:
-        suite_configuration(config["suite"], folder).records.paths()
+        suite = suite_configuration(config["suite"], folder)
+        suite.records.paths()
+        if not isinstance(suite.blocks, tuple):
+            raise InvalidArgumentError("blocks", config["suite"]["blocks"], "bodies with equal edges")
     except InvalidArgumentError as error:
         yield f"suite.{error.parameter} = {reprlib.repr(error.value)}: allowed: {error.allowed}"
 

@@ -212,7 +212,7 @@ def _sliding(
     objects: Sequence[Object], body: BodyArray, motions: Sequence[Motion], rocking: bool, stop: StopFlag | None
 ) -> dict[str, Any]:
     """Whether each body slides before it rocks (None: not known), under which motions, from what time, and how far."""
-    given: list[Any] = [one.friction for one in objects for _ in one.planes]
+    given: list[Any] = [None if plane.side else one.friction for one in objects for plane in one.planes.values()]
     friction = np.array([math.nan if mu is None else mu for mu in given], dtype=np.float64)
     needed = np.asarray(body.uplift_acceleration) / STANDARD_GRAVITY
     first = [None if mu is None else bool(mu < need) for mu, need in zip(given, needed, strict=True)]
@@ -238,9 +238,9 @@ def _sliding(
 
 def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequence[str]) -> list[str]:
     """Warnings of each row, in words; `doubts` are the warnings of the motions."""
-    given = [one for one in objects for _ in one.planes]
+    given = [(one, plane) for one in objects for plane in one.planes.values()]
     found = []
-    for k, one in enumerate(given):
+    for k, (one, plane) in enumerate(given):
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
@@ -249,7 +249,9 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
             when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"
             texts.append(f"{how}: {when}")
-        if columns["slides_first"][k] is None:
+        if plane.side:
+            texts.append("against a wall, whose forces are not part of the model: sliding is not assessed")
+        elif columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
         if one.diameter is not None:
             texts.append("round base: the plane model leaves out wobbling and rolling")

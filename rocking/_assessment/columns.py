@@ -44,7 +44,7 @@ INPUTS = (
 
 STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are read as one of these
 
-SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination", "sides", "rebound")
+SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination")
 """Parameters of kinds of bodies that an object may have in place of or beside its own dimensions."""
 
 REQUIRED = (("width", "diameter", "left"), ("height", "mass_height"))

@@ -140,9 +140,13 @@ def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:
 
 def _made(given: dict[str, Any]) -> Object:
     """The object from its own parameters, or from those of a kind of body."""
+    if given.get("sides") == "both":
+        del given["sides"]
     kind, shapes = given.pop("body", None), given.keys() & _SHAPES
     if kind is None and not shapes:
         return Object(**given)
+    if "sides" in shapes and given.get("depth") is not None and given.keys().isdisjoint(["wall"]):
+        raise InvalidArgumentError("depth", given["depth"], "none beside sides: the width is across the wall")
     stated = {name: given.pop(name) for name in [*given] if name not in _ABOUT}
     made, parameters = described(kind, stated, WITHOUT_FILES)
     return Object.from_body(made(**parameters), **given)

@@ -183,4 +183,4 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
         else np.clip(np.broadcast_to(np.asarray(eta, float), size), 0.0, 1.0)
     )
     one = np.ones(size)
-    return Bodies(width, offset, height, centre, one, one, own).scaled()
+    return Bodies(width, offset, height, centre, one, one, 0.0 * one, math.nan * one, own).scaled()

@@ -22,6 +22,7 @@ from rocking._cli.options import (
     Duration,
     FrequencyRatioMax,
     FrequencyRatioMin,
+    HistoryOptions,
     OutputOptions,
     ProblemOptions,
     SpectrumOptions,
@@ -121,7 +122,7 @@ def response(
 @app.command()
 @with_options
 def history(
-    block: ProblemOptions,
+    block: HistoryOptions,
     output: OutputOptions,
     duration: Duration = None,
     samples: Annotated[
@@ -131,11 +132,17 @@ def history(
         bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.", metavar="")
     ] = False,
 ) -> None:
-    """Rotation and angular velocity of one block against time."""
+    """Rotation and angular velocity of one block against time, under a pulse or released from a rotation."""
+    from rocking._base.errors import InvalidArgumentError
     from rocking._cli import arguments, printing
 
-    with arguments.option_errors():
+    with arguments.option_errors({"motion": "--pulse"}):
         form = printing.output_format(output, block)
+        if block.start is not None:
+            printing.released(block, duration, samples, contact, form)
+            return
+        if not block.pulse:
+            raise InvalidArgumentError("pulse", None, "a pulse, or --start, the rotation of a release")
         params = arguments.read_params(block)
         printing.history(params, arguments.read_duration(duration, params), samples, contact, form)
 

@@ -31,7 +31,10 @@ if TYPE_CHECKING:
     from rocking._dimensional.table import BlockTable
     from rocking._model.body import AbstractBody
 
-SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD)} | {"period_min": "s", "period_max": "s"}
+SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD) if one.unit not in ("", "-")} | {
+    "period_min": "s",
+    "period_max": "s",
+}
 """Options with units."""
 
 MAX_ERRORS = 20  # lines of a file that an error names at most

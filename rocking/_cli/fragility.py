@@ -41,11 +41,12 @@ def fragility(
     configuration: Configuration,
     output: OutputOptions,
     table: Annotated[
-        Literal["levels", "curves", "sensitivity"],
+        Literal["levels", "curves", "distribution", "sensitivity"],
         typer.Option(
             "--table",
-            help="What --format csv holds: counts at each level; fitted curves; friction demand, and the effect of "
-            "restitution and sampling, if the configuration asks for them.",
+            help="What --format csv holds: counts at each level; fitted curves; the distribution of the peak rotation "
+            "at each level; friction demand, and the effect of restitution and sampling, if the configuration asks "
+            "for them.",
         ),
     ] = "levels",
     hazard: Annotated[
@@ -72,7 +73,7 @@ def fragility(
     from rocking.suites.files import ENDINGS
     from rocking.suites.hazard import annual_rate
     from rocking.suites.hazard_files import read_hazard
-    from rocking.suites.table import curve_table, finite, fragility_table
+    from rocking.suites.table import curve_table, distribution_table, finite, fragility_table
 
     with configuration_errors():
         form = printing.output_format(output)
@@ -97,6 +98,8 @@ def fragility(
             _write(found, file)
             return
     tables = {"levels": fragility_table(found), "curves": curve_table(found)}
+    if table == "distribution":
+        tables[table] = distribution_table(found)
     if suite.sensitivity is not None and (form.kind != "csv" or table == "sensitivity"):
         tables["sensitivity"] = _sensitivity(suite)
     unit = found["intensity"].attrs["units"]
@@ -170,6 +173,7 @@ def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
     from rocking.suites.table import sensitivity_table
 
     assert suite.sensitivity is not None
+    assert isinstance(suite.blocks, tuple)  # by `suite_configuration`
     with configuration_errors(), file_errors(), progress("solving the blocks with other restitution and sampling"):
         found = suite_sensitivity(
             suite.motions(),

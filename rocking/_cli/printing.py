@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import typer
 
-from rocking._base.errors import finite, in_range
+from rocking._base.errors import finite, in_range, reject_given
 from rocking._base.units import UNITS
 from rocking._cli.arguments import Params, given_units, unit_period
-from rocking._cli.options import OutputOptions
+from rocking._cli.options import HistoryOptions, OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.fields import FIELDS, JUDGED
@@ -260,10 +260,33 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
 def _body_history(problem: Problem, duration: float | None, samples: int, contact: bool, form: Form) -> None:
     """Print the motion of a body under a pulse, as `history`; with the edge in contact: 1 right, -1 left, 0 both."""
     from rocking._dimensional.curves import history as history_of
-    from rocking._history.contact import COLUMNS
 
     with progress("solving the body"):
-        motion = history_of(problem, duration=duration, samples=samples, contact=contact)
+        _print_motion(history_of(problem, duration=duration, samples=samples, contact=contact), form)
+
+
+def released(options: HistoryOptions, duration: str | None, samples: int, contact: bool, form: Form) -> None:
+    """Print the motion of a body that is released, as `history` of a body."""
+    from rocking._cli.arguments import read_body, read_eta
+
+    stated = {name: getattr(options, name) for name in ("slenderness", "frequency_ratio", "alpha")}
+    reject_given("a release", **stated)
+    motion = read_body(options).history(
+        options.pulse or None,
+        start=options.start,
+        peak_acceleration=options.peak_acceleration,
+        period=options.period,
+        restitution="momentum" if options.restitution is None else read_eta(options.restitution),
+        duration=duration,
+        samples=samples,
+        contact=contact,
+    )
+    _print_motion(motion, form)
+
+
+def _print_motion(motion: xr.Dataset, form: Form) -> None:
+    from rocking._history.contact import COLUMNS
+
     columns = _si_columns(motion) | {"edge": motion["edge"].values.tolist()}
     columns |= {name: [finite(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
     names = ("outcome", "impacts", "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio", "warnings")

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
-from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION
+from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION, START
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
-from rocking._dimensional.curves import boundary, history, over_axis, spectrum
+from rocking._dimensional.curves import boundary, history, over_axis, release, spectrum
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import (
     STRENGTHS,
@@ -285,8 +285,9 @@ class RespondingBody(AbstractBody):
 
     def history(
         self,
-        motion: Motion,
+        motion: Motion | None = None,
         *,
+        start: Scalar | None = None,
         peak_acceleration: Scalar | None = None,
         period: Scalar | None = None,
         scale: Scalar | None = None,
@@ -302,8 +303,11 @@ class RespondingBody(AbstractBody):
         ----------
         motion, peak_acceleration, period, scale, restitution
             As for `response`; numbers.
+        start : float, optional
+            In place of a motion: the rotation from which the body is released at rest [rad], in (-pi/2, pi/2), not 0,
+            or a text such as "3 deg"; positive about the right edge.
         duration : float, optional
-            Length [s], > 0; by default the motion and 8/p after it, of the right edge.
+            Length [s], > 0; by default the motion and 8/p after it, of the right edge; 16/p after a release.
         samples : int, optional
             Uniform samples, 2 to 1,000,000; by default 400 under a pulse, and those of a record. The uplift, impacts
             and the end of the motion are added.
@@ -330,6 +334,14 @@ class RespondingBody(AbstractBody):
         """
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
+        if start is not None:
+            reject_given("a release", motion=motion, peak_acceleration=peak_acceleration, period=period, scale=scale)
+            angle = START.number(start)
+            if angle == 0.0:
+                raise InvalidArgumentError("start", start, "a rotation other than 0")
+            return release(self, angle, restitution, length, 400 if samples is None else samples, contact, stop)
+        if motion is None:
+            raise InvalidArgumentError("motion", None, "a pulse or a record, or the rotation `start`")
         problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
         return history(problem, duration=length, samples=samples, contact=contact, stop=stop)
 

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rocking._base.kinds import Kind, kind_with, split_kind
 from rocking._base.quantity import Quantity
 from rocking._dimensional.bodies.composite import hollow, on_pedestal
-from rocking._dimensional.bodies.rigid import cylinder, mesh, offset_mass, outline, rectangle, two_edges
+from rocking._dimensional.bodies.rigid import cylinder, mesh, offset_mass, outline, rectangle, two_edges, with_wall
 from rocking._dimensional.bodies.structures import arch, frame, on_pivots, structure
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
 
-RIGID = (rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline, mesh)
+Makers = tuple[Callable[..., Any], ...]
+
+_RIGID: Makers = rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline, mesh
+RIGID = tuple(map(with_wall, _RIGID))
 """Rigid bodies, which an object of a table may be."""
 
+_ALL: Makers = *RIGID, frame, arch, on_pivots, structure
 BODIES: dict[str, Kind[RespondingBody]] = {
-    make.__name__: Kind(make, reads_files=make is mesh) for make in (*RIGID, frame, arch, on_pivots, structure)
+    make.__name__: Kind(make, reads_files=make.__name__ == mesh.__name__) for make in _ALL
 }
 """Where only parameters are given, the first kind that has them."""
 
@@ -45,7 +49,8 @@ def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingB
     description : str or mapping
         The name of a kind, with its parameters and their units in brackets; or a mapping of the parameters, with `kind`
         unless they say which one it is. Kinds: rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal,
-        outline, mesh, frame, arch, on_pivots, structure.
+        outline, mesh, frame, arch, on_pivots, structure; all up to mesh also with `sides` and `rebound` of
+        `rocking.RigidBody`, for a wall at one side.
     **parameters
         The same as arguments: numbers in SI units, texts such as "40 cm", quantities of pint.
 
@@ -91,7 +96,11 @@ def signatures(kinds: Mapping[str, Kind[Any]] = BODIES) -> str:
     """The kinds with the parameters that they need, and those that they may have in square brackets."""
 
     def written(kind: Kind[Any]) -> str:
-        names = (name if name in kind.needed else f"[{name}]" for name in kind.fields if name != "gravity")
+        names = (
+            name if name in kind.needed else f"[{name}]"
+            for name in kind.fields
+            if name not in ("gravity", "sides", "rebound")
+        )
         return f"{kind.name}({', '.join(names)})"
 
     return "; ".join(map(written, kinds.values()))

@@ -364,7 +364,7 @@ def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
     if share is None:
         return restitution
     right, left = body.right, body.left
-    if right.blocked or left.blocked or not np.all(right.restitution == left.restitution):
+    if np.any(right.blocked | left.blocked) or not np.all(right.restitution == left.restitution):
         raise InvalidArgumentError(
             "restitution", restitution, "momentum or a number for a body with two different edges"
         )

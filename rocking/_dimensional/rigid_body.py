@@ -36,8 +36,8 @@ from rocking._model.labelled import in_unit, index_of, is_labelled
 
 Array = NDArray[np.float64]
 
-_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
 SIDES = "both", "left", "right"  # edges about which a body rocks
+_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
 
 
 @final

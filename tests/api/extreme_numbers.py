@@ -144,7 +144,8 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
     "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
     "resolution": (0.01, ""), "skip": (0, ""),
-    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"),
+    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"), "rebound": (0.4, ""),
+    "start": (0.05, " rad"),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -153,7 +154,7 @@ TEXTS = {
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
-    "column", "standards", "detail", "directions", "body",
+    "column", "standards", "detail", "directions", "body", "sides",
 }  # fmt: skip
 """Options and arguments that take none."""
 
@@ -169,6 +170,7 @@ VARIANTS = (
     {"pga", "pgv"},
     {"left", "right", "mass_height", "gyration", "peak_acceleration", "period", "duration", "pga"},
     {"diameter", "height", "peak_acceleration", "period", "duration", "pga"},
+    {"width", "height", "start", "duration"},
 )
 """Options that are given together, beside those that go with all."""
 

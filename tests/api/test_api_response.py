@@ -113,6 +113,8 @@ def test_without_a_bound_there_is_a_warning(client):
         ({"frequency_ratio": 40, "method": "cube"}, "frequency_ratio"),
         ({"slenderness": 0.01, "method": "cube"}, "slenderness"),
         ({"restitution": 0.7, "method": "cube"}, "restitution"),
+        ({"pulse": "-ricker", "method": "cube"}, "pulse"),
+        ({"alpha_deg": 80, "method": "cube"}, "alpha_deg"),
         ({"absolute_tolerance": 1e-13, "method": "cube"}, "absolute_tolerance"),
     ],
 )

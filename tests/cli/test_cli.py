@@ -571,3 +571,20 @@ def test_help_and_version_import_nothing_heavy(option):
     if option == "--version":
         assert printed[0] == rocking.__version__
         assert not any(printed[1:])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["assess", "no.csv", "--pga", "0.3g", "--pgv", "30cm/s"],
+        ["assess", "no.xlsx", "--pga", "0.3g", "--pgv", "30cm/s"],
+        ["record", "no.at2", "--width", "0.4m", "--height", "1.6m"],
+        ["response", "no.csv", "--pulse", "sine"],
+        ["fragility", "no.yaml"],
+        ["identify", "no.csv"],
+    ],
+)
+def test_a_file_that_is_missing_is_no_such_file(words):
+    message = refused(*words)
+    assert f"{words[1]}': no such file" in message.replace(f"{words[1]}:", f"{words[1]}':")
+    assert "allowed" not in message

@@ -166,8 +166,11 @@ def test_sizes_of_blocks_are_in_metres_or_with_units() -> None:
     found = suite_configuration(configuration | {"blocks": same + kinds}, CONFIGURATION.parent).blocks
     assert len(found) == 6
     assert len(set(found)) == 3
-    with pytest.raises(InvalidArgumentError, match="equal edges"):
-        suite_configuration(configuration | {"blocks": [same[0] | {"offset": "5 cm"}]}, CONFIGURATION.parent)
+    others = [same[0] | {"offset": "5 cm"}, same[0]]
+    with pytest.raises(ConfigurationError, match="equal edges"):
+        check({"title": "", "suite": configuration | {"blocks": others, "sensitivity": None}}, CONFIGURATION.parent)
+    with pytest.raises(InvalidArgumentError, match="about the same one"):
+        suite_configuration(configuration | {"blocks": [*others, same[0] | {"sides": "left"}]}, CONFIGURATION.parent)
 
 
 @pytest.mark.parametrize(

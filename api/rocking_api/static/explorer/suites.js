@@ -23,7 +23,7 @@ async function start() {
     const { suites } = await ask("/v1/suites", {}, new AbortController().signal);
     form.hidden = !suites.length;
     if (!suites.length) {
-      setStatus(status, "There is no suite yet: make reproduce CONFIG=workflow/config/suite.yaml makes one.");
+      setStatus(status, "There is no suite here: in a checkout of the sources make reproduce CONFIG=workflow/config/suite.yaml makes one.");
       return;
     }
     const given = new URLSearchParams(location.search);
