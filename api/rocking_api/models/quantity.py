@@ -180,14 +180,14 @@ Unit: Any = Annotated[
 TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], required if the file states none")]
 Skip = Annotated[
     int | None,
-    between(0, MAX_SKIP, "rows of numbers above the samples of a file of columns, such as a count or a factor [-]"),
+    between(0, MAX_SKIP, "rows of numbers to skip above the samples, such as a count or a factor [-]"),
 ]
 BaselineOrder = Annotated[
     int | None,
     between(
         0,
         MAX_BASELINE_ORDER,
-        "degree of the baseline that is removed from the acceleration [-]; absent: the mean of K-NET counts only",
+        "degree of the baseline to remove from the acceleration [-]; absent: only the mean of K-NET counts",
     ),
 ]
 Contact = Annotated[bool, Field(description="add the reactions of the ground and the friction that they need")]
@@ -196,7 +196,7 @@ Contact = Annotated[bool, Field(description="add the reactions of the ground and
 
 Method = Annotated[
     Literal["auto", "cube", "solver"],
-    Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
+    Field(description="auto: the data set where it meets the tolerance, else the solver; cube, solver: only this one"),
 ]
 AbsoluteTolerance = Annotated[
     float,
