@@ -34,11 +34,11 @@ UNITS = {
 
 @dataclass(frozen=True, repr=False)
 class Margins:
-    """How far a block is from another outcome."""
+    """Distances of a block from another outcome."""
 
     # peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found
     nearest_acceleration: float | None
-    acceleration_factor: float | None  # that over the peak acceleration of the problem [-]
+    acceleration_factor: float | None  # nearest_acceleration over the peak acceleration of the problem [-]
     nearest_period: float | None  # the same for the period [s], [-]
     period_factor: float | None  # the same for the period [s], [-]
     periods: tuple[Threshold, ...]  # all periods at which the outcome changes, ascending [s]

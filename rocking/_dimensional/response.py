@@ -80,7 +80,7 @@ for _field in FIELDS:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BodyResponse(ResponseFields, EqualByValue):
-    """What happens to bodies under a pulse or a record, in SI units.
+    """The response of bodies to a pulse or a record, in SI units.
 
     Its fields, those of `fields`, are attributes: numbers for one body under one motion, arrays of the broadcast shape
     otherwise; `outcome` is a `rocking.Outcome`, or its codes. What concerns one body is found when it is first asked
@@ -204,7 +204,7 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @cached_property
     def contact_below(self) -> ContactExtremes | None:
-        """The same just below the lowest of `thresholds`, of a block under a pulse; None if there is none."""
+        """`contact` just below the lowest of `thresholds`, for a block under a pulse; None if there is none."""
         if not self._has_margins or not self.thresholds:
             return None
         lowest = self.block.uplift_acceleration / self.thresholds[0].value
@@ -225,12 +225,12 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def sentence(self) -> str:
-        """The outcome for one body in words, without a subject; first whether the rocking model does not apply."""
+        """The outcome for one body in words, after a warning if the rocking model does not apply."""
         return self.contact.sentence
 
     @property
     def rocking_model_applies(self) -> bool:
-        """False if pure rocking needs a coefficient of friction beyond 1, or the body lifts off."""
+        """Whether pure rocking needs a coefficient of friction of at most 1, and the body does not lift off."""
         return self.contact.rocking_applies
 
     @property
@@ -276,7 +276,7 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def largest_surviving_friction_demand(self) -> float | None:
-        """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
+        """Friction that it needs just below `largest_surviving_acceleration` [-]; None likewise, or if not known."""
         below = self.contact_below
         if below is None or not self._survives_below or not self.problem.body.contact_is_known:
             return None
@@ -318,17 +318,17 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def warnings(self) -> list[str]:
-        """Where the answer for one body, one about pure rocking, is in doubt."""
+        """Reasons to doubt the answer for one body, in words."""
         self._need_one("warnings")
         return warnings_of(self)
 
     @property
     def notes(self) -> list[str]:
-        """What else is worth knowing of one body."""
+        """Notes on the answer for one body, in words."""
         return notes_of(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields of one body with numbers, and the outcome by its name; arrays of several."""
+        """The fields by name: numbers and the name of the outcome for one body, arrays for several."""
         values = {one.name: getattr(self, one.name) for one in self.fields}
         return values if self.problem.shape else values | {OUTCOME.name: self.outcome.name}
 
@@ -366,7 +366,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         return self.to_xarray().to_dataframe() if self.problem.shape else pd.Series({**self.motion, **self.to_dict()})
 
     def __repr__(self) -> str:
-        """What happened, in words and SI units; of a block under a record with the margin, for which it is assessed."""
+        """The response in words and SI units; for a block under a record also its margin."""
         return f"<rocking.BodyResponse{' ' if self.problem.shape else ': '}{self._words()}>"
 
     def _repr_html_(self) -> str:
@@ -420,7 +420,7 @@ _UNITS = {
     "gravity": "m s-2",
     "inclination": "rad",
 }
-"""Units of the arguments; the others are numbers."""
+"""Units of the arguments; others are dimensionless."""
 
 
 def respond(

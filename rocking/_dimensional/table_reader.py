@@ -54,7 +54,7 @@ SHEETS = (".xlsx", ".ods")  # endings of files that are not text
 MAX_CHARACTERS = 20_000_000  # longest table that is read
 
 EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
-"""Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
+"""Limits: rows without an item, where rows are limited; columns and cells of a sheet (one far out makes all)."""
 
 _TOTAL = re.compile(
     r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne)"
@@ -72,7 +72,7 @@ EXACT = "\u2060"  # before a number of a sheet in its text
 
 
 class TooManyRowsError(InvalidArgumentError):
-    """A table has more rows than the caller takes; none of them was made an item."""
+    """A table has more rows than the caller allows; no item was made."""
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ def delimiter_of(text: str, schema: Schema[Any]) -> str:
 
 
 def _fit(line: HeaderLine) -> tuple[bool, int]:
-    """Whether a line has all columns that a header needs, and how many that are read."""
+    """Whether a line has all columns that a header needs, and how many of its columns are read."""
     return line.complete, len(line.columns)
 
 
@@ -330,7 +330,7 @@ def read_rows(
 
 
 def _is_item(row: Sequence[str]) -> bool:
-    """Whether a row has values, and is not one of totals."""
+    """Whether a row has values and is not a row of totals."""
     first = next(filter(None, map(str.strip, row)), "")
     return bool(first) and not _TOTAL.fullmatch(first[:MAX_NAME]) and any(map(str.isalnum, "".join(row)))
 
@@ -376,7 +376,7 @@ def _has_text(row: Sequence[str], header: Header) -> bool:
 
 
 def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
-    """The unit of a cell that states none: of its header, or of the column with the units."""
+    """The unit of a cell without one: that of its header, or of the column of units."""
     one, unit = header.columns[place]
     where = header.units.get(place)
     stated = row[where].strip() if where is not None and where < len(row) else ""

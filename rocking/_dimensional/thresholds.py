@@ -91,7 +91,7 @@ class BodyThresholds(EqualByValue):
 
     @cached_property
     def changes(self) -> tuple[Threshold, ...]:
-        """Those of one body, one for each.
+        """The thresholds of one body, as a list.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class BodyThresholds(EqualByValue):
 
     @property
     def sentence(self) -> str:
-        """From which strength one body overturns, and how often the outcome changes above it, in words."""
+        """In words: the strength from which one body overturns, and the number of changes of the outcome above it."""
         name, unit, from_strength, up_to = WORDS[self.strength]
         top = threshold_text(float(self.searched[1]))
         end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
