@@ -43,6 +43,7 @@ PRINTED = {
     "own_body": ["crushed by 6 cm: restitution 0.948"],
     "own_family": ["3.08448126"],
     "own_pulse": ["2.02417318"],
+    "precarious_rock": ["0 deg         0.07"],
     "record": ["49 changes of the outcome", "overturns above 1.13384"],
     "spectrum": ["rotation", "0.04483"],
 }
