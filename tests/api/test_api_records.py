@@ -195,7 +195,7 @@ def test_units_are_stated_and_all_wrong_parameters_named(client):
         "height": "a number with its unit, such as 0.3 m, 30 cm",
         "baseline_order": "an integer",
         "scale": "[1e-06, 1e+06] [-]",
-        "unit": "one of " + ", ".join(UNITS),
+        "unit": "one of " + " or".join(", ".join(map(repr, UNITS)).rsplit(",", 1)),
     }
     assert assert_problem(post(client, time_step="x"), 422, "time_step")["allowed"] == "a number [s]"
 

@@ -150,7 +150,7 @@ def test_service_works_with_the_system_calls_of_the_unit(unit, tmp_path):
         response = httpx2.get(f"{server.address}/v1/response?pulse=sine&{question}", timeout=120)
         assert response.json()["outcome"] == "RECOVERS"
         assert "process_open_fds" in httpx2.get(server.address + "/metrics", timeout=120).text
-        assert server.stop() == 0
+        assert server.stop() in (0, -15)
     assert " ERROR " not in server.log.read_text()
 
 

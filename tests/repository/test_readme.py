@@ -118,10 +118,6 @@ def test_paths_with_blanks_are_one_argument(tmp_path: Path) -> None:
         assert "two words.yaml" in shlex.split(recipe(target, "CONFIG=two words.yaml"))
 
 
-def test_readme_is_short() -> None:
-    assert README.count("\n") <= 120
-
-
 @pytest.mark.parametrize("command", ROCKING, ids=" ".join)
 def test_command_line(command: list[str]) -> None:
     done = subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, text=True, check=True)

@@ -61,10 +61,6 @@ def perform(path: Path, step: re.Match[str]) -> None:
     path.write_text(f"{before}\n{parts[step['where']]}{after}")
 
 
-def test_there_are_five_tasks() -> None:
-    assert [*TASKS] == ["motion", "body", "figure", "route", "field"]
-
-
 @pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure"))
 def test_task(copy: Path, task: str) -> None:
     environment = os.environ | {"PYTHONPATH": f"{copy}{os.pathsep}{copy / 'api'}", "PYTHONWARNINGS": "error"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, create_model
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
@@ -71,16 +71,18 @@ class AssessParams(Params):
     )
     format: TableFormat = None
 
+    @field_validator("standards", "shapes", "floor_periods", "floor_damping", "floor_participation")
     @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        super().check_field(name, value)
+    def _check(cls, value: str | None, info: ValidationInfo) -> str | None:
+        name = str(info.field_name)
         if name == "standards":
-            checked_clauses(value)
-        elif name.startswith("floor_") and value is not None:
-            modes_of(name, str(value))  # a query with an error elsewhere has its numbers read
+            checked_clauses(value or "")
         elif name == "shapes" and value is not None:
             for shape in _parts(name, value, MAX_SHAPES, "shapes"):
                 as_pulse(shape)
+        elif value is not None:
+            modes_of(name, value)
+        return value
 
     def site(self, given: AssessBody | None) -> Site:
         """The site, with the records and the hazard curve of a body."""

@@ -85,13 +85,13 @@ function filesOf({ name, links }) {
   return [...shown, element("a", "all", { href: "/datasets", "aria-label": "all data sets" })];
 }
 
-function about({ name, records: all, quantity, intensity, confidence, demand }) {
+function about({ name, records: all, quantity, unit, intensity, confidence, demand }) {
   return [
     ["Suite", name],
     ["Records, equally likely and independent", String(all.length)],
     ["Limit state", `the block ${limit(demand)}`],
     ["Measure of intensity", quantity],
-    ["Levels", `${intensity.length} from ${number(intensity[0])} to ${number(intensity.at(-1))}`],
+    ["Levels", `${intensity.length} from ${number(intensity[0])} to ${number(intensity.at(-1))} ${unit}`.trim()],
     ["Confidence of the intervals", `${number(100 * confidence)} %`],
     ["Address", location.href],
   ];
