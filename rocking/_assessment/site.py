@@ -53,7 +53,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Site:
-    """How strongly the ground of a site moves.
+    """The ground motions of a site.
 
     One of: PGA and PGV; PGA and a range of periods; a suite of records, scaled to the PGA if it is given, and with it a
     hazard curve of PGA.

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import runpy
+import shlex
 import shutil
 import subprocess
 import sys
@@ -148,7 +149,7 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]
     commands = [line for line in commands if ALL or "--mesh" not in line]  # takes ten seconds, most of this test
     for command in sample(commands, 12):
-        done = CliRunner().invoke(app, command.split()[1:])
+        done = CliRunner().invoke(app, shlex.split(command)[1:])
         assert done.exit_code == 0, f"{command}: {done.output}"
         if " -o " in command:
             assert Path(command.split()[-1]).stat().st_size > 10_000
