@@ -11,6 +11,7 @@ import json
 import os
 import runpy
 import shlex
+import shutil
 import socket
 import subprocess
 import sys
@@ -24,9 +25,7 @@ from pathlib import Path
 @cache
 def command() -> str:
     """Start the server of this process, and return the words of a shell that run a script by it."""
-    folder = tempfile.TemporaryDirectory(prefix="jobs-")
-    atexit.register(folder.cleanup)
-    address = f"{folder.name}/socket"
+    address = f"{tempfile.mkdtemp(prefix='jobs-')}/socket"
     variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     server = subprocess.Popen([sys.executable, "-P", __file__, address], stdin=subprocess.PIPE, env=variables)
     atexit.register(end, server)
@@ -50,20 +49,20 @@ def ask(address: str, arguments: list[str]) -> int:
 
 
 def serve(address: str) -> None:
-    """Fork for each request until standard input ends."""
-    import select  # noqa: PLC0415
-
-    import matplotlib.backends.backend_agg  # noqa: F401, PLC0415
-    import matplotlib.backends.backend_svg  # noqa: F401, PLC0415
-    import netCDF4  # noqa: F401, PLC0415
-    import numba  # noqa: F401, PLC0415
-    import scipy.integrate  # noqa: F401, PLC0415
-    import scipy.optimize  # noqa: F401, PLC0415
-    import xarray  # noqa: F401, PLC0415
-
+    """Fork for each request until standard input ends, as it does with the process that started this one."""
     with socket.socket(socket.AF_UNIX) as listener:
         listener.bind(address)
         listener.listen(64)
+        import select  # noqa: PLC0415
+
+        import matplotlib.backends.backend_agg  # noqa: F401, PLC0415
+        import matplotlib.backends.backend_svg  # noqa: F401, PLC0415
+        import netCDF4  # noqa: F401, PLC0415
+        import numba  # noqa: F401, PLC0415
+        import scipy.integrate  # noqa: F401, PLC0415
+        import scipy.optimize  # noqa: F401, PLC0415
+        import xarray  # noqa: F401, PLC0415
+
         while sys.stdin not in select.select([listener, sys.stdin], [], [])[0]:
             connection, _ = listener.accept()
             if os.fork() == 0:
@@ -73,6 +72,7 @@ def serve(address: str) -> None:
             with suppress(ChildProcessError):
                 while os.waitpid(-1, os.WNOHANG)[0]:  # those that have ended
                     pass
+    shutil.rmtree(Path(address).parent)
 
 
 def work(connection: socket.socket) -> None:

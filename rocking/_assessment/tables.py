@@ -63,7 +63,7 @@ class ObjectTable:
 
 
 def read_objects(source: str | PathLike[str], *, columns: Mapping[str, str] | None = None) -> ObjectTable:
-    """Read objects from a file: CSV (any ending), JSON (.json), or a sheet (.xlsx, .ods).
+    """The objects in a table: a CSV file (any ending), JSON (.json), or a sheet (.xlsx, .ods).
 
     What is not certain is not read. A row is refused, among others, if a number could be either of two ("1,234"), or a
     length stands in a column that is not read: name what it is, or that it is not used.

@@ -154,7 +154,7 @@ _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
 
 
 _FIRST_LINES = (
-    *("edge", "rotation_left_deg", "rotation_right_deg"),
+    *("direction_deg", "edge", "rotation_left_deg", "rotation_right_deg"),
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_surviving_acceleration", "thresholds"),
     *("nearest_acceleration", "nearest_period", "period", "pulse_duration", "overturning_scale"),
     *("peak_rotation", "impacts", "restitution", "friction_demand"),
@@ -174,7 +174,7 @@ _UNITS = {
     **dict.fromkeys(("frequency_parameter_lower", "frequency_parameter_upper"), "rad/s"),
     "angular_velocity_deg": "deg/s",
     "annual_rate": "1/year",
-    "rotation_deg": "deg",
+    **dict.fromkeys(("rotation_deg", "direction_deg"), "deg"),
     **dict.fromkeys(("time", "impact_time_s", "time_step", "significant_duration", "mean_period"), "s"),
     **dict.fromkeys(("mass_height", "left", "right", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),

@@ -337,7 +337,9 @@ def _strength(motion: AbstractPulse | Record, values: Mapping[str, Any]) -> tupl
     if not isinstance(motion, Record):
         return values["peak_acceleration"], values["period"]
     scale = values["scale"]
-    return scale * motion.peak_acceleration, 1.0 if isinstance(scale, float) else np.ones(())
+    if isinstance(scale, float):
+        return scale * motion.peak_acceleration, 1.0
+    return np.asarray(scale * motion.peak_acceleration), np.ones(())  # the product of an array () is a float
 
 
 def are_numbers(*arguments: Any) -> bool:

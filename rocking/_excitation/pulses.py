@@ -204,7 +204,7 @@ def pulse_parameters(name: str) -> Mapping[str, Quantity]:
 
 
 def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
-    """The pulse of that name; `"-sine"` is the mirrored sine.
+    """The pulse with a name, such as `"sine"`; `"-sine"` is the mirrored sine.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ class SinusoidSeries(ExcitationSeries):
 @final
 @dataclass(frozen=True)
 class SinusoidalPulse(AbstractPulse):
-    """f(phi) = sum of c cos(w phi + d) over `terms`.
+    """A pulse that is a sum of sinusoids: f(phi) = sum of c cos(w phi + d) over `terms`.
 
     Attributes
     ----------

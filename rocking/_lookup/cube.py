@@ -331,7 +331,7 @@ def _response(found: Found) -> BoundedResponse:
 
 
 def open_cube(source: Path | str) -> Cube:
-    """Read spectrum cubes into memory.
+    """Open spectrum cubes, from which responses are interpolated with error bounds.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ Analyse = Callable[[Sequence[AbstractBlock] | RigidBody], xr.Dataset]
 
 @runtime_checkable
 class HasBody(Protocol):
-    """What has a body for each of its directions, such as `rocking.Object`."""
+    """Anything with a body for each direction, such as `rocking.Object`."""
 
     restitution: Scalar
 
@@ -30,7 +30,7 @@ class HasBody(Protocol):
 
 
 OWN_DIMENSIONS = ("intensity", "record", "demand", "model")
-"""Dimensions of the results, which the arguments of a body cannot have."""
+"""Dimensions of the results; arguments of a body must not have these names."""
 
 
 def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
@@ -138,7 +138,7 @@ def as_block(body: AbstractBody) -> AbstractBlock:
 
 
 def _over(found: xr.Dataset, names: tuple[Hashable, ...], shape: tuple[int, ...]) -> xr.Dataset:
-    """A data set whose dimension `block` is split into several."""
+    """A data set with its dimension `block` split into several."""
 
     def split(variable: xr.Variable) -> xr.Variable:
         if "block" not in variable.dims:

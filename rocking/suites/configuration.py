@@ -54,7 +54,7 @@ MAX_CELLS = 1_000_000  # most points of the map
 
 @dataclass(frozen=True)
 class RecordFiles:
-    """Where the records are, and what their files do not state: attributes as in the table of `docs/fragility.md`."""
+    """Folder of the records and facts that their files do not state: the keys of `docs/fragility.md`."""
 
     folder: Path
     pattern: str
@@ -166,7 +166,7 @@ def _with_defaults(given: Any, defaults: Mapping[str, Any]) -> Any:
 
 
 def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
-    """Refuse a section whose keys are not exactly these."""
+    """Refuse a section with a missing or an unknown key."""
     expected = list(keys)
     if not isinstance(given, Mapping):
         raise InvalidArgumentError(section, given, "a mapping with the keys " + ", ".join(expected))

@@ -154,7 +154,7 @@ TEXTS = {
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
-    "column", "standards", "detail", "directions", "body", "sides",
+    "column", "standards", "detail", "directions", "body", "sides", "second",
 }  # fmt: skip
 """Options and arguments that take none."""
 

@@ -242,9 +242,9 @@ def test_names_of_blocks_are_printed_as_they_are_read_but_for_formulas(tmp_path)
     [
         (TABLE.replace("statue", '"statue'), "line 2: 'unexpected end of data'"),
         (TABLE.replace("[cm]", "[kg]"), "a unit such as m, cm"),
-        (TABLE.replace("period [ms]", "colour"), "columns width or diameter or left or vertices or body, height"),
+        (TABLE.replace("period [ms]", "colour"), "peak_acceleration, period, of at most 1000; missing: period"),
         (TABLE.replace("restitution", "width [m]"), "one column width"),
-        ("", "columns width or diameter or left or vertices or body, height"),
+        ("", "allowed: columns width"),
     ],
 )
 def test_a_table_that_cannot_be_read_is_refused(table, words):

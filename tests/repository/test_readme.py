@@ -137,15 +137,6 @@ def test_extras_that_are_installed_exist() -> None:
         assert set(re.findall(r"\w+", command[2].partition("[")[2])) <= extras.keys()
 
 
-def test_example_that_asks_a_server(
-    server_port: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setenv("ROCKING_SERVER", f"http://127.0.0.1:{server_port}")
-    runpy.run_path(str(ROOT / "examples/ask_a_server.py"))
-    output = capsys.readouterr().out
-    assert [text for text in PRINTED["ask_a_server"] if text not in output] == []
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("command", CURL, ids=" ".join)
 def test_requests(command: list[str], server_port: int) -> None:
@@ -159,3 +150,12 @@ def test_requests(command: list[str], server_port: int) -> None:
         with urllib.request.urlopen(url) as response:
             body = response.read().decode()
     assert json.loads(body)["source"] in ("cube", "solver")
+
+
+def test_example_that_asks_a_server(
+    server_port: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROCKING_SERVER", f"http://127.0.0.1:{server_port}")
+    runpy.run_path(str(ROOT / "examples/ask_a_server.py"))
+    output = capsys.readouterr().out
+    assert [text for text in PRINTED["ask_a_server"] if text not in output] == []

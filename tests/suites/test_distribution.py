@@ -65,6 +65,8 @@ def test_of_restitutions_and_of_mirrored_records() -> None:
     found = distribution(wall.response(MOTIONS[0], scale=1.5, restitution=eta), over="restitution")
     assert found.attrs["members"] == 50
     assert np.ptp(found["probability"].values) > 0.0
+    block = rocking.Block(0.4, 1.6).response(MOTIONS[0], scale=1.5, restitution=eta)
+    assert distribution(block, over="restitution").attrs["members"] == block.peak_rotation.size == 50
     both = distribution(rocking.fragility(MOTIONS, wall, intensity=[3.0]))
     assert both.attrs["members"] == 8
     assert both["probability"].dims == ("intensity", "rotation")

@@ -35,7 +35,7 @@ def read_record(
     vertical: str | PathLike[str] | None = None,
     skip: int | None = None,
 ) -> Record:
-    """Read a recorded ground acceleration from a file, or from two where the vertical component has its own.
+    """A record of ground acceleration from a file, or from two files if the vertical component has its own.
 
     The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, COSMOS, CSMIP, GeoNet, SMC, columns of times
     and accelerations or of accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is
