@@ -66,7 +66,7 @@ def factors_by_direction(
         "factor": (
             np.where(known, factor, np.nan),
             "1",
-            "lowest factor tried on the motions that overturns the object",
+            "lowest factor tried on the motions at which one of them overturns the object",
         ),
         "along": (np.where(known, across[side], np.nan), "degrees", "direction along which their component does so"),
         "governing": (np.where(known, names[own[side].argmin(axis=1)], ""), "", "the motion that does so"),

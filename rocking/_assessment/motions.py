@@ -39,7 +39,7 @@ def bodies_of(given: Sequence[tuple[Object, str]]) -> BodyArray:
 
 
 def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
-    """The motion of an object under a motion of a site, from the side from which it rotates more."""
+    """The motion of an object under a motion of a site, for the sign of the motion that rotates it more."""
     rigid = bodies_of([(one, direction)]).rigid
     body = rigid.changed(**{name: value.reshape(()) for name, value in rigid.parameters.items()})
     plane, given = one.planes[direction], body.parameters

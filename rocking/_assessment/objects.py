@@ -1,4 +1,4 @@
-"""Objects that are assessed, and the bodies that stand for them."""
+"""Objects that are assessed, and their bodies in each plane of rocking."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of
 
 
 class RowDetails(dict[str, str]):
-    """Other texts of a row of a table, with the whole row as it stands."""
+    """Other texts of a row of a table, and the whole row unchanged."""
 
     def __init__(self, others: Mapping[str, str], row: Mapping[str, str]) -> None:
         super().__init__(others)
@@ -46,29 +46,29 @@ class Object:
     Parameters
     ----------
     name : str
-        For output.
+        Name in the output.
     width, depth : float
-        Of the base [m], 0.1 mm to 1 km, as all lengths; without a depth only the direction of the width is assessed.
+        Sizes of the base [m], 0.1 mm to 1 km like all lengths. Without a depth it is assessed along the width only.
     height : float
-        Of the object [m].
+        Height of the object [m].
     diameter : float
-        Of a round base, in place of the width [m]: the planar model, in which it does not wobble or roll.
+        Diameter of a round base [m], in place of width and depth. The plane model leaves out wobbling and rolling.
     mass_height : float, optional
         Height of the centre of mass [m]; half the height by default.
     offset_width, offset_depth : float
-        Distance of the centre of mass from the middle of the base [m], inside it.
+        Distance of the centre of mass from the middle of the base [m]; it lies above the base.
     mass : float, optional
         Mass [kg], > 0; the outcome does not depend on it.
     friction : float, optional
         Coefficient of friction at the base [-], > 0.
     restitution : float, "momentum" or "kalliontzis(k=...)"
-        eta of every impact [-], [0, 1], or from conservation of angular momentum.
+        Coefficient of restitution eta of every impact [-], [0, 1]; "momentum": from conservation of angular momentum.
     tolerance : float
-        How far each dimension is uncertain [m], >= 0 and less than half of the smallest.
+        Uncertainty of each dimension, up and down [m], >= 0 and less than half of the smallest dimension.
     pedestal, notes : str
-        Repeated in reports.
+        Texts for the report.
     details : mapping of str to str
-        Other texts, such as an inventory number, by their headers in tables that are written.
+        Other texts, such as an inventory number, by header; tables that are written repeat them.
 
     Raises
     ------
@@ -146,7 +146,7 @@ class Object:
         self._check_others()
 
     def _check_others(self) -> None:
-        """Check what is not a dimension."""
+        """Check the values that are not dimensions."""
         checked: dict[str, float] = {}
         for name, unit in (("mass", "kg"), ("friction", "-")):
             if getattr(self, name) is not None:
@@ -234,7 +234,7 @@ class Object:
 
     @property
     def cells(self) -> Mapping[str, str]:
-        """The row of the table that it was read from as it stands, by its headers; of other objects empty."""
+        """The unchanged row of its table, by header; empty for an object that was not read from a table."""
         return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
@@ -294,7 +294,7 @@ class Object:
 
 @dataclass(frozen=True)
 class Plane:
-    """An object in a plane in which it rocks."""
+    """An object in one plane of rocking."""
 
     base: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
     offset: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
@@ -468,7 +468,7 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False)
 class BodyArray(AbstractBody):
-    """Rigid bodies of which some have a coefficient of restitution of their own."""
+    """Rigid bodies, some with their own coefficient of restitution."""
 
     rigid: RigidBody  # the bodies, arrays (bodies,) or (bodies, 1)
     # restitution of each; -k: from the angular momentum of an impact at the share k of the half base, of each edge [-]

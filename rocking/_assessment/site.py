@@ -207,7 +207,7 @@ class Site:
 
 
 def record_doubts(site: Site) -> list[str]:
-    """What is in doubt of the records, in words: their remarks, and offsets where they are scaled by their PGA."""
+    """Warnings about the records, in words: their remarks, and an offset of a record that is scaled by its PGA."""
     pairs = ((given,) if isinstance(given, Record) else given for given in vars(site)["records"])
     records = [record for pair in pairs for record in pair]
     found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]

@@ -1,4 +1,4 @@
-"""What clauses of standards say of bodies under the motions of a site: demand over capacity."""
+"""Checks of standards for bodies under the motions of a site: demand over capacity."""
 
 from __future__ import annotations
 

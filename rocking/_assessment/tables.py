@@ -51,13 +51,13 @@ class ObjectTable:
 
     @property
     def reading(self) -> str:
-        """What each column was read as, and which ones were not, in words."""
+        """How each column was read, and which ones were not, in words."""
         read = ", ".join(f"{header} as {name}" for header, name in self.columns.items())
         unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
         return f"columns read: {read}{unread}" if read else ""
 
     def __repr__(self) -> str:
-        """How many objects were read, and what was not."""
+        """The number of objects that were read, and of rows and columns that were not."""
         reading = f"; {self.reading}" if self.reading else ""
         return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{reading}>"
 
@@ -139,7 +139,7 @@ def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:
 
 
 def _made(given: dict[str, Any]) -> Object:
-    """The object of its own parameters; or with those of a kind of body, of that body."""
+    """The object from its own parameters, or from those of a kind of body."""
     if given.get("sides") == "both":
         del given["sides"]
     kind, shapes = given.pop("body", None), given.keys() & _SHAPES
@@ -155,7 +155,7 @@ def _made(given: dict[str, Any]) -> Object:
 _SHAPES = {one.name for one in SHAPES}
 
 _ABOUT = {"name", "mass", "friction", "restitution", "tolerance", "pedestal", "notes", "details"}
-"""What is stated of an object beside its body."""
+"""The values of an object other than its body."""
 
 
 SCHEMA = Schema("objects", (*INPUTS, *STAND_INS, *SHAPES), REQUIRED, _object, every_length=True)  # a table of objects

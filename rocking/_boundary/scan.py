@@ -3,9 +3,9 @@
 Under a record the outcome is not monotone in the strength, and the lowest range of strengths that overturn a body is
 often narrow: of 140 pairs of objects and records half of these ranges are narrower than 0.1 %, since the body strikes
 10 to 200 times. `lowest_overturning` tries strengths from that of uplift on, `resolution` apart. Each response has a
-reach: how far away in strength one of its peaks comes to the unstable equilibrium, by the derivative of the peak
-(`rocking._solver.records.estimate`). An interval is halved while it is wider than half the reach at one of its ends,
-down to a 512th of the resolution; then while it is wider than an 8th and a 32nd of it, as long as the body has
+reach: how far above and below in strength one of its peaks comes to the unstable equilibrium, by the derivative of the
+peak (`rocking._solver.records.estimate`). An interval is halved while it is wider than half the reach at one of its
+ends, down to a 512th of the resolution; then while it is wider than an 8th and a 32nd of it, as long as the body has
 had fewer than `BUDGET` responses in a `WINDOW`; and close below the lowest that overturns the intervals are as narrow
 as a 64th of their distance from it. All of these are estimates; each that is the lowest so far is confirmed by the
 solver, and the change of outcome below the lowest is bisected with it. A narrower range can be missed.
@@ -101,7 +101,7 @@ class Lines:
         return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
 
     def estimated(self, line: Index, strength: Array) -> tuple[Bools, Array]:
-        """Whether they do by an estimate, and the reach of the responses in the logarithm of the strength."""
+        """Whether they do by an estimate, and the reaches (bodies, 2) in the logarithm of the strength, up and down."""
         return estimate_outcomes(self.samples, self.cells(line, strength), self.threads, self.stop)
 
     def from_line(self, first: int) -> Lines:
@@ -111,9 +111,9 @@ class Lines:
 
 @dataclass(eq=False)
 class Intervals:
-    """Intervals of strengths, in order of line, then place, as arrays (intervals,): line, places and reach of the ends.
+    """Intervals of strengths in order of line, then place, as arrays (intervals,): line, places, reaches.
 
-    The reach is 0 where a body overturns.
+    The reaches are those into the interval, 0 where a body overturns.
     """
 
     line: Index
@@ -205,7 +205,7 @@ class _Search:
         return np.asarray(np.minimum(self.start[line] * np.exp(self.unit * place), self.limit[line]))
 
     def reach(self, line: Index, place: Index) -> Array:
-        """Reach of the responses, 0 where a body overturns, in parts; confirms the lowest that overturn."""
+        """Reaches of the responses, 0 where a body overturns, in parts; confirms the lowest that overturn."""
         strength = self.strength(line, place)
         overturned, reach = self.lines.estimated(line, strength)
         self.tried += np.bincount(line, minlength=self.tried.size)
@@ -222,7 +222,7 @@ class _Search:
                 lowest = lowest[~confirmed]
                 if not lowest.size:
                     break
-        return np.where(overturned, 0.0, reach / self.unit)
+        return np.where(overturned[:, None], 0.0, reach / self.unit)
 
     def settled(self) -> Bools:
         """Whether a strength is known that is low enough."""
@@ -238,8 +238,8 @@ class _Search:
             line, place = np.broadcast_arrays(lines[:, None], solved_to + PARTS * np.arange(WINDOW + 1))
             place = np.minimum(place, last[line])
             self.tried[:] = 0.0
-            reach = self.reach(line.ravel(), place.ravel()).reshape(place.shape)
-            ends = line[:, 1:], place[:, :-1], place[:, 1:], reach[:, :-1], reach[:, 1:]
+            reach = self.reach(line.ravel(), place.ravel()).reshape((*place.shape, 2))
+            ends = line[:, 1:], place[:, :-1], place[:, 1:], reach[:, :-1, 0], reach[:, 1:, 1]
             window = Intervals(*(column.ravel() for column in ends))
             intervals = window if intervals is None else intervals.with_others(window)
             for multiple in MULTIPLES:
@@ -273,7 +273,12 @@ class _Search:
             whole = intervals.take(halved)
             middle = (whole.low + whole.high) // 2
             reach = self.reach(whole.line, middle)
-            pairs = (whole.low, middle), (middle, whole.high), (whole.low_reach, reach), (reach, whole.high_reach)
+            pairs = (
+                (whole.low, middle),
+                (middle, whole.high),
+                (whole.low_reach, reach[:, 1]),
+                (reach[:, 0], whole.high_reach),
+            )
             intervals = Intervals(np.repeat(whole.line, 2), *(np.stack(pair, axis=1).ravel() for pair in pairs))
 
     def bisected(self, known: Index) -> Array:

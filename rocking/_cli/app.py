@@ -125,7 +125,9 @@ def history(
     block: HistoryOptions,
     output: OutputOptions,
     duration: Duration = None,
-    samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.", metavar="[NUMBER]")] = 400,
+    samples: Annotated[
+        int, typer.Option(help="Number of uniform samples; the events are added.", metavar="[NUMBER]")
+    ] = 400,
     contact: Annotated[
         bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.", metavar="")
     ] = False,
@@ -153,7 +155,9 @@ def spectrum(
     output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
-    points: Annotated[int, typer.Option(help="Points, spaced evenly in the logarithm.", metavar="[NUMBER]")] = 24,
+    points: Annotated[
+        int, typer.Option(help="Number of points, spaced evenly in the logarithm.", metavar="[NUMBER]")
+    ] = 24,
 ) -> None:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
@@ -201,7 +205,7 @@ def pulses(output: OutputOptions) -> None:
 @app.command()
 @with_options
 def units(output: OutputOptions) -> None:
-    """Names of units, for options and for tables; the case of letters, blanks and signs of a power do not matter."""
+    """Names of units, for options and tables. Case, blanks and signs of a power do not matter."""
     from rocking._base.units import EXAMPLES, UNITS
     from rocking._cli import printing
 
@@ -229,7 +233,7 @@ def serve(
     results: Annotated[
         str | None,
         typer.Option(
-            help="Folder that the workflow filled; by default ROCKING_RESULTS, or results.",
+            help="Folder with the data sets of the workflow; by default ROCKING_RESULTS, or results.",
             show_default=False,
             metavar="[FOLDER]",
         ),

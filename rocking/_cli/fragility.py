@@ -124,7 +124,7 @@ def fragility(
 
 
 def _write(found: xr.Dataset, file: str) -> None:
-    """Write a fragility; an error names what cannot be written."""
+    """Write a fragility to a file; an error names the path."""
     from rocking._base.errors import InvalidArgumentError
     from rocking.suites.files import write_fragility
 

@@ -25,11 +25,11 @@ def identify(
         ),
     ],
     output: OutputOptions,
-    degrees: Annotated[
-        bool, said("The rotations are in degrees, where the header states no unit.", "", "--degrees")
-    ] = False,
-    time_step: Annotated[str | None, option(TIME_STEP, text="Time between the rows where the file counts them")] = None,
-    edges: Annotated[int, said("1 for a body with equal edges, 2 for one with a right and a left edge.", "1|2")] = 1,
+    degrees: Annotated[bool, said("Rotations are in degrees if the header states no unit.", "", "--degrees")] = False,
+    time_step: Annotated[
+        str | None, option(TIME_STEP, text="Time between the rows if the file only counts them")
+    ] = None,
+    edges: Annotated[int, said("1: equal edges; 2: a right and a left edge.", "1|2")] = 1,
     confidence: Annotated[float, said("Confidence of the intervals, (0, 1).", "-")] = 0.95,
 ) -> None:
     """Restitution, slenderness angle and frequency parameter from a trace of free rocking, with intervals."""

@@ -161,15 +161,17 @@ class SpectrumOptions(WindowOptions):
 
 Component = Annotated[
     str | None,
-    said("Column or trace of a file with several; rows for one series along the rows of several columns.", "NAME"),
+    said(
+        "Column or trace to read from a file with several; rows: one series along the rows of several columns.", "NAME"
+    ),
 ]
 Skip = Annotated[
     int | None,
-    said("Rows of numbers above the samples of a file of columns, such as a count or a factor.", "NUMBER"),
+    said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER"),
 ]
 BaselineOrder = Annotated[
     int | None,
-    said("Remove a baseline of this degree, 0 to 6; none by default, but for the offset of K-NET counts.", "NUMBER"),
+    said("Remove a baseline of this degree, 0 to 6; by default only the offset of K-NET counts.", "NUMBER"),
 ]
 
 
@@ -205,7 +207,7 @@ class OutputOptions:
         Literal["table", "csv", "json"],
         typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
     ] = "table"
-    all: Annotated[bool, said("All values in the table; CSV and JSON always have them.", "", "--all")] = False
+    all: Annotated[bool, said("Show all values; CSV and JSON always have them.", "", "--all")] = False
 
 
 @dataclass(frozen=True)

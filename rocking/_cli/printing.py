@@ -79,7 +79,7 @@ def response(params: Params, form: Form) -> None:
 
 
 def body_columns(found: BodyResponse) -> dict[str, Any]:
-    """What is printed of one body, by name; of one with two edges also its size."""
+    """The printed values of one body, by name; also the size of a body with two edges."""
     strengths = (
         {} if "record" in found.motion else {"peak_acceleration": found.peak_acceleration, "period": found.period}
     )
@@ -108,7 +108,7 @@ def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -
 
 
 def _response(params: Params) -> tuple[dict[str, Any], str]:
-    """What is printed of one block, by name, and the outcome in words."""
+    """The printed values of one block, by name, and the outcome in words."""
     if params.problem is not None:
         from rocking._dimensional.response import respond
 
@@ -166,7 +166,7 @@ _IN_GROUPS = ("peak_rotation", "impacts", "exceeded_alpha", "error_bound", "fric
 """The same of a block in groups."""
 
 _NO_LINES = ("meaning", "margin", "warnings", "notes", "overturns_above")
-"""What the text output says before the values, or in one line with another value."""
+"""Values that the text output states before the others, or in one line with another."""
 
 _UNITS = {
     **{one.label: one.label_unit for one in (*FIELDS, *JUDGED) if one.unit != "1"},

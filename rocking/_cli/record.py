@@ -35,18 +35,16 @@ def record(
     block: RecordOptions,
     output: OutputOptions,
     thresholds: Annotated[
-        bool, said("Whether to find all scales at which the outcome changes.", "", "--thresholds/--no-thresholds")
+        bool, said("Find all factors at which the outcome changes.", "", "--thresholds/--no-thresholds")
     ] = True,
-    fit: Annotated[bool, said("Fit a pulse, and compare how both overturn the block.", "", "--fit")] = False,
+    fit: Annotated[bool, said("Fit a pulse and compare when both overturn the block.", "", "--fit")] = False,
     second: Annotated[
-        str | None,
-        said("Second horizontal component, a file or a column: of all directions the worst one is taken.", "FILE|NAME"),
+        str | None, said("Second horizontal component: of all directions the worst.", "FILE|NAME")
     ] = None,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver.
 
-    With a second component the motion is turned in steps of 15 degrees from the first towards the second one. The worst
-    direction overturns from the lowest factor, or else without thresholds at the scale, or rotates the block most.
+    With a second component the motion is turned in steps of 15 degrees towards it; the worst one has the lowest factor.
     """
     from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
@@ -150,7 +148,7 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingB
 
 
 def _measures(motion: Record) -> dict[str, Any]:
-    """What is printed of a record, by name."""
+    """The printed values of a record, by name."""
     from rocking._base.errors import finite
 
     return {
@@ -170,7 +168,7 @@ def _measures(motion: Record) -> dict[str, Any]:
 
 
 def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
-    """What is printed of the pulse that is fitted to a record, by name."""
+    """The printed values of the pulse fitted to a record, by name."""
     from rocking._base.errors import finite
     from rocking.suites.pulse_fit import fit_pulse
 

@@ -1,4 +1,4 @@
-"""Bodies with two edges and their responses in SI units: what `rocking.RigidBody` and bodies of one's own share."""
+"""Bodies with two edges and their responses in SI units: what `rocking.RigidBody` and bodies of your own share."""
 
 from __future__ import annotations
 
@@ -40,7 +40,9 @@ Array = NDArray[np.float64]
 
 
 class RespondingBody(AbstractBody):
-    """Responses of anything that rocks about two edges. A body of one's own derives from it and states its edges.
+    """Base of every body that rocks about two edges: responses, thresholds, histories.
+
+    A body of your own derives from it and states its edges.
 
     Its properties `right`, `left`, `gravity`, `top_height` and `description` are those of
     `rocking._model.body.AbstractBody`. They may be arrays, which broadcast with the arguments.
@@ -128,7 +130,7 @@ class RespondingBody(AbstractBody):
         return respond(problem, threads, stop, thresholds=thresholds)
 
     def _labelled_response(self, motion: Motion, given: dict[str, Any], options: dict[str, Any]) -> xr.Dataset:
-        """The response to labelled arguments, or of a body that is made from some."""
+        """The response to labelled arguments, or of a body built from labelled values."""
         eta, own = given.pop("restitution"), self.labels
         if not is_labelled(eta):
             eta = checked_restitution(eta)
@@ -359,7 +361,7 @@ class RespondingBody(AbstractBody):
         return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
 
     def _need_one(self, name: str, restitution: Scalar, **numbers: Scalar | None) -> None:
-        """Refuse an array of bodies, and arrays as arguments that are one number."""
+        """Refuse an array of bodies, and arrays where one number is needed."""
         if self.shape:
             raise InvalidArgumentError(name, f"bodies of shape {self.shape}", "one body")
         eta = spread_restitution(self, restitution)
@@ -372,7 +374,7 @@ class RespondingBody(AbstractBody):
 
 @dataclass(frozen=True, eq=False)
 class ScaledBody(RespondingBody):
-    """A body with all lengths times a factor: p falls with the root of it."""
+    """A body with all lengths multiplied by a factor; p is divided by the root of the factor."""
 
     body: RespondingBody  # the body of factor 1
     size: Array  # the factor [-], > 0
@@ -417,6 +419,6 @@ class ScaledBody(RespondingBody):
 
 
 def _respond_part(make: Callable[..., RespondingBody], own: tuple[str, ...], motion: Motion, **values: Any) -> Any:
-    """The response to arguments as arrays, of the body that `make` makes from those of them that are its own."""
+    """The response to arguments as arrays; `make` builds the body from those that belong to it."""
     body = make(**{name: values.pop(name) for name in own})
     return RespondingBody.response(body, motion, **values)

@@ -29,7 +29,7 @@ BODIES: dict[str, Kind[RespondingBody]] = {
 WITHOUT_FILES = {name: kind for name, kind in BODIES.items() if not kind.reads_files}
 """What may be described by strangers: over HTTP, and in tables."""
 
-KIND = Quantity("body", "", "kind of body, where its parameters do not say it")
+KIND = Quantity("body", "", "kind of body; absent: the one that its parameters determine")
 
 _TABLED = [WITHOUT_FILES[make.__name__] for make in RIGID if make.__name__ in WITHOUT_FILES]
 

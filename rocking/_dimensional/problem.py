@@ -63,7 +63,7 @@ Array = NDArray[np.float64]
 Motion = str | AbstractPulse | Record
 
 STRENGTHS = {one.name: one for one in (PEAK_ACCELERATION, PERIOD, SCALE)}
-"""Arguments that say how strong and how long a motion is."""
+"""Arguments for the strength and the length of a motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +176,7 @@ class Problem(EqualByValue):
 
     @property
     def warnings(self) -> list[str]:
-        """Whether the peak acceleration, a number without unit, was probably meant in g; and remarks on a record."""
+        """Warnings: a peak acceleration without unit that was probably meant in g; remarks on the record."""
         if isinstance(self.motion, Record):
             return [*self.motion.remarks]
         a, uplift = float(self.peak_acceleration), float(self.body.uplift_acceleration)
@@ -374,7 +374,7 @@ def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
 
 
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
-    """The coefficient of restitution [-]: the number, or that of the geometry for "momentum"; `checked_restitution`."""
+    """The coefficient of restitution [-]: the number, or for "momentum" the value (2.4) of the geometry."""
     eta = checked_restitution(spread_restitution(block, restitution), RESTITUTION.number)
     return float(block.inelastic_restitution if eta is None else eta)
 

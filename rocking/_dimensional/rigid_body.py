@@ -190,7 +190,7 @@ class RigidBody(RespondingBody):
 
     @property
     def contact_is_known(self) -> bool:
-        """Whether the contact forces follow from the motion: not those of a body that a wall touches."""
+        """Whether the contact forces follow from the motion; they do not for a body against a wall."""
         return self.sides == "both"
 
     @property

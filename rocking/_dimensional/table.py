@@ -27,7 +27,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import solve_with_bound
 
 COLUMNS = (NAME, WIDTH, HEIGHT, PEAK_ACCELERATION, PERIOD, RESTITUTION)
-"""Columns of a table of blocks; those of other bodies follow, any more are passed through."""
+"""Columns of a table of blocks. Those of other bodies follow; further columns are passed through."""
 
 _SIZES = (("width", "diameter", "left", "vertices", "body"), ("height", "mass_height", "vertices", "body"))
 
@@ -88,7 +88,7 @@ def _schema(
     given: dict[str, float | str],
     limited: Callable[[Quantity], Quantity] = lambda one: one,
 ) -> Schema[Problem]:
-    """A table of bodies under a pulse; `given` stands for cells that are empty."""
+    """A table of bodies under a pulse; `given` fills empty cells."""
     shapes = columns_beside(COLUMNS)
     parameters = {one.name for one in shapes[1:]} | {"width", "height"}
 
@@ -142,7 +142,7 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
 def _respond_other(problem: Problem, stop: StopFlag | None) -> dict[str, Any]:
     found, body = respond(problem, stop=stop), problem.body
     size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
-    return size | {one.label: shown(one, getattr(found, one.name)) for one in found.fields}
+    return size | shown(found.fields, [getattr(found, one.name) for one in found.fields])
 
 
 def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> dict[str, list[Any]]:

@@ -1,4 +1,4 @@
-"""Families of pulses of one's own: any smooth function of the phase."""
+"""Families of pulses of your own: any smooth function of the phase."""
 
 from __future__ import annotations
 

@@ -105,7 +105,7 @@ class BodyMotion(ABC):
         """Of impacts that leave the right edge [-]."""
         return float(self.cell["eta"][0])
 
-    @property
+    @cached_property
     def slenderness(self) -> float:
         """g tan(alpha) over the largest ground acceleration [-]; of the left edge if nothing lifts the right one."""
         right, left = self.cell["slenderness"].tolist()
@@ -238,7 +238,9 @@ class PulseMotion(BodyMotion):
         return np.asarray((phases - self.pulse.start) / self.frequency_ratio)
 
     def ground_acceleration(self, tau: Floats) -> Floats:
-        f = self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau)
+        start, end = self.pulse.start, self.pulse.end
+        phi = start + self.frequency_ratio * tau
+        f = np.where((phi >= start) & (phi <= end), self.pulse.shape(np.clip(phi, start, end)), 0.0)
         return np.asarray(f / self.slenderness)
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:

@@ -1,5 +1,8 @@
 """A SIMD vector type for kernels: `LANES` doubles, one per cell, and masks of `LANES` truth values.
 
+Arithmetic, comparisons, `load`, `store`, `pick`, `select` and the like take vectors of `FLOAT_LANES` single-precision
+numbers, too, which arrays of float32 give.
+
 Kernels write expressions such as `load(series, n) * x + y` as for one cell; comparisons give masks, which `&`, `|`, `~`
 combine. numba has no such type, and automatic vectorisation does not recognise the series of a Taylor step.
 """
@@ -10,7 +13,7 @@ from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
-from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
+from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model, type_callable
 
 LANES = 16
 """Doubles of a vector. Processors have units of two, four or eight and process the parts at the same time: with 16 the
@@ -19,54 +22,57 @@ latencies of two units of eight overlap, which saves a tenth to a fifth of the t
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
+FLOAT_LANES = 2 * LANES
+"""Single-precision numbers of a vector, which is as long."""
+
 _LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_LLVM_FLOATS = ir.VectorType(ir.FloatType(), FLOAT_LANES)
 _LLVM_BITS = ir.VectorType(ir.IntType(64), LANES)
 _LLVM_MASK = ir.VectorType(ir.IntType(1), LANES)
 
 
 class _VectorType(types.Type):
-    """The numba type of a vector of doubles."""
+    """The numba type of a vector of numbers, or of one truth value for each lane."""
 
-    def __init__(self) -> None:
-        super().__init__("Lanes")
-
-
-class _MaskType(types.Type):
-    """The numba type of one truth value for each lane."""
-
-    def __init__(self) -> None:
-        super().__init__("LanesMask")
+    def __init__(self, name: str, vector: Any) -> None:
+        super().__init__(name)
+        self.vector = vector
 
 
-_VECTOR_TYPE, _MASK_TYPE = _VectorType(), _MaskType()
+_VECTOR_TYPE, _MASK_TYPE = _VectorType("Lanes", _LLVM_VECTOR), _VectorType("LanesMask", _LLVM_MASK)
+_FLOATS_TYPE = _VectorType("FloatLanes", _LLVM_FLOATS)
+_FLOATS_MASK_TYPE = _VectorType("FloatLanesMask", ir.VectorType(ir.IntType(1), FLOAT_LANES))
 
 
 @register_model(_VectorType)
 class _VectorModel(models.PrimitiveModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
-        super().__init__(manager, fe_type, _LLVM_VECTOR)
-
-
-@register_model(_MaskType)
-class _MaskModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, fe_type: Any) -> None:
-        super().__init__(manager, fe_type, _LLVM_MASK)
+        super().__init__(manager, fe_type, fe_type.vector)
 
 
 def _constant(value: float) -> Any:
     return ir.Constant(_LLVM_VECTOR, [value] * LANES)
 
 
-def _splat(builder: Any, value: Any) -> Any:
-    undefined, number = ir.Constant(_LLVM_VECTOR, ir.Undefined), ir.IntType(32)
+def _splat(builder: Any, value: Any, vector: Any = _LLVM_VECTOR) -> Any:
+    undefined, number = ir.Constant(vector, ir.Undefined), ir.IntType(32)
+    value = builder.fptrunc(value, vector.element) if value.type != vector.element else value
     single = builder.insert_element(undefined, value, ir.Constant(number, 0))
-    return builder.shuffle_vector(single, undefined, ir.Constant(ir.VectorType(number, LANES), [0] * LANES))
+    return builder.shuffle_vector(
+        single, undefined, ir.Constant(ir.VectorType(number, vector.count), [0] * vector.count)
+    )
+
+
+@lower_cast(types.Float, _VectorType)  # type: ignore[untyped-decorator]
+def _(_: Any, builder: Any, __: Any, vector: Any, value: Any) -> Any:
+    return _splat(builder, value, vector.vector)
 
 
 def _row_address(builder: Any, array: Any, row: Any) -> Any:
     offset = builder.mul(row, ir.Constant(row.type, VECTOR_BYTES))
     address = builder.gep(builder.bitcast(array, ir.IntType(8).as_pointer()), [offset])
-    return builder.bitcast(address, _LLVM_VECTOR.as_pointer())
+    vector = _LLVM_FLOATS if array.type.pointee == ir.FloatType() else _LLVM_VECTOR
+    return builder.bitcast(address, vector.as_pointer())
 
 
 def _absolute(builder: Any, x: Any) -> Any:
@@ -114,8 +120,10 @@ def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any
 
 
 def _square_root(builder: Any, x: Any) -> Any:
-    name = "llvm.sqrt.f64" if x.type == ir.DoubleType() else f"llvm.sqrt.v{LANES}f64"
-    return builder.call(builder.module.declare_intrinsic(name, fnty=ir.FunctionType(x.type, [x.type])), [x])
+    name = {ir.DoubleType(): "f64", _LLVM_VECTOR: f"v{LANES}f64", _LLVM_FLOATS: f"v{FLOAT_LANES}f32"}[x.type]
+    return builder.call(
+        builder.module.declare_intrinsic("llvm.sqrt." + name, fnty=ir.FunctionType(x.type, [x.type])), [x]
+    )
 
 
 def transpose(builder: Any, rows: list[Any]) -> list[Any]:
@@ -149,6 +157,15 @@ def _gather(builder: Any, array: Any, places: Any) -> Any:
     return vector
 
 
+def _pick(builder: Any, array: Any, places: Any) -> Any:
+    number, vector = ir.IntType(32), ir.Constant(places.type, ir.Undefined)
+    whole = builder.fptosi(places, ir.VectorType(number, places.type.count))
+    for i in range(places.type.count):
+        place = builder.gep(array, [builder.extract_element(whole, ir.Constant(number, i))])
+        vector = builder.insert_element(vector, builder.load(place), ir.Constant(number, i))
+    return vector
+
+
 def _gather_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
     rows = [builder.load(_row_address(builder, source, place_of(builder, places, i)), align=8) for i in range(LANES)]
     for i, column in enumerate(transpose(builder, rows)):
@@ -167,15 +184,17 @@ def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> 
     """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address.
 
     `select`, `maximum`, `minimum` and `square_root` take numbers, too, in place of all vectors and masks: rules that
-    hold for one cell and for `LANES` are stated once by them.
+    hold for one cell and for `LANES` are stated once by them. A number beside a vector is in every lane.
     """
 
     def typed(*given: Any) -> Any:
         kinds = [kind or one for kind, one in zip(parameters, given, strict=True)]
+        other: dict[Any, Any] = {}
         if all(isinstance(one, types.Number | types.Boolean) for one in given) and _VECTOR_TYPE in kinds:
-            kinds = [types.boolean if kind == _MASK_TYPE else types.float64 for kind in kinds]
-            return types.float64(*kinds), lower
-        return result(*kinds), lower
+            other = {_MASK_TYPE: types.boolean, _VECTOR_TYPE: types.float64}
+        elif any(getattr(one, "dtype", one) in (types.float32, _FLOATS_TYPE, _FLOATS_MASK_TYPE) for one in given):
+            other = {_MASK_TYPE: _FLOATS_MASK_TYPE, _VECTOR_TYPE: _FLOATS_TYPE}
+        return other.get(result, result)(*(other.get(kind, kind) for kind in kinds)), lower
 
     def lower(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         operands = [
@@ -201,6 +220,9 @@ load = instruction(
 
 gather = instruction(_gather, _VECTOR_TYPE, None, None)
 """gather(array, places): element `places[i]` of an array (cells,) in lane i."""
+
+pick = instruction(_pick, _VECTOR_TYPE, None, _VECTOR_TYPE)
+"""pick(array, places): element `places[i]`, a whole number, of an array (cells,) in lane i."""
 
 store = instruction(
     lambda builder, array, row, x: builder.store(x, _row_address(builder, array, row), align=8),
@@ -239,14 +261,14 @@ select = instruction(
 """select(mask, x, y): x where the mask is true, else y."""
 
 lane_bits = instruction(
-    lambda builder, mask: builder.zext(builder.bitcast(mask, ir.IntType(LANES)), ir.IntType(64)),
+    lambda builder, mask: builder.zext(builder.bitcast(mask, ir.IntType(mask.type.count)), ir.IntType(64)),
     *(types.int64, _MASK_TYPE),
 )
 """lane_bits(mask): an integer with bit i set where lane i is true."""
 
 any_lane = instruction(
     lambda builder, mask: builder.icmp_unsigned(
-        "!=", builder.bitcast(mask, ir.IntType(LANES)), ir.Constant(ir.IntType(LANES), 0)
+        "!=", builder.bitcast(mask, number := ir.IntType(mask.type.count)), ir.Constant(number, 0)
     ),
     *(types.boolean, _MASK_TYPE),
 )
@@ -267,9 +289,8 @@ scatter_rows = instruction(_scatter_rows, types.void, None, None, None)
 """scatter_rows(source, places, target): the inverse, column i of `source` becomes row `places[i]` of `target`."""
 
 
-def _operation(operation: Any, generate: Callable[..., Any], result: Any) -> None:
+def _operation(operation: Any, generate: Callable[..., Any], vector: Any, result: Any) -> None:
     """Define `operation` for two vectors, or a vector and a number."""
-    vector = _VECTOR_TYPE
 
     @type_callable(operation)
     def typing(_: Any) -> Any:
@@ -281,21 +302,21 @@ def _operation(operation: Any, generate: Callable[..., Any], result: Any) -> Non
         return typed
 
     def lower(_: Any, builder: Any, sig: Any, args: Any) -> Any:
-        operands = [x if kind == vector else _splat(builder, x) for kind, x in zip(sig.args, args, strict=True)]
-        return generate(builder, *operands)
+        kinds = zip(sig.args, args, strict=True)
+        return generate(builder, *(x if kind == vector else _splat(builder, x, vector.vector) for kind, x in kinds))
 
     for left, right in ((vector, vector), (vector, types.float64), (types.float64, vector)):
         lower_builtin(operation, left, right)(lower)
 
 
-def _mask_operation(operation: Any, generate: Callable[..., Any]) -> None:
+def _mask_operation(operation: Any, generate: Callable[..., Any], mask: Any) -> None:
     """Define `operation` for two masks."""
 
     @type_callable(operation)
     def typing(_: Any) -> Any:
-        return lambda x, y: _MASK_TYPE if x == y == _MASK_TYPE else None
+        return lambda x, y: mask if x == y == mask else None
 
-    lower_builtin(operation, _MASK_TYPE, _MASK_TYPE)(lambda _, builder, __, masks: generate(builder, *masks))
+    lower_builtin(operation, mask, mask)(lambda _, builder, __, masks: generate(builder, *masks))
 
 
 _ARITHMETIC = {
@@ -304,22 +325,20 @@ _ARITHMETIC = {
     "fmul": (operator.mul, operator.imul),
     "fdiv": (operator.truediv,),
 }
-for _name, _operators in _ARITHMETIC.items():
-    for _operator in _operators:
-        _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _VECTOR_TYPE)
-
 _COMPARISONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq}
-for _name, _operator in _COMPARISONS.items():
-    _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _MASK_TYPE)
-
-for _name, _operators in {"and_": (operator.and_, operator.iand), "or_": (operator.or_, operator.ior)}.items():
-    for _operator in _operators:
-        _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y))
+_OF_MASKS = {"and_": (operator.and_, operator.iand), "or_": (operator.or_, operator.ior)}
+for _vector, _mask in ((_VECTOR_TYPE, _MASK_TYPE), (_FLOATS_TYPE, _FLOATS_MASK_TYPE)):
+    for _name, _operators in _ARITHMETIC.items():
+        for _operator in _operators:
+            _operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _vector, _vector)
+    for _name, _operator in _COMPARISONS.items():
+        _operation(_operator, lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y), _vector, _mask)
+    for _name, _operators in _OF_MASKS.items():
+        for _operator in _operators:
+            _mask_operation(_operator, lambda builder, x, y, name=_name: getattr(builder, name)(x, y), _mask)
+    lower_builtin(operator.invert, _mask)(lambda _, builder, __, masks: builder.not_(*masks))
 
 
 @type_callable(operator.invert)
 def _(_: Any) -> Any:
-    return lambda x: _MASK_TYPE if x == _MASK_TYPE else None
-
-
-lower_builtin(operator.invert, _MASK_TYPE)(lambda _, builder, __, masks: builder.not_(*masks))
+    return lambda x: x if x in (_MASK_TYPE, _FLOATS_MASK_TYPE) else None

@@ -5,7 +5,7 @@
 | OpenQuake, `hazard_curve-mean-PGA.csv` | comment with `investigation_time`, `imt`; columns `poe-0.005` | probability |
 | USGS nshmp-haz, `PGA/curves.csv` | columns `lon`, `lat` and one for each level | annual rate |
 | USGS Unified Hazard Tool, "Download Data" | a line `Peak Ground Acceleration` above levels and values | annual rate |
-| a table of one's own | two columns, `pga [UNIT]` or `pgv [UNIT]` and `annual rate [1/year]` | annual rate |
+| a table of your own | two columns, `pga [UNIT]` or `pgv [UNIT]` and `annual rate [1/year]` | annual rate |
 
 A probability P of exceedance in T years is converted to the annual rate -ln(1 - P)/T of a Poisson process. Levels at
 the top with the rate zero, and at the bottom with the probability one, say nothing of the rate and are left out. PGA is

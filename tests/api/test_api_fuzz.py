@@ -31,7 +31,7 @@ OPERATIONS = [
 ]
 
 
-# Bodies of text, which the schema does not describe further; `tests.api.fuzzer` sends better ones.
+# Bodies of text, which the schema does not describe further; `fuzzer.py` sends better ones.
 BODIES = [("/v1/blocks/response", "POST"), *((f"/v1/records/{name}", "POST") for name in ("response", "history"))]
 
 

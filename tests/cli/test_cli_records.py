@@ -126,13 +126,6 @@ def test_invalid_options_are_named(arguments, message):
     assert message in refused("record", *arguments)
 
 
-def test_damaged_file_is_explained_by_its_line(tmp_path):
-    path = tmp_path / "damaged.csv"
-    path.write_text("time_s,acceleration_g\n0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n")
-    message = refused("record", str(path), *SIZES)
-    assert "damaged.csv, line 4: found what; expected a number" in message
-
-
 def test_fragility_in_three_formats(small):
     result = json.loads(run("fragility", str(small), "--format=json"))
     assert result["records"] == ["napa_HNE", "napa_HNN"]

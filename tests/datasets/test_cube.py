@@ -27,8 +27,7 @@ NOT_APPLICABLE = (
     "geospatial_", "time_coverage_",  # the control space has no place and no time
     "standard_name",  # CF has no standard name for rocking
     "date_",  # equal content gives equal bytes
-    "product_version",  # code_sha256 is more precise
-    "creator_email", "creator_url", "creator_institution", "contributor_", "publisher_", "naming_authority",
+    "creator_email", "creator_url", "contributor_", "publisher_email", "publisher_url", "naming_authority",
     "metadata_link", "program", "platform", "instrument", "keywords_vocabulary", "comment",  # not applicable
 )  # fmt: skip
 """Recommendations of ACDD-1.3 that do not apply here; all others are followed."""

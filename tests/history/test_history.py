@@ -140,16 +140,6 @@ def test_the_history_of_a_very_slow_pulse_ends(name, alpha):
     assert np.isfinite(history.rotation.values).all()
 
 
-@pytest.mark.parametrize("alpha", [None, 0.3])
-def test_a_block_without_uplift_has_zero_rotation(alpha):
-    history = rocking.time_history("sine", slenderness=1.2, frequency_ratio=3.0, restitution=0.9, alpha=alpha)
-    assert not history.rotation.any()
-    assert not history.angular_velocity.any()
-    assert history.impact_time.size == 0
-    assert history.outcome == "NO_UPLIFT"
-    assert history.ground_acceleration.values.max() == pytest.approx(1 / 1.2, rel=1e-3)
-
-
 @pytest.mark.parametrize(
     ("argument", "values"),
     [

@@ -6,6 +6,7 @@
 
 import json
 import re
+import runpy
 import shlex
 import shutil
 import socket
@@ -18,6 +19,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from tests.repository.test_docs import PRINTED
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
@@ -115,10 +118,6 @@ def test_paths_with_blanks_are_one_argument(tmp_path: Path) -> None:
         assert "two words.yaml" in shlex.split(recipe(target, "CONFIG=two words.yaml"))
 
 
-def test_readme_is_short() -> None:
-    assert README.count("\n") <= 120
-
-
 @pytest.mark.parametrize("command", ROCKING, ids=" ".join)
 def test_command_line(command: list[str]) -> None:
     done = subprocess.run([installed("rocking"), *command[1:]], cwd=ROOT, capture_output=True, text=True, check=True)
@@ -136,6 +135,15 @@ def test_extras_that_are_installed_exist() -> None:
     for command in PIP:
         assert command[:2] == ["pip", "install"]
         assert set(re.findall(r"\w+", command[2].partition("[")[2])) <= extras.keys()
+
+
+def test_example_that_asks_a_server(
+    server_port: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("ROCKING_SERVER", f"http://127.0.0.1:{server_port}")
+    runpy.run_path(str(ROOT / "examples/ask_a_server.py"))
+    output = capsys.readouterr().out
+    assert [text for text in PRINTED["ask_a_server"] if text not in output] == []
 
 
 @pytest.mark.slow

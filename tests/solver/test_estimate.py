@@ -74,7 +74,7 @@ def test_the_reach_is_the_distance_to_overturning_where_the_peak_depends_on_the_
     samples = motion_samples(rocking.Record(np.sin(np.linspace(0.0, 2.0 * np.pi, 101)), 0.01, "m/s2"))
     cells = bodies(200, 1, rate=0.05, alpha=0.2, eta=0.8)
     cells["slenderness"] = 1.0 / np.linspace(1.0, 2.0, 200)[:, None]
-    overturned, reach = estimate_outcomes(samples, cells, 1)
+    overturned, (reach, _) = (each.T for each in estimate_outcomes(samples, cells, 1))
     first = int(overturned.argmax())
     factor = 1.0 / cells["slenderness"][:, 0]
     distance = np.log(factor[first] / factor[first - 4 : first - 1])

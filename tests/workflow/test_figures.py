@@ -24,6 +24,7 @@ from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
 
 CONFIG = PROJECT / "workflow/config"
+PROVENANCE = ("code_sha256", "settings_sha256", "configuration", "product_version")
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
 
@@ -31,7 +32,7 @@ CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 def test_figure_drawn_twice_has_equal_bytes(name: str, smoke_results: Path, tmp_path: Path) -> None:
     paths = {kind: tmp_path / f"{name}.{kind}" for kind in ("svg", "png", "nc")}
     written = read_dataset(smoke_results / f"figures/{name}.nc").attrs
-    provenance = {key: written[key] for key in ("code_sha256", "settings_sha256")}
+    provenance = {key: written[key] for key in PROVENANCE}
     main(figure=name.replace("-", "_"), **paths, **CONFIGURED[name], provenance=provenance)
     for kind, path in paths.items():
         there = smoke_results / f"figures/{name}.{kind}"

@@ -131,6 +131,7 @@ def test_map_is_that_of_single_blocks(products: Path, suite: SuiteConfiguration)
         np.testing.assert_array_equal(outcomes.map_overturned[i, j], direct.overturned[0])
 
 
+@pytest.mark.long  # as for data sets, test_workflow_recovery.py
 def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(
     suite_run: Path, configuration: Path, tmp_path: Path
 ) -> None:
@@ -214,13 +215,3 @@ def test_invalid_configuration_is_refused_in_one_line(place: str, value: Any, me
         check(configuration, CONFIGURATION.parent)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_snakemake_shows_the_line(tmp_path: Path) -> None:
-    configuration = yaml.safe_load(CONFIGURATION.read_text())
-    configuration["suite"]["measure"] = "sa"
-    path = tmp_path / "suite.yaml"
-    path.write_text(yaml.safe_dump(configuration))
-    refused = snakemake(tmp_path, "--dry-run", configuration=path)
-    assert refused.returncode != 0
-    assert "Configuration refused: suite.measure = 'sa': allowed: one of pga" in refused.stdout

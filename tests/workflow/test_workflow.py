@@ -6,14 +6,19 @@ import hashlib
 import json
 import re
 import shutil
+import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
 import yaml
 
-from rocking._datasets.cube import read_spectrum
+import rocking
+from rocking._datasets.cube import read_dataset, read_spectrum
+from rocking._datasets.provenance import settings_digest
 from tests.sampling import but_long
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
+from workflow.scripts.manifest import commit_of
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -60,6 +65,28 @@ def test_products_carry_the_digests_of_the_manifest(smoke_results: Path) -> None
     cube = read_spectrum(smoke_results / "spectra/sine/eta-0.85.nc")
     assert cube.attrs["code_sha256"] == entry["code_sha256"]
     assert cube.attrs["settings_sha256"] == entry["settings_sha256"]
+
+
+@pytest.mark.parametrize("name", ["spectra/sine/eta-0.85", "overturning/cosine/eta-0.90", "figures/figure-07"])
+def test_a_data_set_states_version_command_and_configuration(smoke_results: Path, name: str) -> None:
+    about = read_dataset(smoke_results / f"{name}.nc").attrs
+    assert about["product_version"] == rocking.__version__
+    assert about["history"] == f"python -m workflow.run results/{name}.nc"
+    assert settings_digest(json.loads(about["configuration"])) == about["settings_sha256"]
+    (author,) = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]["authors"]
+    names = {about[f"{role}_{kind}"] for role in ("creator", "publisher") for kind in ("name", "institution")}
+    assert names == {about["institution"]} == {author["name"]}
+
+
+def test_the_manifest_states_the_commit_only_of_an_unchanged_checkout(tmp_path: Path) -> None:
+    assert commit_of(tmp_path) == {}
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@b.c"]
+    (tmp_path / "a").write_text("1")
+    for command in (["init", "-q"], ["add", "a"], ["commit", "-q", "-m", "a"]):
+        subprocess.run([*git, *command], check=True)
+    assert len(commit_of(tmp_path)["commit"]) == 40
+    (tmp_path / "a").write_text("2")
+    assert commit_of(tmp_path) == {}
 
 
 def test_products_were_tested(smoke_results: Path) -> None:

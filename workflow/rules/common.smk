@@ -10,7 +10,8 @@ PROJECT = Path(str(workflow.basedir))
 sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
-from rocking._datasets.provenance import settings_digest
+from rocking._base.version import __version__
+from rocking._datasets.provenance import settings_digest, settings_text
 from rocking._base.source_tree import SourceTree
 from rocking._interpolation.slices import windows_of
 from rocking.suites.configuration import DEFAULTS, suite_configuration
@@ -85,7 +86,9 @@ def provenance(rule_name, scripts, settings, products):
     """Digests of the code and the settings behind a rule's products, which are listed in the manifest.
 
     Snakemake detects a changed script, but not a changed module that the script imports. The digest of the scripts and
-    of all files that they import is therefore a parameter of the rule.
+    of all files that they import is therefore a parameter of the rule. The settings and the version of the package
+    are too: they become attributes of the products. The commit does not: another one with the same code would make
+    other bytes. The manifest states it.
     """
     digests = {
         "code_sha256": SOURCES.digest(*(PROJECT / "workflow" / script for script in scripts)),
@@ -93,7 +96,7 @@ def provenance(rule_name, scripts, settings, products):
     }
     for path in products:
         PRODUCTS[path] = {"rule": rule_name, **digests}
-    return digests
+    return {**digests, "configuration": settings_text(settings), "product_version": __version__}
 
 
 def benchmark_code(*names):

@@ -8,7 +8,7 @@ from rocking._datasets.cube import check_file, describe, write_dataset
 from rocking._datasets.netcdf import open_netcdf
 from rocking._spectra.cubes import with_restitution_errors
 from workflow.pulses import pulse_of_job
-from workflow.scripts.job import run
+from workflow.scripts.job import command_of, run
 
 
 def main(
@@ -29,7 +29,8 @@ def main(
         opened = [stack.enter_context(open_netcdf(path, cache=False)) for path in parts]
         own = [float(part["restitution"]) for part in opened].index(restitution)
         (whole,) = with_restitution_errors(pulse_of_job(pulse, samples), opened, own, own + 1, threads=threads)
-    write_dataset(describe(whole, **provenance), cube, chunks={"alpha": 1})  # one angle can be read alone
+    described = describe(whole, history=command_of(whole.attrs["id"]), **provenance)
+    write_dataset(described, cube, chunks={"alpha": 1})  # one angle can be read alone
     print(f"{cube}: {whole.outcome.size} cells, {int((whole.outcome > 1).sum())} overturned")
 
 

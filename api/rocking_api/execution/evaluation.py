@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from rocking._base.errors import OutsideCubeError
 from rocking._excitation.pulses import as_pulse
 from rocking._lookup.collection import CubeCollection
 from rocking._lookup.cube import Points
@@ -61,7 +62,12 @@ def evaluate(
         known = points.slenderness, points.frequency_ratio, points.restitution, points.alpha
         return solve_checked(as_pulse(options.pulse), *known, stop=stop), ()
     cube = cubes.cube(options.pulse, options.method, may_read)
-    found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
+    try:
+        found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
+    except OutsideCubeError as error:
+        if error.parameter != "alpha":
+            raise
+        raise OutsideCubeError("alpha_deg", options.alpha_deg, error.allowed) from None
     return found, tuple([one.sha256 for one in used])
 
 

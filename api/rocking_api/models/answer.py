@@ -1,4 +1,4 @@
-"""What every JSON answer holds beside its own fields: the question, units, warnings, version, and how to ask again."""
+"""Fields that every JSON answer has: the question, units, warnings, version, and the address that repeats it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Answer(BaseModel, Generic[Q]):
     query: SerializeAsAny[Q] = QUERY
     warnings: list[str] = Field(default_factory=list, description="where the answer is in doubt")
     version: str = said("version of the package", VERSION)
-    url: str = said("path and query string that repeat the question; POST and a blank before them: with the body", "")
+    url: str = said("path and query string that repeat the question; after POST: with the same body", "")
 
     @computed_field(  # type: ignore[prop-decorator]
         description="unit of each number by its field, 1 for a plain number; names of nested fields are joined by dots"

@@ -29,7 +29,7 @@ class BlockParams(BodyParams):
 
 
 class BlocksParams(Params):
-    """What many blocks in a body have in common."""
+    """Values that many blocks of a body share."""
 
     pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
     restitution: q.BodyRestitution = q.said(
@@ -45,20 +45,22 @@ class BlockRow(BodyShape):
     name: str = q.said("label", "", max_length=200)
     peak_acceleration: q.PeakAcceleration
     period: q.Period
-    restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: that of all", None)
+    restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: the one for all blocks", None)
 
 
 class BlockRows(BlocksParams):
-    """Many blocks in a JSON body, and what they have in common."""
+    """Many blocks in a JSON body, and the values that they share."""
 
     blocks: list[BlockRow] = q.said("blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS})
     pulse: GivenPulse | None = q.said(  # type: ignore[assignment]
-        "a pulse by its name, or by samples; absent: that of the query", None
+        "a pulse by its name, or by samples; absent: the pulse of the query", None
     )
 
 
 _OF_TABLE = [
-    one if one.missing or one.kinds >= {"edges"} else replace(one, missing="the body has other edges than a block")
+    one
+    if one.missing or one.kinds >= {"edges"}
+    else replace(one, missing="the edges of the body differ from those of a block")
     for one in FIELDS
     if {"pulse", "block"} <= one.kinds and one.name not in ("half_diagonal", "frequency_parameter")
 ]
@@ -70,7 +72,7 @@ class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
     """Many bodies: one value for each, in the order of the body; SI units, degrees and groups."""
 
     name: list[str] | None = q.said("labels; null without any", None)
-    body: list[str] | None = q.said("what each is; null if all are blocks", None)
+    body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
     source: str = BY_SOLVER
 
 
@@ -94,7 +96,7 @@ class Threshold(_Change):
 
 
 class PeriodThreshold(_Change):
-    """A period at which the outcome changes, the amplitude being what it is."""
+    """A period at which the outcome changes, at this amplitude."""
 
     period: float = q.said("T_p [s]")
 
@@ -113,23 +115,23 @@ class ScaleThreshold(_Change):
 
 
 class Margins(BaseModel):
-    """How far the block is from another outcome, by the rigid equation itself."""
+    """Distances of the block from another outcome, by the rigid equation."""
 
     nearest_acceleration: float | None = q.said(
-        "amplitude nearest in its logarithm at which the outcome changes [m/s2]; null: none found"
+        "nearest amplitude, by ratio, at which the outcome changes [m/s2]; null: none found"
     )
-    acceleration_factor: float | None = q.said("that over the peak acceleration of the request [-]")
+    acceleration_factor: float | None = q.said("nearest amplitude over the peak acceleration of the request [-]")
     nearest_period: float | None = q.said(
-        "period nearest in its logarithm at which the outcome changes, this amplitude [s]; null: none found"
+        "nearest period, by ratio, at which the outcome changes at this amplitude [s]; null: none found"
     )
-    period_factor: float | None = q.said("that over the period of the request [-]")
+    period_factor: float | None = q.said("nearest period over the period of the request [-]")
     periods: list[PeriodThreshold] = q.said("all periods at which the outcome changes, ascending")
     periods_searched: tuple[float, float] = q.said("smallest and largest period searched [s]")
     smallest_surviving_half_diagonal: float | None = q.said(
         "smallest R of this shape searched that survives this pulse [m]; a larger one may overturn"
     )
     surviving_from_half_diagonal: float | None = q.said(
-        "R from which every larger size searched survives [m]; null: the largest overturns"
+        "R above which every size searched survives [m]; null: the largest overturns"
     )
     sizes: list[SizeThreshold] = q.said("all sizes of this shape at which the outcome changes, ascending")
     sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched [m]")

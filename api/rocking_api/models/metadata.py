@@ -1,4 +1,4 @@
-"""What every response in SI units says about its model: equations, assumptions, limits of use."""
+"""Model of every response in SI units: equations, assumptions, limits of use."""
 
 from __future__ import annotations
 

@@ -57,8 +57,8 @@ class RecordParams(RecordFileParams):
 class RecordResponseParams(RecordParams):
     """The same, and whether to search thresholds and to fit a pulse."""
 
-    thresholds: bool = said("find all scales at which the outcome changes, which takes most of the time", True)
-    fit: bool = said("fit a pulse, and compare how both overturn the block", False)
+    thresholds: bool = said("find all factors at which the outcome changes; this takes most of the time", True)
+    fit: bool = said("fit a pulse and compare when both overturn the block", False)
 
 
 class RecordHistoryParams(RecordParams):
@@ -107,7 +107,7 @@ class RecordDescription(BaseModel):
 
     name: str = said("name of the file, without its ending, and the component")
     source: str = said("file, format, and what was done to the record")
-    remarks: list[str] = said("what the reader of the file found in doubt")
+    remarks: list[str] = said("warnings of the reader of the file")
     samples: int = said("number of samples [-]")
     time_step: float = said("time step [s]")
     peak_acceleration: float = said("PGA [m/s2]")
@@ -119,7 +119,7 @@ class RecordDescription(BaseModel):
     arias_intensity: float = said("Arias intensity [m/s]")
     significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
     mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
-    final_velocity: float = said("velocity at the last sample, which an offset leaves [m/s]")
+    final_velocity: float = said("velocity at the last sample [m/s]; large if the acceleration has an offset")
     digest: str = said("sha256 of the time step and the samples of all components")
 
 
@@ -139,7 +139,7 @@ class FittedPulse(BaseModel):
     centre: float = said("time of its centre from the first sample [s]")
     cycles: float | None = said("gamma of Mavroeidis & Papageorgiou [-]; null for others")
     phase: float | None = said("nu of Mavroeidis & Papageorgiou [rad]; null for others")
-    explained: float = said("share of the sum of squares of the velocity that it takes away [-]")
+    explained: float = said("share of the sum of squares of the velocity that the pulse explains [-]")
     scale_ratio: float | None = said(
         "lowest scale at which the pulse overturns the block over that of the record [-]; above 1: unconservative; "
         "null: one of them does not overturn it"
@@ -151,7 +151,7 @@ _SCALES = said("all scales at which the outcome changes, ascending; null: not as
 
 @with_fields("record", "block")
 class RecordResponse(RecordAnswer[RecordResponseParams]):
-    """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
+    """Response of the block; the fields mean the same as those of /v1/blocks/response."""
 
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
@@ -180,7 +180,7 @@ class RecordHistoryResponse(Motion, RecordAnswer[RecordHistoryParams]):
 
 @declared(OF_SOLVER[1:-1])
 class RecordBodyHistoryResponse(RecordAnswer[RecordHistoryParams]):
-    """A motion under a record of a body with other edges than those of a block, in SI units."""
+    """Motion under a record of a body whose edges differ from those of a block, in SI units."""
 
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")

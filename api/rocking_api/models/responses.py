@@ -42,7 +42,7 @@ OF_SOLVER = (own.PEAK_ROTATION, own.OVERTURNED, own.OUTCOME, own.IMPACTS, own.EX
 """Fields of each response of the solver."""
 
 _LOOKED_UP = [
-    replace(one, missing="a data set leaves it open: method=solver counts") if one is own.IMPACTS else one
+    replace(one, missing="where a data set leaves it open, method=solver counts") if one is own.IMPACTS else one
     for one in COLUMN_FIELDS
 ]
 
@@ -52,7 +52,7 @@ _DETAILS = {
 }
 
 _DATA = said(
-    "sha256 of the data set that answered, of that next below the restitution if several did; null if the solver did"
+    "sha256 of the data set that answered, of several the one next below the restitution; null: the solver answered"
 )
 
 
@@ -136,9 +136,9 @@ class ContactResponse(BaseModel):
     friction_demand_over_slope: list[float | None] | None = said(
         "|H|/(N tan alpha) [-]; null where N <= 0, and without one alpha", None
     )
-    largest_friction_demand: float | None = said("also between the samples [-]; null if it lifts off")
+    largest_friction_demand: float | None = said("largest |H|/N, also between the samples [-]; null if it lifts off")
     largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]", None)
-    smallest_normal_reaction: float = said("over the weight [-]; 0 and below: it lifts off")
+    smallest_normal_reaction: float = said("smallest N/(m g), also between the samples [-]; 0 and below: it lifts off")
     impulse_ratio: float | None = said(
         "horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
     )
@@ -147,7 +147,7 @@ class ContactResponse(BaseModel):
 
 
 class Motion(BaseModel):
-    """A motion: outcome and samples, whatever its variable of time is."""
+    """A motion: outcome and samples, over time in seconds or in p t."""
 
     rotation: list[float] = said("theta/alpha [-]")
     angular_velocity: list[float] = said("d(theta/alpha)/d tau, tau = p t [-]")
@@ -228,7 +228,7 @@ class Health(Bare):
 
     status: str = said("ok, or degraded: data sets are missing or damaged, and the solver replaces them")
     datasets: int = said("data sets found [-]")
-    unchecked: int = said("of these, not yet checked; retry in a moment [-]", 0)
+    unchecked: int = said("number of data sets not yet checked; retry in a moment [-]", 0)
     problems: dict[str, str] = said("what is missing or damaged, by name")
 
 
@@ -253,7 +253,7 @@ def point_response(params: ResponseParams, found: BoundedResponse, versions: tup
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
         note = "the block overturns: there is no peak"
     elif math.isinf(fields["error_bound"]):
-        note = "the outcome changes within the rounding of the question: there is no bound"
+        note = "the outcome changes within the rounding of the inputs: there is no bound"
         warnings = [note]
     elif fields["impacts"] == UNKNOWN_IMPACTS:
         note = "the data set does not determine the number of impacts: method=solver counts them"

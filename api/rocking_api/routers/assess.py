@@ -58,7 +58,7 @@ async def post_assess(request: Request, service: ServiceDep) -> Response:
     params, body = await service.read(request, AssessParams, given, AssessBody, MAX_BODY)
     table, site = await service.run_parser(lambda stop: _read(body, given, params, stop), request, large=True)
     form = negotiated_form(request, params.format, _FORMS, default=given)
-    return await service.run_heavy(params, lambda stop: _assess(params, request, site, table, form, stop), request)
+    return await service.run_heavy(lambda stop: _assess(params, request, site, table, form, stop), request)
 
 
 def _read(body: AssessBody | bytes, form: Form, params: AssessParams, stop: StopFlag) -> tuple[ObjectTable, Site]:

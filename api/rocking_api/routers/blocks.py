@@ -26,7 +26,7 @@ from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import blocks as m
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import ResponseParams
-from rocking_api.models.quantity import FREQUENCY_RATIO, served
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, served
 from rocking_api.models.responses import SOURCES, PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -53,7 +53,7 @@ async def get_block(
 
     A body with other edges than those of a block is solved by them, and has no response in groups.
     """
-    return await service.run_heavy(params, lambda stop: _block(service, params, stop), request)
+    return await service.run_heavy(lambda stop: _block(service, params, stop), request)
 
 
 @router.post(
@@ -81,7 +81,7 @@ async def post_blocks(request: Request, service: ServiceDep) -> Response:
     params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
     table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
-    return await service.run_heavy(params, lambda stop: _blocks(service, params, request, table, form, stop), request)
+    return await service.run_heavy(lambda stop: _blocks(service, params, request, table, form, stop), request)
 
 
 def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams, stop: StopFlag) -> BlockTable:
@@ -146,7 +146,9 @@ def _point(
 ) -> tuple[PointResponse, BoundedResponse]:
     """The response in groups, by a data set or by the solver, as a model too."""
     groups = problem.groups
-    dimensionless = ResponseParams(
+    for one in (SLENDERNESS, FREQUENCY_RATIO):
+        one.convert(groups[one.name])
+    dimensionless = ResponseParams.model_construct(
         pulse=params.pulse,
         method=params.method,
         absolute_tolerance=params.absolute_tolerance,
@@ -155,7 +157,6 @@ def _point(
         frequency_ratio=groups["frequency_ratio"],
         restitution=groups["restitution"],
     )
-    dimensionless.check()
     points = np.array([groups[one.name] for one in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:

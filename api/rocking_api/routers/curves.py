@@ -49,16 +49,13 @@ router = APIRouter(prefix="/v1", route_class=ParamsRoute)
 async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Blocks of one slenderness over a window of the frequency ratio."""
     form = negotiated_form(request, params.format)
-    frequency_ratio = _axis(service, params)
-    return await service.run_heavy(
-        params, lambda stop: _spectrum(service, params, request, frequency_ratio, form, stop), request
-    )
+    ratio = _axis(service, params)
+    return await service.run_heavy(lambda stop: _spectrum(service, params, request, ratio, form, stop), request)
 
 
 def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
     """The frequency ratios of the curve, within the range of the service."""
     low, high = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
-    params.check()
     if params.points > service.settings.max_samples:
         raise TooLargeError("points", params.points, f"at most {service.settings.max_samples}")
     return np.geomspace(low, high, params.points)
@@ -104,7 +101,7 @@ async def get_history(params: Annotated[HistoryParams, Query()], request: Reques
     if params.samples > service.settings.max_samples:
         raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
     form = negotiated_form(request, params.format)
-    return await service.run_heavy(params, lambda stop: _history(params, request, form, stop), request)
+    return await service.run_heavy(lambda stop: _history(params, request, form, stop), request)
 
 
 def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag) -> Response:
@@ -159,9 +156,7 @@ def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
 class AmplitudeParams(BlockInGroups):
     """A block and a pulse without amplitude."""
 
-    highest: float = said(
-        "largest a = a_g/(g tan alpha) searched [-]", 100.0, json_schema_extra={"exclusiveMinimum": 1, "maximum": 1e6}
-    )
+    highest: float = said("largest a = a_g/(g tan alpha) searched [-]", 100.0, gt=1, le=1e6)
 
 
 class AmplitudeThreshold(BaseModel):
@@ -198,7 +193,7 @@ async def get_thresholds(
 
     Where a block of restitution 1 overturns after more than 200 impacts, they are accurate to 1e-6.
     """
-    return await service.run_heavy(params, lambda stop: _answer(params, stop), request)
+    return await service.run_heavy(lambda stop: _answer(params, stop), request)
 
 
 def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
@@ -265,7 +260,7 @@ async def get_map(params: Annotated[MapParams, Query()], request: Request, servi
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
     form = negotiated_form(request, params.format)
     axes = _axes(service, params)
-    response = await service.run_heavy(params, lambda stop: _map(params, request, *axes, form, stop), request)
+    response = await service.run_heavy(lambda stop: _map(params, request, *axes, form, stop), request)
     if request.method == "GET":
         response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
     return response
@@ -313,7 +308,6 @@ def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDA
     """The columns and the rows, within the ranges of the service."""
     left, right = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
     low, high = check_window(SLENDERNESS, params.slenderness_min, params.slenderness_max)
-    params.check()
     if params.columns * params.rows > service.settings.max_samples:
         larger = "columns" if params.columns >= params.rows else "rows"
         allowed = f"columns times rows at most {service.settings.max_samples}"

@@ -36,9 +36,7 @@ class IdentifyParams(Params):
     edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
     degrees: bool = said("the rotations are in degrees, not in radians, where the header of CSV states no unit", False)
     time_step: TimeStep = said("time between the rows where CSV counts them in place of times [s]", None)
-    confidence: float = said(
-        "confidence of the intervals [-]", 0.95, json_schema_extra={"exclusiveMinimum": 0, "maximum": 0.999}
-    )
+    confidence: float = said("confidence of the intervals [-]", 0.95, gt=0, le=0.999)
     format: TableFormat = None
 
 
@@ -126,9 +124,7 @@ async def post_identify(request: Request, service: ServiceDep) -> Response:
     params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
     time, rotation = await service.run_parser(lambda stop: _read(params, body, stop), request, large=True)
-    return await service.run_heavy(
-        params, lambda stop: _identified(params, request, time, rotation, form, stop), request
-    )
+    return await service.run_heavy(lambda stop: _identified(params, request, time, rotation, form, stop), request)
 
 
 def _read(

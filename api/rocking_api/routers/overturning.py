@@ -47,7 +47,7 @@ async def get_overturning(
     """The curves of the workflow; without those for this restitution they are traced, and cached."""
     form = negotiated_form(request, params.format)
     try:
-        return await service.run_heavy(params, lambda stop: _overturning(service, params, request, form, stop), request)
+        return await service.run_heavy(lambda stop: _overturning(service, params, request, form, stop), request)
     except TimeLimitError as error:
         given = params.model_dump(include={"pulse", "restitution", "alpha_deg"}, exclude_none=True)
         where = f"/v1/map?{urlencode(given)}" if sampled_pulse(params) is None else "POST /v1/map"

@@ -67,7 +67,7 @@ def _about(kind: type[m.RecordFileParams]) -> dict[str, Any]:
 async def post_response(request: Request, service: ServiceDep) -> m.RecordResponse | m.RecordBodyResponse:
     """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2)."""
     params, record = await _read(m.RecordResponseParams, request, service)
-    return await service.run_heavy(params, lambda stop: _response(service, params, record, stop), request)
+    return await service.run_heavy(lambda stop: _response(service, params, record, stop), request)
 
 
 @router.post(
@@ -89,7 +89,7 @@ async def post_history(request: Request, service: ServiceDep) -> Response:
     if record.samples > limit and params.samples is None:
         raise TooLargeError("samples", record.samples, f"at most {limit}; state `samples`")
     form = negotiated_form(request, params.format)
-    return await service.run_heavy(params, lambda stop: _history(params, request, record, form, stop), request)
+    return await service.run_heavy(lambda stop: _history(params, request, record, form, stop), request)
 
 
 @router.post(
@@ -103,14 +103,14 @@ async def post_scales(request: Request, service: ServiceDep) -> Response:
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
     params, record = await _read(m.RecordScalesParams, request, service)
     form = negotiated_form(request, params.format)
-    return await service.run_heavy(params, lambda stop: _scales(params, request, record, form, stop), request)
+    return await service.run_heavy(lambda stop: _scales(params, request, record, form, stop), request)
 
 
 @router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_about(m.RecordPulseParams))
 async def post_pulse(request: Request, service: ServiceDep) -> m.RecordPulseResponse:
     """Parameters of the pulse, how both motions overturn the block, and their accelerations and velocities."""
     params, record = await _read(m.RecordPulseParams, request, service)
-    return await service.run_heavy(params, lambda stop: _pulse(params, record, stop), request)
+    return await service.run_heavy(lambda stop: _pulse(params, record, stop), request)
 
 
 async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, Record]:

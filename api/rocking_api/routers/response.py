@@ -8,9 +8,6 @@ from typing import Annotated, Any
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
-import rocking_api.models.quantity as q
-from rocking._base.quantities import RESTITUTION
-from rocking._excitation.pulses import PULSE_NAMES
 from rocking._lookup.cube import UnreadError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate, evaluate_many
@@ -46,9 +43,6 @@ MAX_JSON = 2 * 1024 * 1024
 """Largest JSON body [bytes], fifty thousand blocks: pydantic holds the interpreter lock for 0.015 s to read it."""
 
 
-_KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
-"""Names that need no look at the registered pulses."""
-
 MAX_INLINE_RESTITUTION = 0.9
 """Restitution above which one block is computed in a thread [-]. Up to it a block has at most a few hundred impacts,
 half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of a second."""
@@ -57,7 +51,6 @@ half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of 
 @router.get("/response", summary="One block")
 async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep) -> PointResponse:
     """Whether it overturns, and its peak rotation."""
-    _check(params)
     if not service.kernels.is_loaded:
         await service.kernels.wait()
     alpha = math.radians(params.alpha_deg or 0.0)
@@ -70,19 +63,6 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
         found = await service.single.run(lambda stop: evaluate(service.cubes, params, points, stop))
     service.metrics.points(SOURCES[found[0].from_cube.item()], 1)
     return point_response(params, *found)
-
-
-def _check(params: ResponseParams) -> None:
-    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond."""
-    if not (
-        params.pulse in _KNOWN
-        and q.SLENDERNESS.lower <= params.slenderness < q.SLENDERNESS.upper
-        and q.FREQUENCY_RATIO.lower <= params.frequency_ratio <= q.FREQUENCY_RATIO.upper
-        and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
-        and (not params.alpha_deg or q.ALPHA_DEG.lower <= params.alpha_deg <= q.ALPHA_DEG.upper)
-        and 0.0 <= params.absolute_tolerance < math.inf
-    ):
-        params.check()
 
 
 @router.post(
@@ -109,7 +89,7 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     """
     batch, form = await _read(request, service)
     service.reservation(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
-    return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, request, form, stop), request)
+    return await service.run_heavy(lambda stop: _answered(service, batch, request, form, stop), request)
 
 
 async def _read(request: Request, service: Service) -> tuple[Batch, Form]:

@@ -1,18 +1,19 @@
-"""Estimated outcomes of many bodies under one record, for searches: `LANES` bodies at a time.
+"""Estimated outcomes of many bodies under one record, for searches: `FLOAT_LANES` bodies at a time.
 
-Equation and rules are those of `rocking._solver.rules`. One step of degree 5 follows a sample interval, or what an
-impact leaves of it; its error is 1e-8 or less, which shifts a change of outcome by a relative 1e-6 or less in the
-strength. Impacts that certainly accumulate within an interval, and flights much shorter than one, end in rest. Of
-19,200 responses of 12 bodies 19 had another outcome than that of `rocking._solver.records.record_response`. A body
-against a wall has two edges here that are alike and lift under the same acceleration: it rocks about them in turn.
+Equation and rules are those of `rocking._solver.rules`. One step of degree 4 follows a sample interval, or what an
+impact leaves of it, in single precision; its error is 1e-7 or less, which shifts a change of outcome by a relative 1e-6
+or so in the strength. Impacts that certainly accumulate within an interval, and flights much shorter than one, end in
+rest. Of 27,698 responses of 24 bodies, most near a change, 16 had another outcome by steps of degree 5 in double
+precision. A body against a wall has two edges here that are alike and lift under the same acceleration: it rocks about
+them in turn.
 
 Each flight carries the derivatives of z and w with respect to the logarithm of the factor g of the record: from
 
     z'' = -pull (V S + F C),   dF/d ln g = F,  dV/d ln g = V - 1,  dS/dz = s' C,  dC/dz = c' S
 
 and at an impact with the velocity w at a time that changes by -dz/w. At a peak z of a flight, (1 - z)/|dz/d ln g| is
-about how far away in ln g it reaches the unstable equilibrium; the smallest of all peaks, and of the same for z + w at
-the end of the record, is the reach of the response.
+about how far away in ln g it reaches the unstable equilibrium, above g or below it by the sign of the derivative; the
+smallest of all peaks, and of the same for z + w at the end of the record, are the reaches of the response.
 """
 
 from __future__ import annotations
@@ -24,10 +25,21 @@ from numpy.typing import NDArray
 
 from rocking._numba.cancellation import StopFlag, is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
-from rocking._numba.simd import LANES, any_lane, lane_bits, load, maximum, minimum, select, splat, square_root, store
+from rocking._numba.simd import (
+    FLOAT_LANES,
+    any_lane,
+    lane_bits,
+    load,
+    maximum,
+    minimum,
+    pick,
+    select,
+    square_root,
+    store,
+)
 from rocking._solver.bodies import outcome_margin_of
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
-from rocking._solver.records.samples import LATER, LATER_LOW, SHAPE, VERTICAL
+from rocking._solver.records.samples import BLOCK, BLOCKS, BLOCKS_LOW, LATER, LATER_LOW, SHAPE, VERTICAL
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD
 
 Array = NDArray[np.float64]
@@ -38,28 +50,31 @@ FAR = 1e9
 LONGEST = 0.06
 """Longest step [tau]."""
 
+LEAST = 1e-5
+"""Sample intervals by which each step advances at least: a lane ends even where rounding leaves a root at the start."""
+
 SHORTEST = 256.0
 """A flight shorter than a sample interval over half of this ends in rest [-]."""
 
 RATE, FACTOR = 0, 1
 A, ETA, PULL, S_RATE, C_RATE, RATIO = range(2, 14, 2)
-SIGN, Z, W, S, C, DZ, DW, NEAREST, AT, F0, F1, V0, V1, IN_USE, ROWS = range(14, 29)
+SIGN, Z, W, S, C, DZ, DW, UP, DOWN, PLACE, AT, F0, F1, V0, V1, IN_USE, PER_RATE, ROWS = range(14, 32)
 """Rows of the lanes: constants of the body, those of the right edge followed by those of the left one; sgn(theta), the
-state with its derivatives, the reach, the time since the sample before, f and V there and at the next one."""
+state with its derivatives, the reaches, the sample before and the time since it, f and V there and at the next one."""
 
-OVER, REACH, END_Z, END_W, END_SIGN = range(5)
+OVER, REACH, END_Z, END_W, END_SIGN = 0, 1, 3, 4, 5
 """Columns of the results."""
 
-CHUNK = 32 * LANES
+CHUNK = 16 * FLOAT_LANES
 """Bodies given to a thread at a time."""
 
-TINY = 1e-300
+TINY = 1e-30
 
 
 def estimate_outcomes(
     samples: Array, cells: NDArray[np.void], threads: int | None = None, stop: StopFlag | None = None
 ) -> tuple[NDArray[np.bool_], Array]:
-    """Whether each body overturns, and the reach of its response; arrays (size,).
+    """Whether each body overturns, array (size,), and the reaches of its response above and below, array (size, 2).
 
     Parameters
     ----------
@@ -70,23 +85,24 @@ def estimate_outcomes(
     threads, stop
         As for `rocking._solver.records.record_response.solve_bodies`.
     """
-    found = np.empty((cells.size, END_SIGN + 1))
+    found, motion = np.zeros((cells.size, END_SIGN + 1)), samples[[SHAPE, VERTICAL]].astype(np.float32)
 
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-        own = cells[part]
-        follow_lanes(samples, own, np.ones((ROWS, LANES)), np.zeros((2, LANES), np.int64), flag, found[part])
+        lanes, places = np.ones((ROWS, FLOAT_LANES), np.float32), np.full(FLOAT_LANES, -1)
+        follow_lanes(samples, motion, cells[part], lanes, places, flag, found[part])
 
     fill_chunks(fill, cells.size, CHUNK, threads or AVAILABLE_CORES, stop)
     ends, edges = np.zeros(cells.size, RESPONSE_RECORD), np.zeros((cells.size, EDGE_COLUMNS))
     ends["end_rotation"], ends["end_velocity"], edges[:, 2] = found[:, END_Z], found[:, END_W], found[:, END_SIGN]
-    return (found[:, OVER] > 0.0) | (outcome_margin_of(ends, edges, cells) >= 0.0), found[:, REACH]
+    return (found[:, OVER] > 0.0) | (outcome_margin_of(ends, edges, cells) >= 0.0), found[:, REACH : REACH + 2]
 
 
 @kernel
 def set_lane(lanes: FloatArray, lane: int, cell: Record) -> None:
     """Set a lane to a body at rest."""
-    lanes[RATE, lane], lanes[FACTOR, lane], lanes[NEAREST, lane] = cell.rate, cell.vertical, FAR
-    lanes[SIGN, lane], lanes[IN_USE, lane], lanes[AT, lane] = 1.0, 1.0, -1.0
+    lanes[RATE, lane], lanes[PER_RATE, lane], lanes[FACTOR, lane] = cell.rate, 1.0 / cell.rate, cell.vertical
+    lanes[UP, lane], lanes[DOWN, lane], lanes[IN_USE, lane] = FAR, FAR, 1.0
+    lanes[SIGN, lane], lanes[PLACE, lane], lanes[AT, lane] = 1.0, 0.0, -1.0
     for side in range(2):
         ratio, stiffness = (1.0, 1.0) if side == 0 else (cell.ratio, cell.stiffness)
         sine, cosine, alpha = math.sin(cell.alpha * ratio), math.cos(cell.alpha * ratio), cell.alpha
@@ -101,34 +117,39 @@ def set_lane(lanes: FloatArray, lane: int, cell: Record) -> None:
 
 
 @kernel
-def uplift(samples: FloatArray, lanes: FloatArray, places: FloatArray, lane: int) -> bool:
+def uplift(samples: FloatArray, lanes: FloatArray, lane: int) -> bool:
     """Set a lane that rests to its next uplift; False if there is none."""
     f, vertical, later, later_low = samples[SHAPE], samples[VERTICAL], samples[LATER], samples[LATER_LOW]
     right, left, factor = lanes[A, lane], lanes[A + 1, lane], lanes[FACTOR, lane]
-    strongest = max(right, left)
+    strongest, blocks, blocks_low = max(right, left), samples[BLOCKS], samples[BLOCKS_LOW]
+    first = int(lanes[PLACE, lane])
     lanes[Z, lane], lanes[W, lane], lanes[S, lane], lanes[C, lane] = 0.0, 0.0, 1.0, 1.0
     lanes[DZ, lane], lanes[DW, lane] = 0.0, 0.0
-    for k in range(places[0, lane], len(f) - 1):
+    k = first
+    while k < len(f) - 1:
+        if k % BLOCK == 0 and strongest * blocks[k // BLOCK] <= 1.0 + factor * blocks_low[k // BLOCK]:
+            k += BLOCK
+            continue
         v1 = 1.0 + factor * vertical[k + 1]
         if v1 - left * f[k + 1] < 0.0 or v1 + right * f[k + 1] < 0.0:
             sign = -1.0 if v1 - left * f[k + 1] < 0.0 else 1.0
             strength, v0 = (right if sign > 0.0 else -left), 1.0 + factor * vertical[k]
             q0 = max(v0 + strength * f[k], 0.0)
             at = lanes[RATE, lane] * q0 / (q0 - (v1 + strength * f[k + 1]))
-            if k == places[0, lane] and at <= lanes[AT, lane]:
-                continue  # it rests again at once: within rounding of the end of the interval
-            lanes[SIGN, lane], lanes[AT, lane], places[0, lane] = sign, at, k
-            lanes[F0, lane], lanes[F1, lane], lanes[V0, lane], lanes[V1, lane] = f[k], f[k + 1], v0, v1
-            return True
+            if k > first or at > 1.000001 * lanes[AT, lane]:  # otherwise it rests again at once, by rounding
+                lanes[SIGN, lane], lanes[AT, lane], lanes[PLACE, lane] = sign, at, k
+                lanes[F0, lane], lanes[F1, lane], lanes[V0, lane], lanes[V1, lane] = f[k], f[k + 1], v0, v1
+                return True
         if strongest * later[k + 1] <= 1.0 + factor * later_low[k + 1]:
             break
+        k += 1
     return False
 
 
 @kernel
-def never_returns(samples: FloatArray, lanes: FloatArray, places: FloatArray, lane: int) -> bool:
+def never_returns(samples: FloatArray, lanes: FloatArray, lane: int) -> bool:
     """`rocking._solver.records.taylor_flight.never_returns` at the sample of a lane, and beyond a right angle."""
-    side, k = (0 if lanes[SIGN, lane] > 0.0 else 1), places[0, lane]
+    side, k = (0 if lanes[SIGN, lane] > 0.0 else 1), int(lanes[PLACE, lane])
     if lanes[W, lane] <= 0.0 or lanes[S, lane] >= 0.0:
         return False
     # sin(alpha_s)^2 = p/(p + c') of the rates of S and C, whose product is -alpha^2
@@ -140,82 +161,85 @@ def never_returns(samples: FloatArray, lanes: FloatArray, places: FloatArray, la
 
 
 @kernel
-def take_step(lanes: FloatArray) -> tuple[int, int, int]:
-    """Take a step of all lanes. Returns those at the next sample, those at rest, those that may never return."""
-    zero, one = splat(0.0), splat(1.0)
+def take_step(lanes: FloatArray, f: FloatArray, vertical: FloatArray, upright: bool) -> tuple[int, int, int]:
+    """Take a step of all lanes. Returns those at the end of the record, those at rest, those that may never return."""
     on_right, in_use = load(lanes, SIGN) > 0.0, load(lanes, IN_USE) > 0.0
     h, z, w, s0, c0 = load(lanes, RATE), load(lanes, Z), load(lanes, W), load(lanes, S), load(lanes, C)
-    dz, dw, at = load(lanes, DZ), load(lanes, DW), load(lanes, AT)
+    dz, dw, at, per_h = load(lanes, DZ), load(lanes, DW), load(lanes, AT), load(lanes, PER_RATE)
     right_a, left_strength = load(lanes, A), -1.0 * load(lanes, A + 1)
     f0, f1, v0, v1 = load(lanes, F0), load(lanes, F1), load(lanes, V0), load(lanes, V1)
-    pull = select(on_right, load(lanes, PULL), load(lanes, PULL + 1))
+    pull = -1.0 * select(on_right, load(lanes, PULL), load(lanes, PULL + 1))
     s_rate = select(on_right, load(lanes, S_RATE), load(lanes, S_RATE + 1))
     c_rate = select(on_right, load(lanes, C_RATE), load(lanes, C_RATE + 1))
     strength = select(on_right, right_a, left_strength)
-    per_h = 1.0 / h
     f_rate, v_rate = per_h * (f1 - f0), per_h * (v1 - v0)
-    # the series of w, S and C
     force, force_rate, v = strength * (f0 + f_rate * at), strength * f_rate, v0 + v_rate * at
-    s1, c1 = s_rate * (w * c0), c_rate * (w * s0)
-    w1 = pull * -1.0 * (v * s0 + force * c0)
-    s2, c2 = s_rate * 0.5 * (w * c1 + w1 * c0), c_rate * 0.5 * (w * s1 + w1 * s0)
-    w2 = pull * -0.5 * (v * s1 + v_rate * s0 + force * c1 + force_rate * c0)
-    s3 = s_rate * (1.0 / 3.0) * (w * c2 + w1 * c1 + w2 * c0)
-    c3 = c_rate * (1.0 / 3.0) * (w * s2 + w1 * s1 + w2 * s0)
-    w3 = pull * (-1.0 / 3.0) * (v * s2 + v_rate * s1 + force * c2 + force_rate * c1)
-    s4 = s_rate * 0.25 * (w * c3 + w1 * c2 + w2 * c1 + w3 * c0)
-    c4 = c_rate * 0.25 * (w * s3 + w1 * s2 + w2 * s1 + w3 * s0)
-    w4 = pull * -0.25 * (v * s3 + v_rate * s2 + force * c3 + force_rate * c2)
-    z2, z3, z4, z5 = w1 * 0.5, w2 * (1.0 / 3.0), w3 * 0.25, w4 * 0.2
-    step = select(in_use, minimum(h - at, splat(LONGEST)), zero)
-    end_z = z + step * (w + step * (z2 + step * (z3 + step * (z4 + step * z5))))
-    end_s = s0 + step * (s1 + step * (s2 + step * (s3 + step * s4)))
-    end_c = c0 + step * (c1 + step * (c2 + step * (c3 + step * c4)))
+    # z'' = g(t, z), its partial derivatives, and the coefficients of w; the second derivative in t is 0
+    tilt_s, tilt_c, square = s_rate * c0, c_rate * s0, s_rate * c_rate
+    g, g_z = pull * (v * s0 + force * c0), pull * (v * tilt_s + force * tilt_c)
+    g_t, g_tz = pull * (v_rate * s0 + force_rate * c0), pull * (v_rate * tilt_s + force_rate * tilt_c)
+    w_square = w * w
+    w2 = g_t + w * g_z
+    w3 = 2.0 * (w * g_tz) + g * (g_z + square * w_square)
+    w4 = 3.0 * (g * g_tz) + w2 * g_z + square * w * (3.0 * (w * g_t + g * g) + w_square * g_z)
+    z2, z3, z4 = g * 0.5, w2 * (1.0 / 6.0), w3 * (1.0 / 24.0)
+    w2, w3, w4, w_rate = w2 * 0.5, w3 * (1.0 / 6.0), w4 * (1.0 / 24.0), w2
+    step = select(in_use, maximum(minimum(h - at, LONGEST), 0.0), 0.0)
+    end_z = z + step * (w + step * (z2 + step * (z3 + step * z4)))
     hits = in_use & (end_z <= 0.0)
     if any_lane(hits):
         # Newton's method, from a zero of the parabola through both ends; from the ground, of that of z/tau
         ground = z <= 0.0
-        bend = select(ground, z3, (end_z - z - w * step) / maximum(step * step, splat(TINY)))
-        slope, height = select(ground, z2, w), select(ground, w, z)
-        root = square_root(maximum(slope * slope - 4.0 * bend * height, zero))
-        falling = 2.0 * height / maximum(root - slope, splat(TINY))
-        time = select(slope < 0.0, falling, (root + slope) / maximum(-2.0 * bend, splat(TINY)))
-        time = maximum(minimum(time, step), zero)
+        bend = select(ground, z3 * step, end_z - z - w * step)
+        slope, height = select(ground, z2, w) * step, select(ground, w, z)
+        bend = select(ground, bend * step, bend)
+        root = square_root(maximum(slope * slope - 4.0 * bend * height, 0.0))
+        falls = slope < 0.0
+        over = select(falls, 2.0 * height, root + slope)
+        time = step * (over / maximum(select(falls, root - slope, -2.0 * bend), TINY))
+        time = maximum(minimum(time, step), 0.0)
         for _ in range(2):
-            value = z + time * (w + time * (z2 + time * (z3 + time * (z4 + time * z5))))
-            rate = w + time * (w1 + time * (w2 + time * (w3 + time * w4)))
-            time = maximum(minimum(select(rate < 0.0, time - value / rate, time), step), zero)
+            value = z + time * (w + time * (z2 + time * (z3 + time * z4)))
+            rate = w + time * (g + time * (w2 + time * (w3 + time * w4)))
+            time = maximum(minimum(select(rate < 0.0, time - value / rate, time), step), 0.0)
         step = select(hits, time, step)
-        end_z, end_s, end_c = select(hits, zero, end_z), select(hits, one, end_s), select(hits, one, end_c)
-    end_w = w + step * (w1 + step * (w2 + step * (w3 + step * w4)))
-    # the derivatives, by a rule of second order
-    start = pull * -1.0 * ((v * s_rate * c0 + force * c_rate * s0) * dz + (v - 1.0) * s0 + force * c0)
-    force, v = force + force_rate * step, v + v_rate * step
-    dz = dz + step * (dw + 0.5 * step * start)
-    end = pull * -1.0 * ((v * s_rate * end_c + force * c_rate * end_s) * dz + (v - 1.0) * end_s + force * end_c)
-    dw = dw + 0.5 * step * (start + end)
+        end_z = select(hits, 0.0, end_z)
+    end_w = w + step * (g + step * (w2 + step * (w3 + step * w4)))
+    moved = end_z - z
+    bend = square * moved * moved
+    lean, turn = 1.0 + 0.5 * bend, moved * (1.0 + (1.0 / 6.0) * bend)
+    end_s, end_c = select(hits, 1.0, s0 * lean + tilt_s * turn), select(hits, 1.0, c0 * lean + tilt_c * turn)
+    # the derivatives
+    start = g_z * dz + g - pull * s0
+    rate = (g_tz + square * w * g) * dz + g_z * dw + w_rate - pull * tilt_s * w
+    dz, dw = (
+        dz + step * (dw + 0.5 * step * (start + (1.0 / 3.0) * step * rate)),
+        dw + step * (start + 0.5 * step * rate),
+    )
     turns = in_use & (w > 0.0) & (end_w <= 0.0)
     if any_lane(turns):
-        left = maximum(select(on_right, load(lanes, RATIO), load(lanes, RATIO + 1)) - maximum(z, end_z), zero)
-        left = left / maximum(maximum(dz, -1.0 * dz), splat(TINY))
-        nearest = load(lanes, NEAREST)
-        store(lanes, NEAREST, select(turns, minimum(nearest, left), nearest))
+        left = maximum(select(on_right, load(lanes, RATIO), load(lanes, RATIO + 1)) - maximum(z, end_z), 0.0)
+        up, down = load(lanes, UP), load(lanes, DOWN)
+        store(lanes, UP, select(turns, minimum(up, left / maximum(dz, TINY)), up))
+        store(lanes, DOWN, select(turns, minimum(down, left / maximum(-1.0 * dz, TINY)), down))
     arrived = in_use & (step >= h - at)
-    at = select(arrived, zero, at + step)
-    held = hits & (step < zero)
+    at = select(arrived, 0.0, at + maximum(step, LEAST * h))
+    held = hits & (step < 0.0)
     if any_lane(hits):
+        force, v = force + force_rate * step, v + v_rate * step
         eta = select(on_right, load(lanes, ETA), load(lanes, ETA + 1))
         other = select(on_right, left_strength, right_a)
+        pull = -1.0 * pull
         other_pull = select(on_right, load(lanes, PULL + 1), load(lanes, PULL))
-        after = -1.0 * eta * minimum(end_w, zero)
+        after = -1.0 * eta * minimum(end_w, 0.0)
         q, other_q = v + force, v + other * (f0 + f_rate * select(arrived, h, at))
         other_q = select(other == strength, q, other_q)  # against a wall: no edge is lifted by rounding where q = 0
-        delay = select(end_w < 0.0, -1.0 * dz / minimum(end_w, splat(-TINY)), zero)
+        delay = select(end_w < 0.0, -1.0 * dz / minimum(end_w, -TINY), 0.0)
         changed = other_pull * other_q * delay - eta * (dw - pull * q * delay)
         now, at_end = minimum(q, other_q), minimum(v1 + strength * f1, v1 + other * f1)
         now, weakest = now * minimum(pull, other_pull), minimum(now, at_end) * minimum(pull, other_pull)
         held = (after <= 0.0) & (now >= 0.0)
-        held = held | ((weakest > 0.0) & (2.0 * after <= weakest * (one - eta) * (h - at)))
+        held = held | ((weakest > 0.0) & (2.0 * after <= weakest * (1.0 - eta) * (h - at)))
         held = hits & (held | ((now > 0.0) & (SHORTEST * after <= now * h)))
         sign = load(lanes, SIGN)
         store(lanes, SIGN, select(hits & ((after > 0.0) | (q >= 0.0)), -1.0 * sign, sign))
@@ -228,10 +252,18 @@ def take_step(lanes: FloatArray) -> tuple[int, int, int]:
     store(lanes, DZ, dz)
     store(lanes, DW, dw)
     store(lanes, AT, at)
+    place = load(lanes, PLACE)
+    place = select(arrived, place + 1.0, place)
+    store(lanes, PLACE, place)
     store(lanes, F0, select(arrived, f1, f0))
-    store(lanes, V0, select(arrived, v1, v0))
+    last = len(f) - 1.0
+    following = minimum(place + 1.0, last)
+    store(lanes, F1, pick(f, following))
+    if not upright:
+        store(lanes, V0, select(arrived, v1, v0))
+        store(lanes, V1, 1.0 + load(lanes, FACTOR) * pick(vertical, following))
     risky = arrived & (end_w > 0.0) & (end_s < 0.0)
-    return lane_bits(arrived), lane_bits(held), lane_bits(risky)
+    return lane_bits(in_use & (place >= last)), lane_bits(held), lane_bits(risky)
 
 
 @kernel
@@ -240,9 +272,10 @@ def write_result(lanes: FloatArray, lane: int, found: FloatArray, cell: int) -> 
     over = lanes[S, lane] == -math.inf
     if not over:  # after the record it overturns from z + w of 1, about, see `rocking._solver.free_rocking`
         left = max(lanes[RATIO + (0 if lanes[SIGN, lane] > 0.0 else 1), lane] - lanes[Z, lane] - lanes[W, lane], 0.0)
-        size = max(abs(lanes[DZ, lane] + lanes[DW, lane]), 1.0 / FAR)
-        lanes[NEAREST, lane] = min(lanes[NEAREST, lane], left / size)
-    found[cell, OVER], found[cell, REACH], found[cell, END_SIGN] = 0.0, lanes[NEAREST, lane], lanes[SIGN, lane]
+        slope = lanes[DZ, lane] + lanes[DW, lane]
+        found[cell, REACH] = min(lanes[UP, lane], left / max(slope, 1.0 / FAR))
+        found[cell, REACH + 1] = min(lanes[DOWN, lane], left / max(-slope, 1.0 / FAR))
+    found[cell, OVER], found[cell, END_SIGN] = 0.0, lanes[SIGN, lane]
     found[cell, END_Z], found[cell, END_W] = lanes[Z, lane], lanes[W, lane]
     if over:
         found[cell, OVER], found[cell, END_Z], found[cell, END_W] = 1.0, 0.0, 0.0
@@ -250,50 +283,49 @@ def write_result(lanes: FloatArray, lane: int, found: FloatArray, cell: int) -> 
 
 @entry
 def follow_lanes(
-    samples: FloatArray, cells: Record, lanes: FloatArray, places: FloatArray, stop: FloatArray, found: FloatArray
+    samples: FloatArray,
+    motion: FloatArray,
+    cells: Record,
+    lanes: FloatArray,
+    places: FloatArray,
+    stop: FloatArray,
+    found: FloatArray,
 ) -> None:
-    """Fill `found` (cells, 5); `lanes` (ROWS, LANES) and `places` (2, LANES) are to work with: sample and cell."""
-    f, vertical, count = samples[SHAPE], samples[VERTICAL], samples.shape[1] - 1
+    """Fill `found` (cells, 6); `motion` (2, samples): f and vertical acceleration over g in single precision.
+
+    `lanes` (ROWS, FLOAT_LANES) and `places` (FLOAT_LANES,) are to work with: the cell of each lane, -1 at first.
+    """
+    upright = len(cells) > 0 and cells[0].vertical == 0.0
     following, busy = 0, 0
-    ended = (1 << LANES) - 1
-    for lane in range(LANES):
-        places[1, lane] = -1
+    ended = (1 << FLOAT_LANES) - 1
     while not is_stopped(stop):
-        for lane in range(LANES):
+        for lane in range(FLOAT_LANES):
             if (ended >> lane) & 1 == 0:
                 continue
-            if places[1, lane] >= 0:
-                write_result(lanes, lane, found, places[1, lane])
+            if places[lane] >= 0:
+                write_result(lanes, lane, found, places[lane])
                 busy -= 1
-            places[1, lane] = -1
+            places[lane] = -1
             while following < len(cells):
                 set_lane(lanes, lane, cells[following])
-                places[0, lane], places[1, lane] = 0, following
+                places[lane] = following
                 following += 1
-                if uplift(samples, lanes, places, lane):
+                if uplift(samples, lanes, lane):
                     busy += 1
                     break
-                write_result(lanes, lane, found, places[1, lane])
-                places[1, lane] = -1
-            if places[1, lane] < 0:
+                write_result(lanes, lane, found, places[lane])
+                places[lane] = -1
+            if places[lane] < 0:
                 lanes[IN_USE, lane] = 0.0
         if busy == 0:
             break
         ended = 0
         while ended == 0:
-            arrived, held, risky = take_step(lanes)
-            for lane in range(LANES):
-                if (arrived >> lane) & 1 == 1:
-                    k = places[0, lane] + 1
-                    places[0, lane] = k
-                    if k == count:
-                        ended |= 1 << lane
-                    else:
-                        lanes[F1, lane], lanes[V1, lane] = f[k + 1], 1.0 + lanes[FACTOR, lane] * vertical[k + 1]
+            ended, held, risky = take_step(lanes, motion[0], motion[1], upright)
             if held | risky != 0:
-                for lane in range(LANES):
-                    if (held >> lane) & 1 == 1 and not uplift(samples, lanes, places, lane):
+                for lane in range(FLOAT_LANES):
+                    if (held >> lane) & 1 == 1 and not uplift(samples, lanes, lane):
                         ended |= 1 << lane
-                    if (risky >> lane) & 1 == 1 and never_returns(samples, lanes, places, lane):
+                    if (risky >> lane) & 1 == 1 and never_returns(samples, lanes, lane):
                         ended |= 1 << lane
                         lanes[S, lane] = -math.inf

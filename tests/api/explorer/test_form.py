@@ -115,7 +115,7 @@ def test_a_size_out_of_range_is_told_as_it_was_typed(open_page):
 def test_the_motion_is_previewed_with_its_period(open_page):
     page = open_page()
     note = page.locator("#pulse-note")
-    expect(note).to_contain_text("It lasts 2.46 T.")
+    expect(note).to_contain_text("It lasts 1 T.")
     for name, duration in (("half_sine", "0.5"), ("ricker", "4")):
         page.locator("#pulse").select_option(name)
         expect(note).to_contain_text(f"It lasts {duration} T.")

@@ -17,11 +17,11 @@ SITE = rocking.Site(pga="0.3 g", pgv="30 cm/s")
 
 def test_an_example_rocks_beside_its_verdict(open_page):
     page = open_page(reduced_motion="no-preference")
-    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.4 g and 30 cm/s.")
+    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.4 g and 40 cm/s.")
     expect(page.locator("#play")).to_have_text("Pause")
-    expect(page.locator("#site-answer")).to_contain_text("It overturns with 70 % more (Type C2, 2.5 cycles).")
-    expect(page.locator("#single-title")).to_have_text("Under one pulse: Type C2, 2.5 cycles, 0.426 s, 0.4 g")
-    expect(page.locator("#answer")).to_contain_text("overturns with 70 % more")  # of the same motion
+    expect(page.locator("#site-answer")).to_contain_text("It overturns with 30 % more (One full cosine).")
+    expect(page.locator("#single-title")).to_have_text("Under one pulse: One full cosine, 0.641 s, 0.4 g")
+    expect(page.locator("#answer")).to_contain_text("overturns with 30 % more")  # of the same motion
     assert query(page) == {}
 
 
@@ -91,7 +91,7 @@ def test_units_are_chosen_once_and_hold_everywhere(open_page):
     expect(page.locator(".headline")).to_be_visible()
     page.locator("#units").select_option("m, m/s², m/s")
     assert query(page)["acceleration"] == f"{0.4 * STANDARD_GRAVITY:.4g} m/s2"
-    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 3.92 m/s² and 0.3 m/s.")
-    expect(page.locator("#map-readout")).to_contain_text("3.92 m/s², 0.426 s (")
+    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 3.92 m/s² and 0.4 m/s.")
+    expect(page.locator("#map-readout")).to_contain_text("3.92 m/s², 0.641 s (")
     expect(page.locator("#answer")).to_contain_text("m/s²")
     assert " g" not in page.locator("#answer dl").inner_text()

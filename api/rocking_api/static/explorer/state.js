@@ -19,7 +19,10 @@ export const DEFAULTS = {
 };
 
 /** What is shown at first: a block that rocks and comes to rest. */
-const EXAMPLE = { pulse: "c2", width: "40 cm", height: "160 cm", acceleration: "0.4 g", restitution: "momentum" };
+const EXAMPLE = {
+  ...{ width: "40 cm", height: "160 cm", acceleration: "0.4 g", velocity: "40 cm/s", restitution: "momentum" },
+  pulse: "cosine", // the first one that overturns it: both answers are the same
+};
 
 const listeners = [];
 let current = read();
