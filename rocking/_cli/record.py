@@ -39,14 +39,12 @@ def record(
     ] = True,
     fit: Annotated[bool, said("Fit a pulse and compare when both overturn the block.", "", "--fit")] = False,
     second: Annotated[
-        str | None,
-        said("Second horizontal component, a file or a column: of all directions the worst one is taken.", "FILE|NAME"),
+        str | None, said("Second horizontal component: of all directions the worst.", "FILE|NAME")
     ] = None,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver.
 
-    With a second component the motion is turned in steps of 15 degrees from the first towards the second one. The worst
-    direction overturns from the lowest factor, or else without thresholds at the scale, or rotates the block most.
+    With a second component the motion is turned in steps of 15 degrees towards it; the worst one has the lowest factor.
     """
     from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
