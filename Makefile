@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm deploy-check mutants oldest newest wheel lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -81,9 +81,6 @@ slurm: .venv/project ## make data sets through a Slurm cluster of one node and c
 
 # Besides these the plugin needs what is locked; it is not installed into .venv.
 SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin-slurm-jobstep==0.6.1
-
-deploy-check: .venv/project ## slow and greedy clients of the service alone, and behind nginx if it is installed; a minute
-	python -m tests.api.check_deployment
 
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)

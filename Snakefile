@@ -10,6 +10,9 @@ if not workflow.overwrite_configfiles:  # a --configfile replaces the default, i
     configfile: f"{workflow.basedir}/workflow/config/paper.yaml"
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/common.smk"
 
 

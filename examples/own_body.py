@@ -1,5 +1,5 @@
 """
-A body of one's own
+A body of your own
 ===================
 
 Any rigid body that rocks on two edges is a ``RigidBody``: where they are below its centre of mass, and its radius of

@@ -1,5 +1,5 @@
 """
-A family of pulses of one's own
+A family of pulses of your own
 ===============================
 
 A subclass of ``SmoothPulse`` gives any smooth function of the phase, in any unit; its parameters are fields. Responses

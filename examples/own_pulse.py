@@ -1,5 +1,5 @@
 """
-A pulse of one's own
+A pulse of your own
 ====================
 
 A pulse is a sum of sinusoids on a window of phase, or a polynomial times a Gaussian. Every function takes it

@@ -3,7 +3,7 @@
 Bodies, one or arrays of them: `Block`, `RigidBody`, `EquivalentBlock`, each with `response`, `history`, `spectrum`,
     `thresholds` and `boundary`.
 Motions: a name of `PULSE_NAMES`, or `pulse` of it; `SampledPulse`, `SinusoidalPulse`, `WaveletPulse`, `SmoothPulse` of
-    one's own; `Record` and `read_record`; `floor_motion` and `isolated_motion` of a structure under a record;
+    your own; `Record` and `read_record`; `floor_motion` and `isolated_motion` of a structure under a record;
     `elastic_spectrum`.
 Objects at a site: `Object`, `read_objects`, `Site`, `assess`, `overturning_probability`.
 Suites of records: `fragility`, and the package `rocking.suites`.

@@ -22,7 +22,7 @@ from rocking_api.models.batch import parse_csv
 from rocking_api.models.blocks import BlockRows
 from rocking_api.models.params import BatchParams, LookupOptions
 from rocking_api.models.pulses import with_samples
-from rocking_api.routers.control_map import MapParams
+from rocking_api.routers.curves import MapParams
 from rocking_api.settings import Settings
 
 from rocking._base.cells import name_and_unit

@@ -14,7 +14,7 @@ from typing import Any
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation.pulses import PULSE_NAMES, pulse
 from rocking._excitation.sampled import SampledPulse
-from workflow import parts
+from workflow.records import PARTS
 
 KEYS = ("name", "acceleration", "time", "period", "file")
 """Keys of a pulse given by samples: arguments of `rocking.SampledPulse`, or a file for acceleration and time."""
@@ -60,7 +60,7 @@ def different(pulses: Iterable[str | SampledPulse]) -> dict[str, str | SampledPu
 
 def samples_file(sampled: SampledPulse) -> str:
     """Path of the file with the samples of a pulse, in the folder of a run."""
-    return f"{parts.FOLDER}/pulses/{sampled.name}.{sampled.digest[:16]}.json"
+    return f"{PARTS}/pulses/{sampled.name}.{sampled.digest[:16]}.json"
 
 
 def write_samples(sampled: SampledPulse, path: Path) -> None:

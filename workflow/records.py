@@ -15,6 +15,7 @@ from rocking._datasets.checksum import sha256_of_file
 from rocking._datasets.provenance import settings_digest
 
 FOLDER = Path("results/.records")
+PARTS = Path("results/.parts")  # files from which products are made, kept so that what does not change is not repeated
 
 
 def digest(path: Path) -> dict[str, Any]:

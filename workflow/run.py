@@ -10,12 +10,10 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
-from itertools import chain
 from pathlib import Path
 
 from snakemake.cli import main as snakemake
 
-from workflow.parts import forget_damaged_parts
 from workflow.records import forget_false_records
 from workflow.run_lock import FOLDER, RUN_ID, RunningError, acquire, end_with
 
@@ -24,7 +22,7 @@ MEMORY_SHARE = 0.8
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Lock the folder, delete records that do not match their products and damaged parts, and call Snakemake."""
+    """Lock the folder, delete records that do not match their products, and call Snakemake."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--directory", "-d", type=Path, default=Path())
     parser.add_argument("--configfile", "--configfiles", type=Path, nargs="+", default=[])
@@ -39,7 +37,7 @@ def main(arguments: Sequence[str]) -> None:
     except RunningError as error:
         sys.exit(str(error))
     use_temporary_folder(options.directory)
-    for difference in chain(forget_false_records(options.directory), forget_damaged_parts(options.directory)):
+    for difference in forget_false_records(options.directory):
         print(f"{difference}; it is made again", flush=True)
     snakemake([*_memory_limit(arguments), *arguments])
 

@@ -20,14 +20,11 @@ from rocking_api.models.bodies import BODIES
 from rocking_api.routers import (
     assess,
     blocks,
-    control_map,
+    curves,
     datasets,
     guide,
     health,
-    history,
     identify,
-    metadata,
-    metrics,
     object_page,
     objects_page,
     overturning,
@@ -35,10 +32,7 @@ from rocking_api.routers import (
     pulses,
     records,
     response,
-    spectrum,
-    subset,
     suites,
-    thresholds,
 )
 from rocking_api.service import Service
 from rocking_api.settings import Settings
@@ -46,9 +40,9 @@ from rocking_api.settings import Settings
 LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
-    *(response, blocks, records, thresholds, spectrum, control_map, overturning, history),
-    *(assess, identify, pulses, metadata, suites, objects_page, object_page),
-    *(subset, datasets, health, metrics, pages),  # a name may have slashes: /subset is matched before names
+    *(response, blocks, records, curves, overturning),
+    *(assess, identify, pulses, suites, objects_page, object_page),
+    *(datasets, health, pages),
 )
 
 
@@ -66,7 +60,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         contact={"name": "The rocking developers"},
         license_info={"name": "BSD-3-Clause", "identifier": "BSD-3-Clause"},
         servers=[{"url": "/", "description": "this service"}],
-        openapi_url=None,  # see `rocking_api.routers.metadata`
+        openapi_url=None,  # see `rocking_api.routers.health`
         lifespan=_lifespan,
         responses=RESPONSES,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request

@@ -13,7 +13,7 @@ import uvicorn
 from pydantic import ValidationError
 
 from rocking_api.execution.kernels import compile_command
-from rocking_api.settings import Settings
+from rocking_api.settings import EXAMPLE, Settings, has_data
 
 LOG: dict[str, Any] = {
     "version": 1,
@@ -62,6 +62,9 @@ def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
             typer.echo(f"Error: --results = {results!r} is not allowed; allowed: a folder that exists", err=True)
             raise typer.Exit(2)
         os.environ["ROCKING_RESULTS"] = results
+    elif "ROCKING_RESULTS" not in os.environ and not has_data(settings.results):
+        os.environ["ROCKING_RESULTS"] = str(EXAMPLE)
+        typer.echo(f"No data sets in the folder {settings.results}: those of an example are served.", err=True)
     with ExitStack() as stack:
         if workers > 1:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="rocking-metrics-"))

@@ -58,9 +58,8 @@ class Service:
         self.memory_budget = MemoryBudget(settings.max_bytes_in_flight)
         self.turns = anyio.Lock()
 
-    async def run_heavy(self, params: Params, work: Work[T], request: Request) -> T:
+    async def run_heavy(self, work: Work[T], request: Request) -> T:
         """Run heavy work for a request whose body was read, see `BoundedExecutor.run`."""
-        params.check()
         await self.kernels.wait()
         return await self.executor.run(work, request, self.reservation(request).held)
 
@@ -90,15 +89,11 @@ class Service:
         if form != "json" or (body.takes_lists and raw.lstrip()[:1] != b"{"):
             if form == "json":
                 await self.run_parser(lambda stop: check_json(raw, stop), request)
-            params = read_query(kind, query)
-            params.check()
-            return params, raw
+            return read_query(kind, query), raw
 
         def parse(stop: StopFlag) -> tuple[P, B | bytes]:
             found = read_json(body, raw, query, kind, stop)
-            params = options_of(found, kind)
-            params.check()
-            return params, found
+            return options_of(found, kind), found
 
         return await self.run_parser(parse, request)
 

@@ -8,6 +8,14 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+EXAMPLE = Path(__file__).with_name("example")
+"""Results that `rocking serve` has where there are no others: a small spectrum, boundaries and a suite."""
+
+
+def has_data(results: Path) -> bool:
+    """Whether a folder may have data sets."""
+    return results.is_dir() and any(one.is_dir() for one in results.iterdir())
+
 
 def _nonempty(folder: Any) -> Any:
     if folder == "":  # Path("") is the current folder, which must not be published by accident

@@ -5,21 +5,16 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from rocking._assessment.columns import INPUTS, REQUIRED, STAND_INS
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import MAX_CHARACTERS, csv_of_sheet
 from rocking_api.limited_process import print_result
-
-SCHEMA: Schema[None] = Schema("table", (*INPUTS, *STAND_INS), REQUIRED, lambda *_: None)
-"""Columns of a table of objects; making objects would take seconds to load."""
 
 
 def main(path: str) -> None:
     """Print the first sheet of a file as CSV, or an error."""
 
     def read() -> dict[str, str]:
-        text = csv_of_sheet(Path(path).read_bytes(), SCHEMA)
+        text = csv_of_sheet(Path(path).read_bytes(), "table")
         if len(text) > MAX_CHARACTERS:
             raise InvalidArgumentError("table", len(text), f"a table of at most {MAX_CHARACTERS} characters")
         return {"text": text}

@@ -1,8 +1,8 @@
 """Check the error bounds of interpolated responses: `python -m benchmarks.accuracy.lookup` after `make reproduce`.
 
 Random points over the whole range of the cubes of a pulse are evaluated by interpolation and by the solver. Reported
-are the share that the cubes answer and of these that with a number of impacts, wrong outcomes and numbers, errors above
-the bound of the response, and the time per point.
+are the share that the cubes answer, that of the points that survive ("survive"), and of the answers that with a number
+of impacts, wrong outcomes and numbers, errors above the bound of the response, and the time per point.
 """
 
 from __future__ import annotations
@@ -48,16 +48,18 @@ def compare_with_solver(cube: Cube, points: Points, tolerance: float) -> dict[st
     start = time.perf_counter()
     known, found = cube.interpolate(points, tolerance, threads=1)
     seconds = time.perf_counter() - start
-    known_points, found = points[known], found[known]
-    exact = peak_response(cube.pulse, **vars(known_points))
+    every = peak_response(cube.pulse, **vars(points))
+    found = found[known]
     surviving = ~found.overturned
-    error = np.abs(found.peak_rotation - exact.peak_rotation)[surviving]
+    error = np.abs(found.peak_rotation - every.peak_rotation[known])[surviving]
     return {
         "answered": float(known.sum()),
-        "wrong_outcomes": float((found.outcome != exact.outcome).sum()),
+        "surviving": float((~every.overturned).sum()),
+        "surviving_answered": float((known & ~every.overturned).sum()),
+        "wrong_outcomes": float((found.outcome != every.outcome[known]).sum()),
         "counted": float((found.impacts >= 0).sum()),
-        "wrong_impacts": float(((found.impacts >= 0) & (found.impacts != exact.impacts)).sum()),
-        "wrong_exceeded_alpha": float((found.exceeded_alpha != exact.exceeded_alpha).sum()),
+        "wrong_impacts": float(((found.impacts >= 0) & (found.impacts != every.impacts[known])).sum()),
+        "wrong_exceeded_alpha": float((found.exceeded_alpha != every.exceeded_alpha[known]).sum()),
         "bounds_broken": float((error > found.error_bound[surviving]).sum()),
         "largest_share_of_bound": float((error / found.error_bound[surviving]).max(initial=0.0)),
         "seconds": seconds,
@@ -79,6 +81,7 @@ def measure(folder: Path, count: int, tolerance: float, seed: int) -> dict[str, 
         record[kind] = total | {
             "points": total_points,
             "share": total["answered"] / total_points,
+            "share_of_surviving": total["surviving_answered"] / max(total["surviving"], 1.0),
             "share_with_impacts": total["counted"] / max(total["answered"], 1.0),
             "largest_share_of_bound": max(part["largest_share_of_bound"] for part in parts),
             "microseconds": 1e6 * total["seconds"] / total_points,
@@ -90,7 +93,7 @@ def row_text(row: dict[str, Any]) -> str:
     """Format a row."""
     return (
         f"{row['pulse']:25}{row['tolerance']:<8.0e}{row['kind']:20}{row['share']:8.4f}"
-        f"{row['share_with_impacts']:9.4f}{row['wrong_outcomes']:7.0f}{row['wrong_impacts']:9.0f}"
+        f"{row['share_of_surviving']:9.4f}{row['share_with_impacts']:9.4f}{row['wrong_outcomes']:7.0f}{row['wrong_impacts']:9.0f}"
         f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
         f"{row['microseconds']:7.2f}"
     )
@@ -98,7 +101,14 @@ def row_text(row: dict[str, Any]) -> str:
 
 def table(record: dict[str, Any]) -> str:
     """Format all rows: errors in outcome, impacts, exceeded_alpha and bounds; largest share of a bound."""
-    titles = f"{'share':>8}{'counted':>9}{'outc.':>7}{'impacts':>9}{'alpha':>7}{'bounds':>8}{'used':>7}{'us':>7}"
+    titles = "".join(
+        f"{name:>{width}}"
+        for name, width in zip(
+            ("share", "survive", "counted", "outc.", "impacts", "alpha", "bounds", "used", "us"),
+            (8, 9, 9, 7, 9, 7, 8, 7, 7),
+            strict=True,
+        )
+    )
     return "\n".join([f"{'':53}{titles}", *map(row_text, record["rows"])])
 
 

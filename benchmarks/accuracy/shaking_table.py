@@ -17,6 +17,7 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
+from scipy.stats import binomtest
 
 import rocking
 from benchmarks.figures.shaking_table import draw
@@ -36,6 +37,8 @@ STEP = 0.005
 RANGES: dict[str, Any] = {"alpha": (0.03, 0.3), "half_diagonal": (0.05, 1.0), "restitution": (0.3, 0.95)}
 
 SPECIMENS = 1, 2
+
+GROUPS = 8  # of tests by PGV, whose shares that overturn are compared [-]
 
 COLUMNS = "specimen", "peak_acceleration", "peak_velocity", "overturned", "predicted"
 
@@ -85,13 +88,18 @@ def main(command_line: list[str] | None = None) -> None:
         found = rocking.calibrate(motions, fell, **RANGES, points=given.points)
         model = predicted(found, motions)
         measures = ([getattr(one, f"peak_{name}") for one in motions] for name in ("acceleration", "velocity"))
-        columns = *measures, fell, model
+        columns: list[Any] = [*measures, fell, model]
         rows += [(specimen, *row) for row in zip(*columns, strict=True)]
         print(f"\nspecimen {specimen}: {fell.sum()} overturn")
         for name in RANGES:
             print(f"  {name:14} {found[name]:.3f} ({found[f'{name}_lower']:.3f} to {found[f'{name}_upper']:.3f})")
         for name in ("right", "validated", "validated_pgv", "validated_pga"):
             print(f"  {name:14} {found[name]:.1%}")
+        for part in np.array_split(np.argsort(columns[1]), GROUPS):
+            low, high = binomtest(int(fell[part].sum()), part.size).proportion_ci(0.95, "exact")
+            ends = np.asarray(columns[1])[part[[0, -1]]]
+            measured = f"{fell[part].mean():.2f} ({low:.2f} to {high:.2f})"
+            print(f"  {ends[0]:.2f} to {ends[1]:.2f} m/s: measured {measured}, computed {model[part].mean():.2f}")
         for run, fallen in outcomes[specimen].drop(columns="measured").items():
             print(f"  {run!s:14} {(fallen == fell).mean():.1%}")
     draw(pd.DataFrame(rows, columns=COLUMNS), given.figure)

@@ -57,27 +57,27 @@ def assess(
     stop: StopFlag | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
-    """Whether the motions of a site overturn objects, from which factor on, and how far they rock where they do not.
+    """Which objects the motions of a site overturn, from which factor on, and how far the others rock.
 
     Parameters
     ----------
     objects : Object or iterable of Object
         One or more.
     site : Site
-        The ground motions; horizontal ones come from both sides.
+        The ground motions. Horizontal ones act from both sides.
     sensitivity : bool
-        Whether to compute the smallest width, the largest height, the factors of changed objects, and when an object
-        with a coefficient of friction needs more of it while it rocks, which takes most of the time.
+        Whether to compute the smallest width, the largest height and the factors of changed objects, and when an object
+        with a coefficient of friction needs more friction while it rocks. This takes most of the time.
     samples : int
-        Quasi-random variants of each object within its tolerance, and 0.05 of the restitution, of which
-        `sampled_share` is the share that overturns, 0 to 100,000; 0: none.
+        Number of quasi-random variants of each object, 0 to 100,000: dimensions within its tolerance, restitution
+        within 0.05. `sampled_share` is the share of them that overturns.
     seed : int
-        Of these variants, 0 to 2^53.
+        Seed of these variants, 0 to 2^53.
     resolution : float
         Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1].
     standards : str or iterable of str
-        Checks by standards of which the demand over capacity is stated beside the exact outcome: "static", "ishiyama",
-        "asce43", "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
+        Checks by standards to state beside the exact outcome, as demand over capacity: "static", "ishiyama", "asce43",
+        "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
     stop : StopFlag, optional
         Cancels the work.
     progress : callable, optional
@@ -98,11 +98,12 @@ def assess(
     Notes
     -----
     One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
-    to 1. `factor` is the lowest that was found up to `HIGHEST_FACTOR`; a range narrower than the distance of the
-    factors tried can be missed. Under pulses they are 0.05 to 0.23 % apart. Under records, which pulses on a floor are
-    as well, they are at most `resolution` apart, a 64th of it where the object may overturn
-    (`rocking._boundary.scan.lowest_overturning`). Changed objects and samples are searched at four times that. Sizes
-    are 6.7 % apart, 0.8 % where the factor is close to 1, and the smallest width and the largest height good to 0.1 %.
+    to 1. `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
+    between the factors tried can be missed. Under pulses this distance is 0.05 to 0.23 %. Under records, and pulses on
+    a floor, it is at most `resolution`, and a 64th of it where the object may overturn
+    (`rocking._boundary.scan.lowest_overturning`). For changed objects and samples it is four times as large. The sizes
+    tried are 6.7 % apart, 0.8 % where the factor is close to 1; the smallest width and the largest height are then
+    refined to 0.1 %.
     """
     given = (objects,) if isinstance(objects, Object) else tuple(objects)
     if not given or not all(isinstance(one, Object) for one in given):
@@ -176,7 +177,7 @@ def assess(
 
 
 def _by_event(overturned: Bools, motions: Sequence[Motion]) -> Bools:
-    """Whether one of the motions of each group overturns; from arrays (..., motions) to (..., groups)."""
+    """Whether a motion of each group overturns: arrays (..., motions) become (..., groups)."""
     groups = np.array([motion.group for motion in motions])
     return np.stack([overturned[..., groups == group].any(axis=-1) for group in range(groups.max() + 1)], axis=-1)
 
@@ -210,8 +211,8 @@ def _annual_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> dict[str
 def _sliding(
     objects: Sequence[Object], body: BodyArray, motions: Sequence[Motion], rocking: bool, stop: StopFlag | None
 ) -> dict[str, Any]:
-    """Whether each body slides before it rocks (None: not known), under which motions from when on, and how far."""
-    given: list[Any] = [one.friction for one in objects for _ in one.planes]
+    """Whether each body slides before it rocks (None: not known), under which motions, from what time, and how far."""
+    given: list[Any] = [None if plane.side else one.friction for one in objects for plane in one.planes.values()]
     friction = np.array([math.nan if mu is None else mu for mu in given], dtype=np.float64)
     needed = np.asarray(body.uplift_acceleration) / STANDARD_GRAVITY
     first = [None if mu is None else bool(mu < need) for mu, need in zip(given, needed, strict=True)]
@@ -236,27 +237,29 @@ def _sliding(
 
 
 def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequence[str]) -> list[str]:
-    """What is in doubt of each row, in words; `doubts` are those of the motions."""
-    given = [one for one in objects for _ in one.planes]
+    """Warnings of each row, in words; `doubts` are the warnings of the motions."""
+    given = [(one, plane) for one in objects for plane in one.planes.values()]
     found = []
-    for k, one in enumerate(given):
+    for k, (one, plane) in enumerate(given):
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
             texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
         if math.isfinite(columns["slides_at"][k]):
-            when = f"friction {one.friction:.3g}, more is needed from {columns['slides_at'][k]:.3g} s on"
+            when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"
             texts.append(f"{how}: {when}")
-        if columns["slides_first"][k] is None:
+        if plane.side:
+            texts.append("against a wall, whose forces are not part of the model: sliding is not assessed")
+        elif columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
         if one.diameter is not None:
-            texts.append("round base: planar model, which leaves out wobbling and rolling")
+            texts.append("round base: the plane model leaves out wobbling and rolling")
         if (columns["factor_slenderer"][k] <= 1.0) != (columns["factor_stockier"][k] <= 1.0):
             texts.append("the answer changes within the tolerance of the dimensions")
         least_rate, most = columns["annual_rate_lower"][k], columns["annual_rate_upper"][k]
         if not math.isnan(least_rate) and not most <= least_rate * (1.0 + WIDE):
-            bound = "with no bound above" if math.isnan(most) else f"at most {most:.3g}"
+            bound = "without an upper bound" if math.isnan(most) else f"at most {most:.3g}"
             text = "the hazard curve does not reach far enough: the annual rate of overturning is at least"
             texts.append(f"{text} {least_rate:.3g}, {bound}")
         less, more = columns["factor_less_restitution"][k], columns["factor_more_restitution"][k]

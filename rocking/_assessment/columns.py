@@ -1,4 +1,4 @@
-"""What an assessment takes and gives, declared once: Python, tables, the command and the service derive from it."""
+"""Inputs and outputs of an assessment, declared once: Python, tables, the command and the service derive from it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rocking._base.quantities import (
     WIDTH,
 )
 from rocking._base.quantity import Quantity
-from rocking._dimensional.body_kinds import BODIES, RIGID
+from rocking._dimensional.body_kinds import columns_beside
 
 INPUTS = (
     NAME,
@@ -44,75 +44,64 @@ INPUTS = (
 
 STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are read as one of these
 
-BODY = Quantity("body", "", "kind of body, where its parameters do not say it")
+SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination")
+"""Parameters of kinds of bodies that an object may have in place of or beside its own dimensions."""
 
-_KINDS = [BODIES[make.__name__] for make in RIGID if not BODIES[make.__name__].reads_files]
-
-_OWN = {name for one in (*INPUTS, *STAND_INS) for name in one.names} | {"gravity", "inclination", "sides", "rebound"}
-
-SHAPES = (
-    BODY,
-    *{name: one for kind in _KINDS for name, one in kind.fields.items() if one.names[0] not in _OWN}.values(),
-)
-"""Parameters of kinds of bodies, which an object may have in place of or beside its own dimensions."""
-
-_OTHERS = [kind for kind in _KINDS if kind.needed.isdisjoint(("width", "diameter"))]
-_FIRST = [name for kind in _OTHERS for name in kind.fields if name in kind.needed and kind.fields[name].unit == "m"][:1]
-
-REQUIRED = (("width", "diameter", *_FIRST), ("height", "mass_height"))
-"""Columns that the header of a table has, one of each group."""
+REQUIRED = (("width", "diameter", "left"), ("height", "mass_height"))
+"""Columns of which the header of a table needs one from each group."""
 
 CLAUSES = {
     "static": "static check: PGA over g b/h",
-    "ishiyama": "Ishiyama (1982): the smaller one of PGA and PGV over their lower bounds",
+    "ishiyama": "Ishiyama (1982): PGA and PGV over their lower bounds, the smaller ratio",
     "asce43": "ASCE 43-05 A.2, best estimate: spectral demand over capacity at alpha, at most PGA over g b/h",
     "circolare_linear": "Circolare 2009 C8A.4.2.3, linear kinematic check with q = 2: PGA/q over g b/h",
     "circolare_nonlinear": "Circolare 2009 C8A.4.2.3, nonlinear kinematic check: S_De(T_s) over 0.4 b",
 }
-"""Checks by standards and their demand over capacity; a body passes below 1. Spectra are of the motion, which on a
-floor is that of the floor."""
+"""Checks by standards and their demand over capacity; a body passes below 1. Spectra are those of the motion of the
+ground, or of the floor on which the body stands."""
 
 OUTPUTS = (
     Quantity("object", "", "name of the object"),
     Quantity("direction", "",
-        "along which it rocks: width, depth, any of a round base, the plane of an outline, or an angle from the x axis "
-        "of a mesh"),
+        "direction in which it rocks: width, depth, any (round base), the plane of an outline, or the angle from the x "
+        "axis of a mesh"),
     Quantity("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
     Quantity("uplifts", "bool", "whether a motion of the site makes it uplift"),
-    Quantity("uplift_acceleration", "m/s2", "peak acceleration from which on it uplifts"),
+    Quantity("uplift_acceleration", "m/s2", "peak acceleration above which it uplifts"),
     Quantity("factor", "-", "lowest factor tried on the motions of the site at which one of them overturns it"),
-    Quantity("governing", "", "that motion"),
+    Quantity("governing", "", "motion that does so"),
     Quantity("overturned_by", "", "motions that overturn it at the strength of the site or below"),
     Quantity("share", "-",
-        "share of the motions of the site, a pair of components being one, that overturn it at a factor up to 1"),
-    Quantity("share_lower", "-", "lower end of the 95 % interval of the share, of a suite of records"),
-    Quantity("share_upper", "-", "upper end of it"),
+        "share of the motions of the site that overturn it at a factor up to 1; a pair of components counts once"),
+    Quantity("share_lower", "-", "lower end of the 95 % interval of the share, for records"),
+    Quantity("share_upper", "-", "upper end of that interval"),
     Quantity("rotation", "rad", "largest rotation under the motions that do not overturn it"),
-    Quantity("displacement", "m", "largest movement of its top under them"),
+    Quantity("displacement", "m", "largest movement of its top under these motions"),
     Quantity("annual_rate", "1/year",
-        "annual rate of overturning, where a hazard curve is given that reaches far enough"),
-    Quantity("annual_rate_lower", "1/year", "that rate at least"),
-    Quantity("annual_rate_upper", "1/year", "that rate at most; not known where the hazard curve begins too high"),
+        "annual rate of overturning, if a hazard curve is given and reaches far enough"),
+    Quantity("annual_rate_lower", "1/year", "lower bound of the annual rate"),
+    Quantity("annual_rate_upper", "1/year",
+        "upper bound of the annual rate; not known where the hazard curve begins too high"),
     Quantity("friction_needed", "-", "coefficient of friction that uplift needs"),
-    Quantity("slides_first", "bool", "whether it slides before it rocks, by the coefficient of friction that is given"),
+    Quantity("slides_first", "bool", "whether it slides before it rocks, with its coefficient of friction"),
     Quantity("slides_under", "",
-        "motions that need more friction than that, each from when on, or none; with `sensitivity` while it rocks, "
-        "too"),
+        "motions that need more friction than it has, each with the time, or none; with `sensitivity` also while it "
+        "rocks"),
     Quantity("slides_at", "s", "earliest of these times"),
     Quantity("sliding", "m",
-        "largest displacement if it only slides, with the vertical components, where it slides first"),
+        "largest displacement where it slides first and then only slides; vertical components count"),
     Quantity("smallest_width", "m",
-        "smallest base at this height from which on no base that was tried is overturned at a factor up to 1"),
+        "smallest base at this height that survives, as do all wider ones that were tried, at a factor up to 1"),
     Quantity("largest_height", "m",
-        "largest height on this base up to which no height that was tried is overturned so"),
-    Quantity("factor_less_restitution", "-", "the factor with a coefficient of restitution lower by 0.05"),
-    Quantity("factor_more_restitution", "-", "the factor with one higher by 0.05"),
-    Quantity("factor_slenderer", "-", "the factor of a base smaller, and a height larger, by the tolerance"),
-    Quantity("factor_stockier", "-", "the factor of a base larger, and a height smaller, by the tolerance"),
+        "largest height on this base that survives, as do all lower ones that were tried, at a factor up to 1"),
+    Quantity("factor_less_restitution", "-", "factor with a restitution 0.05 lower"),
+    Quantity("factor_more_restitution", "-", "factor with a restitution 0.05 higher"),
+    Quantity("factor_slenderer", "-", "factor with the base smaller and the height larger by the tolerance"),
+    Quantity("factor_stockier", "-", "factor with the base larger and the height smaller by the tolerance"),
     Quantity("sampled_share", "-",
-        "share of its variants within tolerance and restitution that a motion overturns at a factor up to 1"),
+        "share of its variants (tolerance, restitution 0.05 up and down) that a motion overturns at a factor up to 1"),
     *(Quantity(f"{name}_ratio", "-", f"{meaning}; the largest of the motions") for name, meaning in CLAUSES.items()),
-    Quantity("warnings", "", "what is in doubt"),
+    Quantity("warnings", "", "reasons to doubt the row"),
 )  # fmt: skip
 
 VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")  # from the best to the worst

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,7 +46,7 @@ def factors_by_direction(
     angles = np.array([*planes])
     across = np.concatenate([angles, angles + 180.0])  # in the opposite direction the body is the mirror image
     directions = across if angles.size == 1 else np.union1d(np.arange(0.0, 360.0, STEP), across)
-    reversed_planes = [replace(plane, offset=-plane.offset) for plane in planes.values()]
+    reversed_planes = [plane.mirrored for plane in planes.values()]
     body = Bodies.of_planes((plane, restitution) for plane in [*planes.values(), *reversed_planes]).scaled()
     columns = []
     for motion in motions:
@@ -67,7 +66,7 @@ def factors_by_direction(
         "factor": (
             np.where(known, factor, np.nan),
             "1",
-            "lowest factor tried on the motions that overturns the object",
+            "lowest factor tried on the motions at which one of them overturns the object",
         ),
         "along": (np.where(known, across[side], np.nan), "degrees", "direction along which their component does so"),
         "governing": (np.where(known, names[own[side].argmin(axis=1)], ""), "", "the motion that does so"),

@@ -39,11 +39,13 @@ def bodies_of(given: Sequence[tuple[Object, str]]) -> BodyArray:
 
 
 def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
-    """The motion of an object under a motion of a site, from the side from which it rotates more."""
-    sides = [
-        side.rigid.changed(**{name: value.reshape(()) for name, value in side.rigid.parameters.items()})
-        for side in bodies_of([(one, direction)]).sides
-    ]
+    """The motion of an object under a motion of a site, for the sign of the motion that rotates it more."""
+    rigid = bodies_of([(one, direction)]).rigid
+    body = rigid.changed(**{name: value.reshape(()) for name, value in rigid.parameters.items()})
+    plane, given = one.planes[direction], body.parameters
+    mirrored = body.changed(**{**given, "left": given["right"], "right": given["left"]})
+    lopsided = plane.offset != 0.0 or plane.side != 0.0
+    sides = [plane.against_wall(body), *([plane.mirrored.against_wall(mirrored)] if lopsided else [])]
     peak: dict[str, Any] = {"peak_acceleration": motion.peak_acceleration, "period": motion.period}
     if isinstance(motion.motion, Record):
         peak = {"scale": motion.peak_acceleration / motion.motion.peak_acceleration}
@@ -59,14 +61,14 @@ def frictions_of(
     Arrays (objects, motions), as the variables of `Assessment.friction`.
     """
     body = bodies_of(given)
-    sides, uplift = body.rigid.parameters, np.asarray(body.uplift_acceleration)
-    mirrored = np.asarray(sides["left"] != sides["right"])
+    uplift, mirrored = np.asarray(body.uplift_acceleration), body.is_lopsided
     needed = np.empty((len(given), len(motions)))
     for k, motion in enumerate(motions):
         static = static_acceleration(motion)
         needed[:, k] = static / STANDARD_GRAVITY  # of bodies that do not uplift
         problems = problems_of(body, motion)
-        for row in np.flatnonzero(static > uplift).tolist():
+        needed[(static > uplift) & (body.side != 0.0), k] = math.nan  # the forces of a wall are not known
+        for row in np.flatnonzero((static > uplift) & (body.side == 0.0)).tolist():
             both = problems if mirrored[row] else problems[:1]
             found = (contact_extremes(one.body_motion(stop=stop, index=row)) for one in both)
             needed[row, k] = max(one.largest_friction_demand for one in found)
@@ -79,10 +81,10 @@ def first_exceedances(
 ) -> Array:
     """Times at which motions first need more than the friction (bodies,) of bodies [s]; array (bodies, motions).
 
-    Nan where a motion does not, where the friction is nan, and, without `rocking`, of bodies that uplift before they
-    slide: their whole motion is computed otherwise.
+    Nan where a motion does not, where the friction is nan, of bodies against a wall, whose forces are not known, and,
+    without `rocking`, of bodies that uplift before they slide: their whole motion is computed otherwise.
     """
-    uplift = np.asarray(body.uplift_acceleration)
+    uplift, friction = np.asarray(body.uplift_acceleration), np.where(body.side == 0.0, friction, math.nan)
     slides = friction * STANDARD_GRAVITY < uplift
     found = np.full((friction.size, len(motions)), math.nan)
     for k, motion in enumerate(motions):

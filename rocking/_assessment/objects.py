@@ -1,4 +1,4 @@
-"""Objects that are assessed, and the bodies that stand for them."""
+"""Objects that are assessed, and their bodies in each plane of rocking."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ from rocking._dimensional.body import RespondingBody
 from rocking._dimensional.body_kinds import body as describe
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import RectangularBlock
-from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices
+from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices, rebound_of
 from rocking._model.checks import impact_share
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 LENGTHS = 1e-4, 1e3  # smallest and largest dimension of an object [m]
 STEP = 15  # between the directions around an object [degrees]
@@ -31,7 +32,7 @@ CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of
 
 
 class RowDetails(dict[str, str]):
-    """Other texts of a row of a table, with the whole row as it stands."""
+    """Other texts of a row of a table, and the whole row unchanged."""
 
     def __init__(self, others: Mapping[str, str], row: Mapping[str, str]) -> None:
         super().__init__(others)
@@ -45,29 +46,29 @@ class Object:
     Parameters
     ----------
     name : str
-        For output.
+        Name in the output.
     width, depth : float
-        Of the base [m], 0.1 mm to 1 km, as all lengths; without a depth only the direction of the width is assessed.
+        Sizes of the base [m], 0.1 mm to 1 km like all lengths. Without a depth it is assessed along the width only.
     height : float
-        Of the object [m].
+        Height of the object [m].
     diameter : float
-        Of a round base, in place of the width [m]: the planar model, in which it does not wobble or roll.
+        Diameter of a round base [m], in place of width and depth. The plane model leaves out wobbling and rolling.
     mass_height : float, optional
         Height of the centre of mass [m]; half the height by default.
     offset_width, offset_depth : float
-        Distance of the centre of mass from the middle of the base [m], inside it.
+        Distance of the centre of mass from the middle of the base [m]; it lies above the base.
     mass : float, optional
         Mass [kg], > 0; the outcome does not depend on it.
     friction : float, optional
         Coefficient of friction at the base [-], > 0.
     restitution : float, "momentum" or "kalliontzis(k=...)"
-        eta of every impact [-], [0, 1], or from conservation of angular momentum.
+        Coefficient of restitution eta of every impact [-], [0, 1]; "momentum": from conservation of angular momentum.
     tolerance : float
-        How far each dimension is uncertain [m], >= 0 and less than half of the smallest.
+        Uncertainty of each dimension, up and down [m], >= 0 and less than half of the smallest dimension.
     pedestal, notes : str
-        Repeated in reports.
+        Texts for the report.
     details : mapping of str to str
-        Other texts, such as an inventory number, by their headers in tables that are written.
+        Other texts, such as an inventory number, by header; tables that are written repeat them.
 
     Raises
     ------
@@ -145,14 +146,14 @@ class Object:
         self._check_others()
 
     def _check_others(self) -> None:
-        """Check what is not a dimension."""
+        """Check the values that are not dimensions."""
         checked: dict[str, float] = {}
         for name, unit in (("mass", "kg"), ("friction", "-")):
             if getattr(self, name) is not None:
                 checked[name] = positive(name, getattr(self, name), unit)
         share = impact_share(self.restitution)
-        if share is not None and share < 1.0 and any(plane.offset for plane in self.planes.values()):
-            allowed = "momentum or a number for an object whose centre of mass is not in the middle"
+        if share is not None and share < 1.0 and any(plane.offset or plane.side for plane in self.planes.values()):
+            allowed = "momentum or a number for an object against a wall, or whose centre of mass is not in the middle"
             raise InvalidArgumentError("restitution", self.restitution, allowed)
         if share is None:
             checked["restitution"] = RESTITUTION.number(self.restitution)
@@ -233,7 +234,7 @@ class Object:
 
     @property
     def cells(self) -> Mapping[str, str]:
-        """The row of the table that it was read from as it stands, by its headers; of other objects empty."""
+        """The unchanged row of its table, by header; empty for an object that was not read from a table."""
         return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
@@ -255,9 +256,10 @@ class Object:
 
         rigid, names = Bodies.of([self]).scaled().rigid, {"direction": list(self.planes)}
         given = rigid.parameters
-        return rigid.changed(
+        made = rigid.changed(
             **{key: xr.DataArray(value, names, "direction") if value.ndim else value for key, value in given.items()}
         )
+        return next(iter(self.planes.values())).against_wall(made)
 
     @property
     def planes_around(self) -> dict[float, Plane]:
@@ -292,7 +294,7 @@ class Object:
 
 @dataclass(frozen=True)
 class Plane:
-    """An object in a plane in which it rocks."""
+    """An object in one plane of rocking."""
 
     base: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
     offset: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
@@ -300,15 +302,27 @@ class Plane:
     mass_height: float  # of the object, and of its centre of mass [m]
     base_share: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
     inertia: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
+    side: float = 0.0  # 1, -1: it rocks about its right or left edge only, since a wall stops it at the other side
+    rebound: float = math.nan  # from this wall; nan: from the angular momentum [-]
 
     @classmethod
-    def of(cls, found: PolygonProperties) -> Plane:
+    def of(cls, found: PolygonProperties, side: float = 0.0, rebound: float = math.nan) -> Plane:
         """The plane of a body with these edges and this radius of gyration."""
         base = found.left + found.right
         for name, size in (("base", base), ("height", found.top)):
             number(name, size, *LENGTHS, unit="m")
         inertia = 12.0 * found.gyration**2 / (base**2 + found.top**2)
-        return cls(base, 0.5 * (found.left - found.right), found.top, found.height, 1.0, inertia)
+        return cls(base, 0.5 * (found.left - found.right), found.top, found.height, 1.0, inertia, side, rebound)
+
+    @property
+    def mirrored(self) -> Plane:
+        """The same seen from the other side."""
+        return replace(self, offset=-self.offset, side=-self.side)
+
+    def against_wall(self, body: RigidBody) -> RigidBody:
+        """A body with the wall of this plane, if it has one."""
+        rebound = None if math.isnan(self.rebound) else self.rebound
+        return body.one_sided("right" if self.side > 0.0 else "left", rebound) if self.side else body
 
 
 @dataclass(frozen=True)
@@ -401,10 +415,8 @@ def plane_of(body: RespondingBody) -> Plane:
     """A rigid body as a plane of an object."""
     if body.shape or not isinstance(body, RigidBody | RectangularBlock):
         raise InvalidArgumentError("body", body.description, "one rigid body, such as rocking.RigidBody")
-    one_sided = getattr(body, "sides", "both") != "both"
-    if one_sided or float(body.tilt) or float(body.gravity) != STANDARD_GRAVITY:
-        allowed = "on level ground under standard gravity, without a wall at its side"
-        raise InvalidArgumentError("body", body.description, allowed)
+    if float(body.tilt) or float(body.gravity) != STANDARD_GRAVITY:
+        raise InvalidArgumentError("body", body.description, "on level ground under standard gravity")
     if isinstance(body, RectangularBlock):
         return Plane.of(
             PolygonProperties(
@@ -413,7 +425,8 @@ def plane_of(body: RespondingBody) -> Plane:
         )
     given = body.parameters
     values = given["left"], given["right"], body.height, body.gyration, body.top_height
-    return Plane.of(PolygonProperties(*map(float, values)))
+    side = {"both": 0.0, "right": 1.0, "left": -1.0}[body.sides]
+    return Plane.of(PolygonProperties(*map(float, values)), side, float(given.get("rebound", math.nan)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -426,7 +439,9 @@ class Bodies:
     mass_height: Array  # as of `Plane`
     base_share: Array  # as of `Plane`
     inertia: Array  # as of `Plane`
-    restitution: Array  # nan: from the angular momentum [-]
+    side: Array  # as of `Plane`
+    rebound: Array  # as of `Plane`
+    restitution: Array  # as `own` of `BodyArray`
 
     @classmethod
     def of(cls, objects: Iterable[Object]) -> Bodies:
@@ -437,7 +452,7 @@ class Bodies:
     def of_planes(cls, planes: Iterable[tuple[Plane, Scalar]]) -> Bodies:
         """The bodies of some planes and their restitutions."""
         rows = [(*astuple(plane), eta if (share := impact_share(eta)) is None else -share) for plane, eta in planes]
-        return cls(*np.array(rows, dtype=np.float64).reshape(-1, 7).T)
+        return cls(*np.array(rows, dtype=np.float64).reshape(-1, 9).T)
 
     def take(self, rows: NDArray[np.intp]) -> Bodies:
         """Some of them."""
@@ -448,31 +463,45 @@ class Bodies:
         b, h, centre = self.base * base, self.height * height, self.mass_height * height
         gyration = np.sqrt(self.inertia * (self.base_share * b * b + h * h) / 12.0)
         body = RigidBody.from_size(b, h, offset=self.offset * base, mass_height=centre, gyration=gyration)
-        return BodyArray(body, self.restitution, np.broadcast_to(change, b.shape))
+        return BodyArray(body, self.restitution, np.broadcast_to(change, b.shape), self.side, self.rebound)
 
 
 @dataclass(frozen=True, eq=False)
 class BodyArray(AbstractBody):
-    """Rigid bodies of which some have a coefficient of restitution of their own."""
+    """Rigid bodies, some with their own coefficient of restitution."""
 
     rigid: RigidBody  # the bodies, arrays (bodies,) or (bodies, 1)
     # restitution of each; -k: from the angular momentum of an impact at the share k of the half base, of each edge [-]
     own: Array
     change: Array  # added to the restitution, which stays in [0, 1] [-]
+    side: Array  # as of `Plane`
+    rebound: Array  # as of `Plane`
 
     @cached_property
     def right(self) -> Edge:
-        return self._changed(self.rigid.right, "right", "left")
+        return self._edge("right", "left", self.side < 0.0)
 
     @cached_property
     def left(self) -> Edge:
-        return self._changed(self.rigid.left, "left", "right")
+        return self._edge("left", "right", self.side > 0.0)
 
-    def _changed(self, edge: Edge, own: str, other: str) -> Edge:
+    def _edge(self, own: str, other: str, blocked: Bools) -> Edge:
+        edge = self._changed(own, other)
+        if not blocked.any():
+            return edge
+        behind = self._changed(other, own)
+        values = {name: (getattr(behind, name), getattr(edge, name)) for name in vars(edge) if name != "blocked"}
+        return Edge(**{name: np.where(blocked, *pair) for name, pair in values.items()}, blocked=blocked)
+
+    def _changed(self, own: str, other: str) -> Edge:
+        """An edge with its restitution; of a body against a wall that of its rebound."""
+        edge: Edge = getattr(self.rigid, own)
         given, share = self.rigid.parameters, np.square(np.minimum(self.own, 0.0))  # k^2
         square = given["gyration"] ** 2 + given["height"] ** 2
         spread = (square - share * given[own] * given[other]) / (square + share * given[other] ** 2)  # (2.4) for k = 1
-        eta = np.where(self.own < 0.0, np.maximum(spread, 0.0), self.own) + self.change
+        rebound = np.where(np.isnan(self.rebound), rebound_of(edge.alpha), self.rebound)
+        stated = np.where(self.side == 0.0, np.maximum(spread, 0.0), rebound)
+        eta = np.where(self.own < 0.0, stated, self.own) + self.change
         return replace(edge, restitution=np.clip(eta, 0.0, 1.0))
 
     @property
@@ -489,15 +518,25 @@ class BodyArray(AbstractBody):
 
     @property
     def sides(self) -> list[BodyArray]:
-        """The bodies, and their mirror images if the centre of mass of one is not in the middle."""
-        given = self.rigid.parameters
-        if np.array_equal(given["left"], given["right"]):
+        """The bodies, and their mirror images unless all are like these."""
+        if not self.is_lopsided.any():
             return [self]
+        given = self.rigid.parameters
         mirrored = self.rigid.changed(**{**given, "left": given["right"], "right": given["left"]})
-        return [self, BodyArray(mirrored, self.own, self.change)]
+        return [self, replace(self, rigid=mirrored, side=-self.side)]
+
+    @property
+    def is_lopsided(self) -> Bools:
+        """Whether each has its centre of mass not in the middle, or a wall at one side."""
+        given = self.rigid.parameters
+        return np.asarray((given["left"] != given["right"]) | (self.side != 0.0))
 
     @property
     def column(self) -> BodyArray:
         """The bodies along the first of two axes."""
         given = {name: value[..., None] if value.ndim else value for name, value in self.rigid.parameters.items()}
-        return BodyArray(self.rigid.changed(**given), self.own[:, None], self.change[:, None])
+        others = {name: value[:, None] for name, value in vars(self).items() if name in _OF_EACH}
+        return BodyArray(self.rigid.changed(**given), **others)
+
+
+_OF_EACH = "own", "change", "side", "rebound"

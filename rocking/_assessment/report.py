@@ -28,17 +28,17 @@ Array = NDArray[np.float64]
 TEMPLATE = "report.html"
 
 COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
-"""Of the verdicts; people who are colour-blind tell them apart (Okabe and Ito 2008)."""
+"""Colours of the verdicts; colour-blind people can tell them apart (Okabe and Ito 2008)."""
 
 WORST = 5  # objects that are drawn on the first page [-]
 LARGEST = 120.0, 165.0  # largest width and height of a drawing on the first page [pixels]; all have one scale
 DRAWING = 105.0  # height of an object in its drawings, and width of these together, at most [pixels]
 
 MOST_DETAILED = 60
-"""Objects, from the worst one on, that have drawings and charts at most [-]."""
+"""Largest number of objects with drawings and charts, the worst ones [-]."""
 
 MOST_MOTIONS = 8
-"""Motions that are listed beside an object, the worst first [-]; with every detail all are."""
+"""Number of motions listed beside an object, the worst first [-]; `detailed` lists all."""
 
 PAGE, HEAD, NOTE, LINE, GAP = 259.0, 28.0, 13.0, 3.6, 1.0
 """Heights [mm]: of a page, of the title and head of the table, of the text below it, of a line, between two rows."""
@@ -51,7 +51,7 @@ STRONGEST = 3.0  # height of the axis of an envelope over the peak acceleration 
 
 @dataclass(frozen=True)
 class Project:
-    """What a report states about itself; `command` makes it again."""
+    """Title, author, date and site of a report, and the command that makes it again."""
 
     title: str
     author: str
@@ -147,7 +147,7 @@ def _worst(lines: Sequence[Line]) -> list[dict[str, Any]]:
 
 
 def _blocks(found: Assessment, chosen: Sequence[Line], detailed: bool) -> list[dict[str, Any]]:
-    """What the report states of each of some rows."""
+    """The contents of the report for some rows."""
     given = [(one.object, str(one.values["direction"])) for one in chosen]
     if not given:
         return []

@@ -95,7 +95,7 @@ class Assessment(EqualByValue):
         return (details | {name: names} if in_place else {name: names} | details) | dict(others)
 
     def worst_motion(self, row: int) -> Motion:
-        """The motion that overturns a row from the lowest factor on, or under which it rotates most."""
+        """The motion with the lowest factor that overturns a row, or else the one that rotates it most."""
         row = integer("row", row, 0, len(self.objects) - 1)
         factors, rotations = self.factors[row], np.nan_to_num(self.rotations[row])
         worst = rotations.argmax() if np.isnan(factors).all() else np.nanargmin(factors)
@@ -208,7 +208,7 @@ class Assessment(EqualByValue):
         return self.with_details(columns, [one.cells for one in bad_rows])
 
     def __repr__(self) -> str:
-        """How many rows have each verdict, and the worst."""
+        """The number of rows with each verdict, and the worst row."""
         count = Counter(self.columns["verdict"].tolist())
         counted = ", ".join(f"{count[verdict]} {verdict}" for verdict in reversed(VERDICTS) if count[verdict])
         head = (

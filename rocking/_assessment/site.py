@@ -53,7 +53,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Site:
-    """How strongly the ground of a site moves.
+    """The ground motions of a site.
 
     One of: PGA and PGV; PGA and a range of periods; a suite of records, scaled to the PGA if it is given, and with it a
     hazard curve of PGA.
@@ -106,7 +106,7 @@ class Site:
                 value = number(name, getattr(self, name), *STRENGTHS, unit=unit)
                 vars(self)[name] = value  # a frozen dataclass
         records = (self.records,) if isinstance(self.records, Record) else self.records
-        vars(self)["records"] = tuple(map(_checked_pair, records))
+        vars(self)["records"] = tuple(map(checked_pair, records))
         ways = (self.pgv is not None) + (self.periods is not None) + bool(self.records)
         if ways != 1:
             raise InvalidArgumentError("site", f"{ways} of pgv, periods, records", "exactly one of them")
@@ -207,7 +207,7 @@ class Site:
 
 
 def record_doubts(site: Site) -> list[str]:
-    """What is in doubt of the records, in words: their remarks, and offsets where they are scaled by their PGA."""
+    """Warnings about the records, in words: their remarks, and an offset of a record that is scaled by its PGA."""
     pairs = ((given,) if isinstance(given, Record) else given for given in vars(site)["records"])
     records = [record for pair in pairs for record in pair]
     found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
@@ -216,7 +216,7 @@ def record_doubts(site: Site) -> list[str]:
     return [*dict.fromkeys(text.replace("; ", ", ") for text in found)]
 
 
-def _checked_pair(given: Any) -> Record | tuple[Record, Record]:
+def checked_pair(given: Any) -> Record | tuple[Record, Record]:
     """A record, or two with one step."""
     if isinstance(given, Record):
         return given
@@ -231,7 +231,7 @@ def _checked_pair(given: Any) -> Record | tuple[Record, Record]:
 
 
 def rotated(first: Record, second: Record) -> list[tuple[str, Record]]:
-    """Components of a pair along directions every 15 degrees, with the name of the angle."""
+    """Components of a pair along directions every 15 degrees below 180, with the name of the angle."""
     size = max(first.samples, second.samples)
     x, y = (np.pad(one.acceleration, (0, size - one.samples)) for one in (first, second))
     vertical = next((one.vertical for one in (first, second) if one.vertical is not None), None)

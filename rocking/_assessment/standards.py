@@ -1,4 +1,4 @@
-"""What clauses of standards say of bodies under the motions of a site: demand over capacity."""
+"""Checks of standards for bodies under the motions of a site: demand over capacity."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def demand_over_capacity(
     given = body.rigid.parameters
     names = "left", "right", "height", "gyration"
     left, right, h, r = np.broadcast_arrays(*(np.ravel(np.asarray(given[name], dtype=np.float64)) for name in names))
-    b = np.minimum(left, right)
+    b = np.where(body.side == 0.0, np.minimum(left, right), np.where(body.side > 0.0, right, left))
     found = {name: np.full((b.size, len(motions)), np.nan) for name in clauses}
     for k, motion in enumerate(motions):
         record = sampled(motion)

@@ -1,4 +1,4 @@
-"""What people read of an assessment: one line an object, in cm, degrees and g, and warnings by their kind."""
+"""An assessment in brief: one line an object, in cm, degrees and g, and the warnings by kind."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LONGEST = 40
 """Characters of a name on a screen, and in a warning [-]."""
 
 WIDER = 1.5
-"""Base that is needed over the one that an object has up to which a wider base is proposed [-]."""
+"""Largest ratio of the base needed to the present one at which a wider base is proposed [-]."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Line:
 
     @property
     def is_close(self) -> bool:
-        """Whether it would be overturned, or would not, by a motion that differs by less than 20 %."""
+        """Whether a change of the motion by less than 20 % changes the verdict."""
         return self.values["factor"] is not None and abs(self.values["factor"] - 1.0) < CLOSE
 
     @property
@@ -75,7 +75,7 @@ class Line:
 
     @property
     def wider(self) -> float | None:
-        """By how much wider the base would have to be [m]."""
+        """Width that the base lacks [m]."""
         needed = self.values["smallest_width"]
         return None if needed is None else max(needed - self.base, 0.0)
 
@@ -116,7 +116,7 @@ def lines_of(found: Assessment, *, directions: bool = False, only: Line | None =
 
 
 def rounded(value: Any, unit: str = "-", digits: int = 3) -> Any:
-    """A number in the unit that people use, with its significant digits; a small one is 0. Others as they are."""
+    """A number in the unit of the output, rounded; a small one is 0. Other values are returned unchanged."""
     if not isinstance(value, float):
         return value
     shown = value / UNITS[unit][PEOPLE[unit]] if unit in PEOPLE else value

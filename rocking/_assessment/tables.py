@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rocking._assessment.columns import INPUTS, REQUIRED, SHAPES, STAND_INS
 from rocking._assessment.objects import Object, RowDetails
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.body_kinds import WITHOUT_FILES, described
 from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import (
     BadRow,
@@ -50,19 +51,19 @@ class ObjectTable:
 
     @property
     def reading(self) -> str:
-        """What each column was read as, and which ones were not, in words."""
+        """How each column was read, and which ones were not, in words."""
         read = ", ".join(f"{header} as {name}" for header, name in self.columns.items())
         unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
         return f"columns read: {read}{unread}" if read else ""
 
     def __repr__(self) -> str:
-        """How many objects were read, and what was not."""
+        """The number of objects that were read, and of rows and columns that were not."""
         reading = f"; {self.reading}" if self.reading else ""
         return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{reading}>"
 
 
 def read_objects(source: str | PathLike[str], *, columns: Mapping[str, str] | None = None) -> ObjectTable:
-    """Read objects from a file: CSV (any ending), JSON (.json), or a sheet (.xlsx, .ods).
+    """The objects in a table: a CSV file (any ending), JSON (.json), or a sheet (.xlsx, .ods).
 
     What is not certain is not read. A row is refused, among others, if a number could be either of two ("1,234"), or a
     length stands in a column that is not read: name what it is, or that it is not used.
@@ -138,18 +139,23 @@ def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:
 
 
 def _made(given: dict[str, Any]) -> Object:
-    """The object of its own parameters; or with those of a kind of body, of that body."""
+    """The object from its own parameters, or from those of a kind of body."""
+    if given.get("sides") == "both":
+        del given["sides"]
     kind, shapes = given.pop("body", None), given.keys() & _SHAPES
     if kind is None and not shapes:
         return Object(**given)
+    if "sides" in shapes and given.get("depth") is not None and given.keys().isdisjoint(["wall"]):
+        raise InvalidArgumentError("depth", given["depth"], "none beside sides: the width is across the wall")
     stated = {name: given.pop(name) for name in [*given] if name not in _ABOUT}
-    return Object.from_body(stated if kind is None else {**stated, "kind": kind}, **given)
+    made, parameters = described(kind, stated, WITHOUT_FILES)
+    return Object.from_body(made(**parameters), **given)
 
 
 _SHAPES = {one.name for one in SHAPES}
 
 _ABOUT = {"name", "mass", "friction", "restitution", "tolerance", "pedestal", "notes", "details"}
-"""What is stated of an object beside its body."""
+"""The values of an object other than its body."""
 
 
 SCHEMA = Schema("objects", (*INPUTS, *STAND_INS, *SHAPES), REQUIRED, _object, every_length=True)  # a table of objects

@@ -1,4 +1,4 @@
-"""Probability that an uncertain body overturns, and which of its inputs matters most."""
+"""Probability that an uncertain body overturns, and the input that matters most."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def overturning_probability(
             low = -math.inf if name == "offset" else 0.0
             given[name] = number(name, value, low, math.inf, closed="neither", unit="m")
     if not uncertain:
-        raise InvalidArgumentError("width", width, "a distribution of scipy.stats for one input at least")
+        raise InvalidArgumentError("width", width, "a distribution of scipy.stats for at least one input")
     each = 2 ** math.ceil(math.log2(integer("samples", samples, 64, 2**22) / REPLICATES))
     motions = site.motions
 
@@ -172,7 +172,9 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
         k = int(np.flatnonzero(~possible)[0])
         wrong = f"width {width[k]:.3g}, height {height[k]:.3g}, centre of mass {centre[k]:.3g}, offset {offset[k]:.3g}"
         raise InvalidArgumentError(
-            "width", wrong, "distributions of possible bodies: truncate them, as scipy.stats.truncnorm"
+            "width",
+            wrong,
+            "distributions that hold possible bodies only: truncate them, for instance by scipy.stats.truncnorm",
         )
     eta = values["restitution"]
     own = (
@@ -181,4 +183,4 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
         else np.clip(np.broadcast_to(np.asarray(eta, float), size), 0.0, 1.0)
     )
     one = np.ones(size)
-    return Bodies(width, offset, height, centre, one, one, own).scaled()
+    return Bodies(width, offset, height, centre, one, one, 0.0 * one, math.nan * one, own).scaled()

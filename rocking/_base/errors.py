@@ -69,6 +69,20 @@ class MissingUnitError(InvalidArgumentError):
         return type(self), (self.parameter, self.value, self.allowed)
 
 
+class UnreadableFileError(InvalidArgumentError):
+    """A file that cannot be read, and why: "no such file", or what the system says."""
+
+    def __init__(self, parameter: str, value: str, reason: OSError | str) -> None:
+        super().__init__(parameter, value, "a file that can be read")
+        if isinstance(reason, OSError):
+            reason = "no such file" if isinstance(reason, FileNotFoundError) else str(reason.strerror or reason).lower()
+        self.reason = reason
+        self.args = (f"`{parameter}` = {value!r}: {reason}",)
+
+    def __reduce__(self) -> tuple[type[UnreadableFileError], tuple[Any, ...]]:
+        return type(self), (self.parameter, self.value, self.reason)
+
+
 class SeveralArgumentsError(InvalidArgumentError):
     """Several invalid arguments; parameter, value and allowed are those of the first.
 

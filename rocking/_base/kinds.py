@@ -49,14 +49,19 @@ class Kind(Generic[Made]):
         return (self.make.__doc__ or "").partition("\n")[0]
 
     @cached_property
+    def hints(self) -> Mapping[str, Any]:
+        """The annotations of its parameters by name: a type with its quantity."""
+        hints = {name: one.annotation for name, one in inspect.signature(self.make).parameters.items()}
+        known = self.make.__globals__
+        return {name: eval(hint, known) if isinstance(hint, str) else hint for name, hint in hints.items()}
+
+    @cached_property
     def fields(self) -> Mapping[str, Quantity]:
         """Its parameters by name, with the defaults of the signature."""
         found = {}
         for name, one in inspect.signature(self.make).parameters.items():
-            hint = one.annotation
-            declared = eval(hint, self.make.__globals__) if isinstance(hint, str) else hint
             default = None if one.default is inspect.Parameter.empty else one.default
-            found[name] = replace(declared.__metadata__[0], name=name, default=default)
+            found[name] = replace(self.hints[name].__metadata__[0], name=name, default=default)
         return found
 
     @cached_property

@@ -130,6 +130,12 @@ TOP_HEIGHT = Quantity("top_height", "m",
 INCLINATION = Quantity("inclination", "rad", "angle by which the base is inclined towards the right",
     lower=-math.pi / 2, upper=math.pi / 2, default=0.0, example="2 deg")
 
+SIDES = Quantity("sides", "", "edges about which it rocks: both; left or right: a wall stops it at the other side",
+    example="right")
+
+START = Quantity("start", "rad", "rotation from which the body is released at rest, in place of a pulse",
+    symbol="theta_0", lower=-math.pi / 2, upper=math.pi / 2, example="3deg")
+
 REBOUND = Quantity("rebound", "-", "velocity after a rebound from the wall over the one before, without its sign",
     symbol="e", lower=0.0, upper=1.0, closed="both")
 

@@ -1,5 +1,9 @@
-"""The version of the installed package; pyproject.toml is the one place that states it."""
+"""Version and authors of the installed package; pyproject.toml is the one place that states them."""
 
-from importlib.metadata import version
+from importlib.metadata import metadata
 
-__version__ = version("rocking")
+_ABOUT = metadata("rocking")
+
+__version__ = _ABOUT["Version"]
+
+AUTHORS = _ABOUT["Author"]

@@ -100,7 +100,7 @@ def thresholds(
     resolution: Scalar = SCAN_RESOLUTION,
     stop: StopFlag | None = None,
 ) -> Thresholds:
-    """Every amplitude from that of uplift to `highest` at which the outcome changes.
+    """Every amplitude between uplift and `highest` at which the outcome changes.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.checks import check_one_alpha
 from rocking._model.energy import outcome_margin
-from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
+from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes, overturning_code
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.state import FULL_PRECISION
@@ -108,7 +108,7 @@ def without_layers(codes: Codes) -> Codes:
 
 def counted_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = outcome_codes(found.outcome, found.impacts)
+    codes = overturning_code(found.outcome.astype(np.int64), found.impacts.astype(np.int64))
     return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
@@ -157,13 +157,12 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         # rounding must not lead out of the range
         omega = np.clip(np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
-        groups = np.broadcast_arrays(slenderness, omega, eta)
-        cells = [np.array(group).ravel() for group in groups]  # contiguous and writable
-        records, margin = solve(*cells)
+        s, w, e = np.broadcast_arrays(slenderness, omega, eta)
+        records, margin = solve(np.array(s).ravel(), np.array(w).ravel(), np.array(e).ravel())  # contiguous, writable
         if work is not None:
             work.add(records["impacts"])
         codes = code_of(Found(records["outcome"], records["impacts"], records["chatter"]))
-        return codes.reshape(groups[0].shape), margin.reshape(groups[0].shape)
+        return codes.reshape(s.shape), margin.reshape(s.shape)
 
     return classify
 
@@ -292,12 +291,13 @@ def refine_lines(
 
     def resolution_at(line: Index, below: Codes, above: Codes) -> Floats:
         many = np.where((below == UNCOUNTED) | (above == UNCOUNTED), uncounted[line], RESOLUTION)
-        return np.where(without_layers(below) == without_layers(above), layers[line], many)
+        regions = without_layers(np.stack([below, above]))
+        return np.where(regions[0] == regions[1], layers[line], many)
 
     def refined(inner: Nodes, outer: Nodes) -> tuple[Nodes, Nodes]:
         """Where the outcome at the inner nodes ends before the outer ones: the last node within, the first beyond."""
         resolution = resolution_at(inner.line, inner.codes, outer.codes)
-        ends, margins = (np.stack(each, axis=1) for each in ((inner.x, outer.x), (inner.margin, outer.margin)))
+        ends, margins = np.stack([inner.x, outer.x], axis=1), np.stack([inner.margin, outer.margin], axis=1)
         found = refine_brackets(axis, points[inner.line], ends, margins, inner.codes, outer.codes, classify, resolution)
         (x, beyond), (margin, margin_beyond) = found.ends.T, found.margins.T
         return Nodes(inner.line, x, inner.codes, margin), Nodes(inner.line, beyond, found.met, margin_beyond)

@@ -136,6 +136,8 @@ class Tracer:
         while todo and self.work.done < most:
             wanted: dict[int, list[Floats]] = defaultdict(list)
             matched = {k: match_thresholds(self.columns[k], self.columns[k + 1]) for k in sorted(todo)}
+            # a region without partner in the next column is looked for there, where its slope leads; what is found is a
+            # new node of that column and looked for in the one after it. No place is tried twice, so the loop ends
             for k in [*matched, *reversed(matched)]:  # slopes pass from panel to panel in both directions
                 learn_slopes(self.columns[k], self.columns[k + 1], matched[k])
             for k, pairs in matched.items():
@@ -181,6 +183,8 @@ class Tracer:
                 pairs = match_thresholds(panel.left, panel.right)
                 learn_slopes(panel.left, panel.right, pairs)
                 self.joins[panel.line] += panel.sides(pairs)
+                # only the parts of a panel in which the columns differ are halved; in a part narrower than the end
+                # distance the regions end, and it counts as an open end if the effort ran out before
                 for gap in panel.gaps(pairs):
                     if gap.step > self._end_distance(gap) and self.work.done < most:
                         halved.append(gap)
@@ -205,6 +209,7 @@ class Tracer:
         expected = [panel.expected(share) for panel, share in zip(panels, shares, strict=True)]
         nodes = [panel.nodes(courses, share) for panel, courses, share in zip(panels, expected, shares, strict=True)]
         found, codes = self._classified(points, nodes)
+        # regions that the first nodes should have met and did not get a second set of nodes, inside their courses
         more, _ = self._classified(
             points,
             [
@@ -217,7 +222,7 @@ class Tracer:
         halves: list[Panel] = []
         for i, panel in enumerate(panels):
             column = panel.bounded(made[i])
-            if column is None:
+            if column is None:  # the outcomes at the two sides of the panel do not go on to this column
                 self.joins[panel.line] += join_sides(panel.left, panel.right)
                 self._open[panel.line] += 1
             else:

@@ -22,6 +22,7 @@ from rocking._cli.options import (
     Duration,
     FrequencyRatioMax,
     FrequencyRatioMin,
+    HistoryOptions,
     OutputOptions,
     ProblemOptions,
     SpectrumOptions,
@@ -93,8 +94,8 @@ def response(
     file: Annotated[
         str | None,
         typer.Argument(
-            help="Table of many blocks: CSV, XLSX or ODS, - for standard input; columns width, height, "
-            "peak_acceleration, period and optionally name and restitution, with units in the header or in the cells.",
+            help="Table of many bodies: CSV, XLSX or ODS, - for standard input; columns width, height or those of "
+            "another kind, peak_acceleration, period, optionally name and restitution; units in header or cells.",
             metavar="FILE",
         ),
     ] = None,
@@ -121,19 +122,27 @@ def response(
 @app.command()
 @with_options
 def history(
-    block: ProblemOptions,
+    block: HistoryOptions,
     output: OutputOptions,
     duration: Duration = None,
-    samples: Annotated[int, typer.Option(help="Uniform samples; the events are added.", metavar="[NUMBER]")] = 400,
+    samples: Annotated[
+        int, typer.Option(help="Number of uniform samples; the events are added.", metavar="[NUMBER]")
+    ] = 400,
     contact: Annotated[
         bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.", metavar="")
     ] = False,
 ) -> None:
-    """Rotation and angular velocity of one block against time."""
+    """Rotation and angular velocity of one block against time, under a pulse or released from a rotation."""
+    from rocking._base.errors import InvalidArgumentError
     from rocking._cli import arguments, printing
 
-    with arguments.option_errors():
+    with arguments.option_errors({"motion": "--pulse"}):
         form = printing.output_format(output, block)
+        if block.start is not None:
+            printing.released(block, duration, samples, contact, form)
+            return
+        if not block.pulse:
+            raise InvalidArgumentError("pulse", None, "a pulse, or --start, the rotation of a release")
         params = arguments.read_params(block)
         printing.history(params, arguments.read_duration(duration, params), samples, contact, form)
 
@@ -146,7 +155,9 @@ def spectrum(
     output: OutputOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
-    points: Annotated[int, typer.Option(help="Points, spaced evenly in the logarithm.", metavar="[NUMBER]")] = 24,
+    points: Annotated[
+        int, typer.Option(help="Number of points, spaced evenly in the logarithm.", metavar="[NUMBER]")
+    ] = 24,
 ) -> None:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
@@ -194,7 +205,7 @@ def pulses(output: OutputOptions) -> None:
 @app.command()
 @with_options
 def units(output: OutputOptions) -> None:
-    """Names of units, for options and for tables; the case of letters, blanks and signs of a power do not matter."""
+    """Names of units, for options and tables. Case, blanks and signs of a power do not matter."""
     from rocking._base.units import EXAMPLES, UNITS
     from rocking._cli import printing
 
@@ -222,7 +233,7 @@ def serve(
     results: Annotated[
         str | None,
         typer.Option(
-            help="Folder that the workflow filled; by default ROCKING_RESULTS, or results.",
+            help="Folder with the data sets of the workflow; by default ROCKING_RESULTS, or results.",
             show_default=False,
             metavar="[FOLDER]",
         ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,7 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, number, si_value
+from rocking._base.errors import (
+    InvalidArgumentError,
+    SeveralArgumentsError,
+    UnreadableFileError,
+    number,
+    si_value,
+)
 from rocking._base.quantities import FREQUENCY_RATIO, PEAK_ACCELERATION, PERIOD, RESTITUTION
 from rocking._base.units import split_quantity, unit_name
 from rocking._cli.options import BODY, BodyOptions, ProblemOptions, ShapeOptions, SpectrumOptions, WindowOptions
@@ -24,7 +31,10 @@ if TYPE_CHECKING:
     from rocking._dimensional.table import BlockTable
     from rocking._model.body import AbstractBody
 
-SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD)} | {"period_min": "s", "period_max": "s"}
+SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD) if one.unit not in ("", "-")} | {
+    "period_min": "s",
+    "period_max": "s",
+}
 """Options with units."""
 
 MAX_ERRORS = 20  # lines of a file that an error names at most
@@ -79,6 +89,8 @@ def _error_text(error: InvalidArgumentError) -> str:
         text = f"missing; {error.allowed}"
     if error.allowed.startswith("missing unit"):
         text = f"{error.value!r}: {error.allowed}"
+    if isinstance(error, UnreadableFileError):
+        text = f"{error.value!r}: {error.reason}"
     return f"{place}: {text}" if place else text
 
 
@@ -94,6 +106,8 @@ def read_pulse(text: str) -> AbstractPulse:
     except InvalidArgumentError as error:
         if error.parameter != "path":
             raise
+        if isinstance(error, UnreadableFileError) and re.search(r"[./\\]", name):
+            raise UnreadableFileError("pulse", text, error.reason) from None
         allowed = f"one of {', '.join(pulse_names())}, or {error.allowed}"
         raise InvalidArgumentError("pulse", text, allowed) from None
     return found.mirrored() if text.startswith("-") else found

@@ -31,7 +31,7 @@ HINTS = {
     "path": "--mesh",
     "columns": "--columns",
 }
-"""Where a value was given, by the argument that an error names; others have the name of the option."""
+"""The option or file of each argument that an error names; other arguments are options of the same name."""
 
 Texts = list[str] | None
 
@@ -51,18 +51,18 @@ def assess(
     column: Annotated[
         Texts,
         said(
-            'What a column of the table is: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
+            'Meaning of a column: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
             "HEADER=NAME",
             "--columns",
         ),
     ] = None,
     mesh: Annotated[
         Texts,
-        said("Closed surface of an object (STL, PLY, OBJ, ...), z upwards, from all sides; may be repeated.", "FILE"),
+        said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE"),
     ] = None,
     mesh_unit: Annotated[str, said("Unit of the lengths of the meshes: m, cm, mm, in, ft.", "UNIT")] = "m",
     friction: Annotated[
-        float | None, said("Coefficient of friction of the meshes; none by default: sliding is not judged.", "-")
+        float | None, said("Coefficient of friction of the meshes; without it sliding is not assessed.", "-")
     ] = None,
     pga: Annotated[str | None, option(PGA)] = None,
     pgv: Annotated[str | None, option(PGV)] = None,
@@ -82,11 +82,13 @@ def assess(
     component: Component = None,
     skip: Skip = None,
     baseline_order: BaselineOrder = None,
-    hazard: Annotated[str | None, said("Hazard curve of PGA of the site, as of OpenQuake or the USGS.", "FILE")] = None,
+    hazard: Annotated[
+        str | None, said("Hazard curve of PGA of the site, for instance from OpenQuake or the USGS.", "FILE")
+    ] = None,
     floor_periods: Annotated[
         str | None,
         said(
-            "Periods of a building of which the objects are on a floor: 0.5s,0.2s.",
+            "Periods of the building, for objects on a floor: 0.5s,0.2s.",
             "s,s,...",
             "--floor-periods",
             "--floor",
@@ -98,7 +100,7 @@ def assess(
     ] = "1",
     shapes: Annotated[
         str | None,
-        said("Pulses, such as sine,ricker; by default all by name that leave the ground at rest.", "NAME,NAME,..."),
+        said("Pulses, such as sine,ricker; by default the seven that leave the ground at rest.", "NAME,NAME,..."),
     ] = None,
     moving_ground: Annotated[
         bool, said("Also pulses that leave the ground moving: half sine, rectangular.", "", "--moving-ground")
@@ -106,7 +108,7 @@ def assess(
     sensitivity: Annotated[
         bool,
         said(
-            "Whether to find the factors of changed objects and the sizes that are not overturned.",
+            "Whether to find the factors of changed objects and the sizes that survive.",
             "",
             "--sensitivity/--no-sensitivity",
         ),
@@ -120,11 +122,11 @@ def assess(
         ),
     ] = "",
     samples: Annotated[
-        int, said("Variants of each object within its tolerance that are tried, such as 10000.", "NUMBER")
+        int, said("Number of variants of each object within its tolerance to try, such as 10000.", "NUMBER")
     ] = 0,
     seed: Annotated[int, said("Seed of these variants.", "NUMBER")] = 0,
     resolution: Annotated[
-        float, said("Largest relative distance of the factors on a record that are tried, 0.0001 to 0.1.", "-")
+        float, said("Largest relative distance between the factors tried on a record, 0.0001 to 0.1.", "-")
     ] = 0.005,
     output: Annotated[
         str | None, said("CSV or XLSX file to write: the table as given, and all columns.", "FILE", "--output", "-o")
@@ -290,7 +292,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
         return
     printing.print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
     if found.resolution:
-        typer.echo(f"factors on records: at most {100.0 * found.resolution:g} % apart were tried")
+        typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart were tried")
     for text, names in warnings_of(found):
         count = f"{len(names)} object{'s' if len(names) > 1 else ''}"
         typer.echo(f"warning: {count}: {printing.printable(f'{text}: {names_in_short(names)}')}")

@@ -41,11 +41,12 @@ def fragility(
     configuration: Configuration,
     output: OutputOptions,
     table: Annotated[
-        Literal["levels", "curves", "sensitivity"],
+        Literal["levels", "curves", "distribution", "sensitivity"],
         typer.Option(
             "--table",
-            help="What --format csv holds: counts at each level; fitted curves; friction demand, and the effect of "
-            "restitution and sampling, if the configuration asks for them.",
+            help="What --format csv holds: counts at each level; fitted curves; the distribution of the peak rotation "
+            "at each level; friction demand, and the effect of restitution and sampling, if the configuration asks "
+            "for them.",
         ),
     ] = "levels",
     hazard: Annotated[
@@ -72,7 +73,7 @@ def fragility(
     from rocking.suites.files import ENDINGS
     from rocking.suites.hazard import annual_rate
     from rocking.suites.hazard_files import read_hazard
-    from rocking.suites.table import curve_table, finite, fragility_table
+    from rocking.suites.table import curve_table, distribution_table, finite, fragility_table
 
     with configuration_errors():
         form = printing.output_format(output)
@@ -97,6 +98,8 @@ def fragility(
             _write(found, file)
             return
     tables = {"levels": fragility_table(found), "curves": curve_table(found)}
+    if table == "distribution":
+        tables[table] = distribution_table(found)
     if suite.sensitivity is not None and (form.kind != "csv" or table == "sensitivity"):
         tables["sensitivity"] = _sensitivity(suite)
     unit = found["intensity"].attrs["units"]
@@ -121,7 +124,7 @@ def fragility(
 
 
 def _write(found: xr.Dataset, file: str) -> None:
-    """Write a fragility; an error names what cannot be written."""
+    """Write a fragility to a file; an error names the path."""
     from rocking._base.errors import InvalidArgumentError
     from rocking.suites.files import write_fragility
 
@@ -170,6 +173,7 @@ def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
     from rocking.suites.table import sensitivity_table
 
     assert suite.sensitivity is not None
+    assert isinstance(suite.blocks, tuple)  # by `suite_configuration`
     with configuration_errors(), file_errors(), progress("solving the blocks with other restitution and sampling"):
         found = suite_sensitivity(
             suite.motions(),
@@ -191,13 +195,13 @@ def configuration_errors() -> Iterator[None]:
     try:
         yield
     except InvalidArgumentError as error:
-        message = f"{error.parameter} = {error.value!r} is not allowed; allowed: {error.allowed}"
+        message = str(error).replace("`", "")
         raise typer.BadParameter(message, param_hint="CONFIGURATION") from None
 
 
 def _read(path: Path) -> dict[str, Any]:
     """The mapping in a file, by the ending of its name."""
-    from rocking._base.errors import InvalidArgumentError
+    from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 
     try:
         text = path.read_text(encoding="utf-8")
@@ -207,7 +211,9 @@ def _read(path: Path) -> dict[str, Any]:
             found = json_format.loads(text)
         else:
             found = _yaml(text)
-    except (OSError, ValueError, RecursionError) as error:  # brackets within brackets
+    except OSError as error:
+        raise UnreadableFileError("file", str(path), error) from None
+    except (ValueError, RecursionError) as error:  # brackets within brackets
         raise InvalidArgumentError("file", str(path), f"a readable configuration ({error})") from None
     if not isinstance(found, dict):
         raise InvalidArgumentError("file", str(path), "a mapping of keys to values")

@@ -25,11 +25,11 @@ def identify(
         ),
     ],
     output: OutputOptions,
-    degrees: Annotated[
-        bool, said("The rotations are in degrees, where the header states no unit.", "", "--degrees")
-    ] = False,
-    time_step: Annotated[str | None, option(TIME_STEP, text="Time between the rows where the file counts them")] = None,
-    edges: Annotated[int, said("1 for a body with equal edges, 2 for one with a right and a left edge.", "1|2")] = 1,
+    degrees: Annotated[bool, said("Rotations are in degrees if the header states no unit.", "", "--degrees")] = False,
+    time_step: Annotated[
+        str | None, option(TIME_STEP, text="Time between the rows if the file only counts them")
+    ] = None,
+    edges: Annotated[int, said("1: equal edges; 2: a right and a left edge.", "1|2")] = 1,
     confidence: Annotated[float, said("Confidence of the intervals, (0, 1).", "-")] = 0.95,
 ) -> None:
     """Restitution, slenderness angle and frequency parameter from a trace of free rocking, with intervals."""
@@ -64,7 +64,7 @@ def _columns() -> list[str]:
 def _found(path: str, degrees: bool, time_step: str | None, edges: int, confidence: float) -> xr.Dataset:
     from pathlib import Path
 
-    from rocking._base.errors import InvalidArgumentError, RecordFileError, number
+    from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError, number
     from rocking._cli.record import with_options_named
     from rocking._evidence.free_rocking import identify_free_rocking
     from rocking._excitation.records.readers.columns import read_rotations
@@ -76,7 +76,8 @@ def _found(path: str, degrees: bool, time_step: str | None, edges: int, confiden
         file = TextFile(Path(path).name, Path(path).read_bytes())
         time, rotation = read_rotations(file, MAX_SAMPLES, degrees or None, step)
     except OSError as error:
-        raise typer.BadParameter(f"{path}: {error.strerror}", param_hint="FILE") from None
+        reason = UnreadableFileError("path", path, error).reason
+        raise typer.BadParameter(f"{path}: {reason}", param_hint="FILE") from None
     except RecordFileError as error:
         raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
     try:

@@ -27,10 +27,13 @@ from rocking._base.quantities import (
     OFFSET,
     PEAK_ACCELERATION,
     PERIOD,
+    REBOUND,
     RESTITUTION,
     RIGHT,
     SCALE,
+    SIDES,
     SLENDERNESS,
+    START,
     TIME_STEP,
     WIDTH,
 )
@@ -72,7 +75,7 @@ def _bodies(incomplete: str) -> list[str]:
     return [name for name in BODIES if name.startswith(incomplete)]
 
 
-BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT)
+BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT, SIDES, REBOUND)
 """Parameters of bodies that are options of their own."""
 
 
@@ -88,11 +91,13 @@ class BodyOptions:
     diameter: Annotated[str | None, option(DIAMETER, panel=_UNITS)] = None
     left: Annotated[str | None, option(LEFT, panel=_UNITS)] = None
     right: Annotated[str | None, option(RIGHT, panel=_UNITS)] = None
+    sides: Annotated[str | None, option(SIDES, panel=_UNITS)] = None
+    rebound: Annotated[str | None, option(REBOUND, panel=_UNITS)] = None
     body: Annotated[
         str | None,
         typer.Option(
             help=f"A body of any kind in place of these, such as 'hollow(width=40cm, height=1.6m, wall=2cm)': "
-            f"{signatures().replace('[', '(').replace(']', ')')}.",
+            f"{signatures().replace('[', '(').replace(']', ')')}; rigid ones also with sides and rebound.",
             rich_help_panel=_UNITS,
             metavar="[KIND]",
             autocompletion=_bodies,
@@ -100,19 +105,22 @@ class BodyOptions:
     ] = None
 
 
+Pulse = Annotated[
+    str,
+    typer.Option(
+        help="Pulse, such as sine or 'mavroeidis_papageorgiou(cycles=3, phase=90deg)', or a file of samples: "
+        "columns of numbers (accelerations, or times and accelerations) or JSON; a leading minus mirrors it.",
+        metavar="[NAME|FILE]",
+        autocompletion=_pulses,
+    ),
+]
+
+
 @dataclass(frozen=True, kw_only=True)
 class ShapeOptions(BodyOptions):
     """A pulse without amplitude and a block: its slenderness angle, or its size."""
 
-    pulse: Annotated[
-        str,
-        typer.Option(
-            help="Pulse, such as sine or 'mavroeidis_papageorgiou(cycles=3, phase=90deg)', or a file of samples: "
-            "columns of numbers (accelerations, or times and accelerations) or JSON; a leading minus mirrors it.",
-            metavar="[NAME|FILE]",
-            autocompletion=_pulses,
-        ),
-    ]
+    pulse: Pulse
     restitution: Annotated[str | None, option(RESTITUTION)] = None
     alpha: Annotated[str | None, option(ALPHA, panel=_GROUPS)] = None
 
@@ -125,6 +133,14 @@ class ProblemOptions(ShapeOptions):
     frequency_ratio: Annotated[float | None, option(FREQUENCY_RATIO, panel=_GROUPS)] = None
     peak_acceleration: Annotated[str | None, option(PEAK_ACCELERATION, panel=_UNITS)] = None
     period: Annotated[str | None, option(PERIOD, panel=_UNITS)] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class HistoryOptions(ProblemOptions):
+    """The same, or a body that is released."""
+
+    pulse: Pulse = ""
+    start: Annotated[str | None, option(START, panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,15 +161,17 @@ class SpectrumOptions(WindowOptions):
 
 Component = Annotated[
     str | None,
-    said("Column or trace of a file with several; rows for one series along the rows of several columns.", "NAME"),
+    said(
+        "Column or trace to read from a file with several; rows: one series along the rows of several columns.", "NAME"
+    ),
 ]
 Skip = Annotated[
     int | None,
-    said("Rows of numbers above the samples of a file of columns, such as a count or a factor.", "NUMBER"),
+    said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER"),
 ]
 BaselineOrder = Annotated[
     int | None,
-    said("Remove a baseline of this degree, 0 to 6; none by default, but for the offset of K-NET counts.", "NUMBER"),
+    said("Remove a baseline of this degree, 0 to 6; by default only the offset of K-NET counts.", "NUMBER"),
 ]
 
 
@@ -189,7 +207,7 @@ class OutputOptions:
         Literal["table", "csv", "json"],
         typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
     ] = "table"
-    all: Annotated[bool, said("All values in the table; CSV and JSON always have them.", "", "--all")] = False
+    all: Annotated[bool, said("Show all values; CSV and JSON always have them.", "", "--all")] = False
 
 
 @dataclass(frozen=True)

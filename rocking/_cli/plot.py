@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from rocking._cli.fragility import Configuration
 from rocking._cli.options import (
     Duration,
     FrequencyRatioMax,
@@ -200,16 +201,38 @@ def cube(
 
 @plot.command()
 @with_options
-def fragility(
-    configuration: Annotated[
-        str,
-        typer.Argument(
-            help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.",
-            metavar="CONFIGURATION",
-        ),
-    ],
-    picture: PictureOptions,
-) -> None:
+def distribution(configuration: Configuration, picture: PictureOptions) -> None:
+    """Distributions of the peak rotation under a suite of records at five of its levels, one panel for each block."""
+    from rocking._cli.fragility import read_suite, suite_fragility
+
+    with _picture(picture) as draw:
+        data = suite_fragility(read_suite(configuration))
+
+        def panels(pictures: Any, figure: Any) -> None:
+            from rocking.plot.style import shades
+            from rocking.suites.distribution import distribution as distribution_of
+            from rocking.suites.table import with_block
+
+            found = distribution_of(with_block(data))
+            levels = sorted({round(k * (found.sizes["intensity"] - 1) / 4) for k in range(5)})
+            axes = figure.subplots(1, found.sizes["block"], sharex=True, sharey=True, squeeze=False)[0]
+            figure.set_size_inches(0.6 + 2.8 * len(axes), 3.2)
+            for block, ax in enumerate(axes):
+                one = found.isel(block=block)
+                for level, colour in zip(levels, shades(len(levels)), strict=True):
+                    at = one.isel(intensity=level)
+                    pictures.distribution(at, ax, color=colour, label=f"{at['intensity'].item():.3g}")
+                ax.set_title(f"{float(one['width']):g} m x {float(one['height']):g} m", loc="right")
+                ax.label_outer()
+            title = f"{found['intensity'].attrs['long_name']} [{found['intensity'].attrs['units']}]"
+            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, title=title)
+
+        draw(panels)
+
+
+@plot.command()
+@with_options
+def fragility(configuration: Configuration, picture: PictureOptions) -> None:
     """Fragility curves of the first limit state of a suite of records, one panel for each block."""
     from rocking._cli.fragility import read_suite, suite_fragility
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import typer
 
-from rocking._base.errors import finite, in_range
+from rocking._base.errors import finite, in_range, reject_given
 from rocking._base.units import UNITS
 from rocking._cli.arguments import Params, given_units, unit_period
-from rocking._cli.options import OutputOptions
+from rocking._cli.options import HistoryOptions, OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.fields import FIELDS, JUDGED
@@ -79,7 +79,7 @@ def response(params: Params, form: Form) -> None:
 
 
 def body_columns(found: BodyResponse) -> dict[str, Any]:
-    """What is printed of one body, by name; of one with two edges also its size."""
+    """The printed values of one body, by name; also the size of a body with two edges."""
     strengths = (
         {} if "record" in found.motion else {"peak_acceleration": found.peak_acceleration, "period": found.period}
     )
@@ -108,7 +108,7 @@ def print_answer(result: dict[str, Any], sentences: Sequence[str], form: Form) -
 
 
 def _response(params: Params) -> tuple[dict[str, Any], str]:
-    """What is printed of one block, by name, and the outcome in words."""
+    """The printed values of one block, by name, and the outcome in words."""
     if params.problem is not None:
         from rocking._dimensional.response import respond
 
@@ -154,7 +154,7 @@ _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
 
 
 _FIRST_LINES = (
-    *("edge", "rotation_left_deg", "rotation_right_deg"),
+    *("direction_deg", "edge", "rotation_left_deg", "rotation_right_deg"),
     *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_surviving_acceleration", "thresholds"),
     *("nearest_acceleration", "nearest_period", "period", "pulse_duration", "overturning_scale"),
     *("peak_rotation", "impacts", "restitution", "friction_demand"),
@@ -166,7 +166,7 @@ _IN_GROUPS = ("peak_rotation", "impacts", "exceeded_alpha", "error_bound", "fric
 """The same of a block in groups."""
 
 _NO_LINES = ("meaning", "margin", "warnings", "notes", "overturns_above")
-"""What the text output says before the values, or in one line with another value."""
+"""Values that the text output states before the others, or in one line with another."""
 
 _UNITS = {
     **{one.label: one.label_unit for one in (*FIELDS, *JUDGED) if one.unit != "1"},
@@ -174,7 +174,7 @@ _UNITS = {
     **dict.fromkeys(("frequency_parameter_lower", "frequency_parameter_upper"), "rad/s"),
     "angular_velocity_deg": "deg/s",
     "annual_rate": "1/year",
-    "rotation_deg": "deg",
+    **dict.fromkeys(("rotation_deg", "direction_deg"), "deg"),
     **dict.fromkeys(("time", "impact_time_s", "time_step", "significant_duration", "mean_period"), "s"),
     **dict.fromkeys(("mass_height", "left", "right", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
@@ -260,10 +260,33 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
 def _body_history(problem: Problem, duration: float | None, samples: int, contact: bool, form: Form) -> None:
     """Print the motion of a body under a pulse, as `history`; with the edge in contact: 1 right, -1 left, 0 both."""
     from rocking._dimensional.curves import history as history_of
-    from rocking._history.contact import COLUMNS
 
     with progress("solving the body"):
-        motion = history_of(problem, duration=duration, samples=samples, contact=contact)
+        _print_motion(history_of(problem, duration=duration, samples=samples, contact=contact), form)
+
+
+def released(options: HistoryOptions, duration: str | None, samples: int, contact: bool, form: Form) -> None:
+    """Print the motion of a body that is released, as `history` of a body."""
+    from rocking._cli.arguments import read_body, read_eta
+
+    stated = {name: getattr(options, name) for name in ("slenderness", "frequency_ratio", "alpha")}
+    reject_given("a release", **stated)
+    motion = read_body(options).history(
+        options.pulse or None,
+        start=options.start,
+        peak_acceleration=options.peak_acceleration,
+        period=options.period,
+        restitution="momentum" if options.restitution is None else read_eta(options.restitution),
+        duration=duration,
+        samples=samples,
+        contact=contact,
+    )
+    _print_motion(motion, form)
+
+
+def _print_motion(motion: xr.Dataset, form: Form) -> None:
+    from rocking._history.contact import COLUMNS
+
     columns = _si_columns(motion) | {"edge": motion["edge"].values.tolist()}
     columns |= {name: [finite(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
     names = ("outcome", "impacts", "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio", "warnings")

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -13,6 +16,7 @@ from rocking._cli.options import OutputOptions, RecordOptions, said, with_option
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
+    from rocking._dimensional.response import BodyResponse
     from rocking._excitation.records.record import Record
     from rocking._model.block import AbstractBlock
 
@@ -31,24 +35,41 @@ def record(
     block: RecordOptions,
     output: OutputOptions,
     thresholds: Annotated[
-        bool, said("Whether to find all scales at which the outcome changes.", "", "--thresholds/--no-thresholds")
+        bool, said("Find all factors at which the outcome changes.", "", "--thresholds/--no-thresholds")
     ] = True,
-    fit: Annotated[bool, said("Fit a pulse, and compare how both overturn the block.", "", "--fit")] = False,
+    fit: Annotated[bool, said("Fit a pulse and compare when both overturn the block.", "", "--fit")] = False,
+    second: Annotated[
+        str | None,
+        said("Second horizontal component, a file or a column: of all directions the worst one is taken.", "FILE|NAME"),
+    ] = None,
 ) -> None:
-    """Outcome and peak rotation of a block under a recorded ground motion, by the solver."""
+    """Outcome and peak rotation of a block under a recorded ground motion, by the solver.
+
+    With a second component the motion is turned in steps of 15 degrees from the first towards the second one. The worst
+    direction overturns from the lowest factor, or else without thresholds at the scale, or rotates the block most.
+    """
     from rocking._base.errors import InvalidArgumentError
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
     from rocking._model.block import AbstractBlock
 
-    with option_errors(), file_errors():
+    with option_errors({"records": "--second"}), file_errors():
         form = printing.output_format(output, block)
         motion, body, restitution = read_problem(file, block)
         if fit and not isinstance(body, AbstractBlock):
             raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
         with progress("solving the block under the record"):
-            found = body.response(motion, scale=block.scale, restitution=restitution, thresholds=thresholds)
+            given: dict[str, Any] = {"scale": block.scale, "restitution": restitution, "thresholds": thresholds}
+            direction: dict[str, float] = {}
+            if second is None:
+                found = body.response(motion, **given)
+            else:
+                apart = Path(second).is_file()
+                other = replace(block, component=None if apart else second, vertical=None)
+                pair = motion, read_problem(second if apart else file, other)[0]
+                angle, motion, found = _worst_direction(body, pair, given)
+                direction = {"direction_deg": angle}
             about = printing.body_columns(found)
             changes = about.pop("thresholds")
             if changes is None:
@@ -60,22 +81,44 @@ def record(
             if isinstance(body, AbstractBlock):
                 about |= {"alpha": body.alpha} | (_fitted(motion, body) if fit else {})
         sentences = [text for text in (about["meaning"], about["margin"]) if text]
+        about |= direction
     printing.print_answer(about, sentences, form)
+
+
+def _worst_direction(
+    body: RespondingBody, pair: tuple[Record, Record], given: dict[str, Any]
+) -> tuple[float, Record, BodyResponse]:
+    """The worst angle from the first towards the second component [degrees], the motion along it, the response."""
+    from rocking._assessment.site import PAIR_ANGLES, checked_pair, rotated
+    from rocking.suites.body_outcomes import mirrored
+
+    checked_pair(pair)
+    motions = [one for _, one in rotated(*pair)]
+    if not body.is_block:
+        motions = [*motions, *map(mirrored, motions)]  # in the opposite directions
+    found = [(180.0 * k / PAIR_ANGLES, one, body.response(one, **given)) for k, one in enumerate(motions)]
+
+    def order(one: tuple[float, Record, BodyResponse]) -> tuple[float, bool, float]:
+        known = one[2].overturning_scale if given["thresholds"] else None
+        overturned = bool(one[2].overturned)
+        return math.inf if known is None else known, not overturned, 0.0 if overturned else -float(one[2].rotation)
+
+    return min(found, key=order)
 
 
 @contextmanager
 def file_errors() -> Iterator[None]:
     """Convert an error of a file into an error of the command line: file, line, what was found, what was expected."""
-    from rocking._base.errors import InvalidArgumentError, RecordFileError
+    from rocking._base.errors import RecordFileError, UnreadableFileError
 
     try:
         yield
     except RecordFileError as error:
         raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
-    except InvalidArgumentError as error:
+    except UnreadableFileError as error:
         if error.parameter != "path":
             raise
-        raise typer.BadParameter(f"{error.value}: not {error.allowed}", param_hint="FILE") from None
+        raise typer.BadParameter(f"{error.value}: {error.reason}", param_hint="FILE") from None
 
 
 def with_options_named(message: str) -> str:
@@ -107,7 +150,7 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingB
 
 
 def _measures(motion: Record) -> dict[str, Any]:
-    """What is printed of a record, by name."""
+    """The printed values of a record, by name."""
     from rocking._base.errors import finite
 
     return {
@@ -127,7 +170,7 @@ def _measures(motion: Record) -> dict[str, Any]:
 
 
 def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
-    """What is printed of the pulse that is fitted to a record, by name."""
+    """The printed values of the pulse fitted to a record, by name."""
     from rocking._base.errors import finite
     from rocking.suites.pulse_fit import fit_pulse
 

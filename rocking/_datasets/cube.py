@@ -35,6 +35,7 @@ from numpy.typing import ArrayLike
 
 from rocking._base.errors import DatasetError, RockingError
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
+from rocking._base.version import AUTHORS, __version__
 from rocking._datasets.checksum import PARTIAL, append_checksum, find_damage
 from rocking._datasets.netcdf import open_netcdf, write_netcdf
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
@@ -71,8 +72,9 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     "stencil": (
         "i1",
         {"long_name": "kind of interpolation", "equation": "3.2",
-         "comment": "of peak_rotation in the cell above the node: four-point Lagrange in slenderness and "
-                    "log(frequency_ratio) over the 16 nodes around the cell",
+         "comment": "what a lookup interpolates in the cell above the node, by four-point Lagrange in slenderness and "
+                    "log(frequency_ratio) over the 16 nodes around the cell: peak_rotation p, or (1 - p)^2, which is "
+                    "smooth up to the boundary of overturning, or the outcome alone, or nothing",
          "flag_values": np.array([NO_STENCIL, PEAK, SQUARED, OVERTURNS], dtype=np.int8),
          "flag_meanings": "not_interpolated peak_rotation square_of_1_minus_peak_rotation all_overturn_alike"},
     ),
@@ -111,9 +113,10 @@ VARIABLES["peak_rotation"][1]["ancillary_variables"] = "outcome peak_mode stenci
 
 _GLOBAL = {
     "Conventions": "CF-1.11, ACDD-1.3",
-    "institution": "The rocking developers",
-    "creator_name": "The rocking developers",
-    "creator_type": "group",
+    **dict.fromkeys(("institution", "creator_name", "creator_institution"), AUTHORS),
+    **dict.fromkeys(("publisher_name", "publisher_institution"), AUTHORS),
+    **dict.fromkeys(("creator_type", "publisher_type"), "group"),
+    "product_version": __version__,
     "license": "CC-BY-4.0",
     "references": "Dimitrakopoulos and DeJong (2012), https://doi.org/10.1098/rspa.2012.0026",
     "keywords": "rocking block, overturning, response spectrum, self-similarity, earthquake engineering",

@@ -12,4 +12,9 @@ from typing import Any
 
 def settings_digest(settings: Mapping[str, Any]) -> str:
     """sha256 (hex) of settings (numbers, strings, lists, mappings), independent of the order of their keys."""
-    return hashlib.sha256(json.dumps(settings, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(settings_text(settings).encode()).hexdigest()
+
+
+def settings_text(settings: Mapping[str, Any]) -> str:
+    """The settings as JSON with sorted keys, of which `settings_digest` is the digest."""
+    return json.dumps(settings, sort_keys=True)

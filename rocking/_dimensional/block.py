@@ -10,7 +10,7 @@ from rocking._model.block import RectangularBlock
 
 @final
 class Block(RectangularBlock, RespondingBody):
-    """A free-standing rigid rectangular block of uniform density (figure 1), and what ground motions do to it.
+    """A free-standing rigid rectangular block of uniform density (figure 1) and its responses to ground motions.
 
     All arguments may be arrays, which broadcast: an array of blocks; labelled ones (xarray) by the names of their
     dimensions.

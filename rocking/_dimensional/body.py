@@ -1,4 +1,4 @@
-"""Bodies with two edges and their responses in SI units: what `rocking.RigidBody` and bodies of one's own share."""
+"""Bodies with two edges and their responses in SI units: what `rocking.RigidBody` and bodies of your own share."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
-from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION
+from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION, START
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
-from rocking._dimensional.curves import boundary, history, over_axis, spectrum
+from rocking._dimensional.curves import boundary, history, over_axis, release, spectrum
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import (
     STRENGTHS,
@@ -40,7 +40,9 @@ Array = NDArray[np.float64]
 
 
 class RespondingBody(AbstractBody):
-    """Responses of anything that rocks about two edges. A body of one's own derives from it and states its edges.
+    """Base of every body that rocks about two edges: responses, thresholds, histories.
+
+    A body of your own derives from it and states its edges.
 
     Its properties `right`, `left`, `gravity`, `top_height` and `description` are those of
     `rocking._model.body.AbstractBody`. They may be arrays, which broadcast with the arguments.
@@ -128,7 +130,7 @@ class RespondingBody(AbstractBody):
         return respond(problem, threads, stop, thresholds=thresholds)
 
     def _labelled_response(self, motion: Motion, given: dict[str, Any], options: dict[str, Any]) -> xr.Dataset:
-        """The response to labelled arguments, or of a body that is made from some."""
+        """The response to labelled arguments, or of a body built from labelled values."""
         eta, own = given.pop("restitution"), self.labels
         if not is_labelled(eta):
             eta = checked_restitution(eta)
@@ -283,8 +285,9 @@ class RespondingBody(AbstractBody):
 
     def history(
         self,
-        motion: Motion,
+        motion: Motion | None = None,
         *,
+        start: Scalar | None = None,
         peak_acceleration: Scalar | None = None,
         period: Scalar | None = None,
         scale: Scalar | None = None,
@@ -300,8 +303,11 @@ class RespondingBody(AbstractBody):
         ----------
         motion, peak_acceleration, period, scale, restitution
             As for `response`; numbers.
+        start : float, optional
+            In place of a motion: the rotation from which the body is released at rest [rad], in (-pi/2, pi/2), not 0,
+            or a text such as "3 deg"; positive about the right edge.
         duration : float, optional
-            Length [s], > 0; by default the motion and 8/p after it, of the right edge.
+            Length [s], > 0; by default the motion and 8/p after it, of the right edge; 16/p after a release.
         samples : int, optional
             Uniform samples, 2 to 1,000,000; by default 400 under a pulse, and those of a record. The uplift, impacts
             and the end of the motion are added.
@@ -328,6 +334,14 @@ class RespondingBody(AbstractBody):
         """
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
+        if start is not None:
+            reject_given("a release", motion=motion, peak_acceleration=peak_acceleration, period=period, scale=scale)
+            angle = START.number(start)
+            if angle == 0.0:
+                raise InvalidArgumentError("start", start, "a rotation other than 0")
+            return release(self, angle, restitution, length, 400 if samples is None else samples, contact, stop)
+        if motion is None:
+            raise InvalidArgumentError("motion", None, "a pulse or a record, or the rotation `start`")
         problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
         return history(problem, duration=length, samples=samples, contact=contact, stop=stop)
 
@@ -347,7 +361,7 @@ class RespondingBody(AbstractBody):
         return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
 
     def _need_one(self, name: str, restitution: Scalar, **numbers: Scalar | None) -> None:
-        """Refuse an array of bodies, and arrays as arguments that are one number."""
+        """Refuse an array of bodies, and arrays where one number is needed."""
         if self.shape:
             raise InvalidArgumentError(name, f"bodies of shape {self.shape}", "one body")
         eta = spread_restitution(self, restitution)
@@ -360,7 +374,7 @@ class RespondingBody(AbstractBody):
 
 @dataclass(frozen=True, eq=False)
 class ScaledBody(RespondingBody):
-    """A body with all lengths times a factor: p falls with the root of it."""
+    """A body with all lengths multiplied by a factor; p is divided by the root of the factor."""
 
     body: RespondingBody  # the body of factor 1
     size: Array  # the factor [-], > 0
@@ -405,6 +419,6 @@ class ScaledBody(RespondingBody):
 
 
 def _respond_part(make: Callable[..., RespondingBody], own: tuple[str, ...], motion: Motion, **values: Any) -> Any:
-    """The response to arguments as arrays, of the body that `make` makes from those of them that are its own."""
+    """The response to arguments as arrays; `make` builds the body from those that belong to it."""
     body = make(**{name: values.pop(name) for name in own})
     return RespondingBody.response(body, motion, **values)

@@ -2,24 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from rocking._base.kinds import Kind, kind_with, split_kind
+from rocking._base.quantity import Quantity
 from rocking._dimensional.bodies.composite import hollow, on_pedestal
-from rocking._dimensional.bodies.rigid import cylinder, mesh, offset_mass, outline, rectangle, two_edges
+from rocking._dimensional.bodies.rigid import cylinder, mesh, offset_mass, outline, rectangle, two_edges, with_wall
 from rocking._dimensional.bodies.structures import arch, frame, on_pivots, structure
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
 
-RIGID = (rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline, mesh)
+Makers = tuple[Callable[..., Any], ...]
+
+_RIGID: Makers = rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline, mesh
+RIGID = tuple(map(with_wall, _RIGID))
 """Rigid bodies, which an object of a table may be."""
 
+_ALL: Makers = *RIGID, frame, arch, on_pivots, structure
 BODIES: dict[str, Kind[RespondingBody]] = {
-    make.__name__: Kind(make, reads_files=make is mesh) for make in (*RIGID, frame, arch, on_pivots, structure)
+    make.__name__: Kind(make, reads_files=make.__name__ == mesh.__name__) for make in _ALL
 }
 """Where only parameters are given, the first kind that has them."""
+
+WITHOUT_FILES = {name: kind for name, kind in BODIES.items() if not kind.reads_files}
+"""What may be described by strangers: over HTTP, and in tables."""
+
+KIND = Quantity("body", "", "kind of body; absent: the one that its parameters determine")
+
+_TABLED = [WITHOUT_FILES[make.__name__] for make in RIGID if make.__name__ in WITHOUT_FILES]
+
+
+def columns_beside(own: Iterable[Quantity], *left_out: str) -> tuple[Quantity, ...]:
+    """The columns of tables of bodies: the kind, and the parameters of rigid ones that are not among a table's own."""
+    taken = {name for one in own for name in one.names} | {"gravity", *left_out}
+    found = {name: one for kind in _TABLED for name, one in kind.fields.items() if one.names[0] not in taken}
+    return (KIND, *found.values())
 
 
 def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingBody:
@@ -30,7 +49,8 @@ def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingB
     description : str or mapping
         The name of a kind, with its parameters and their units in brackets; or a mapping of the parameters, with `kind`
         unless they say which one it is. Kinds: rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal,
-        outline, mesh, frame, arch, on_pivots, structure.
+        outline, mesh, frame, arch, on_pivots, structure; all up to mesh also with `sides` and `rebound` of
+        `rocking.RigidBody`, for a wall at one side.
     **parameters
         The same as arguments: numbers in SI units, texts such as "40 cm", quantities of pint.
 
@@ -44,29 +64,43 @@ def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingB
     >>> body("cylinder", diameter="30 cm", height="1.2 m")
     <rocking.RigidBody: body on edges 0.15 m left and 0.15 m right of its mass at 0.6 m>
     """
+    kind, given = described(description, parameters)
+    return kind(**given)
+
+
+def described(
+    description: str | Mapping[str, Any] | None,
+    parameters: Mapping[str, Any],
+    kinds: Mapping[str, Kind[RespondingBody]] = BODIES,
+) -> tuple[Kind[RespondingBody], dict[str, Any]]:
+    """The kind of a body and its parameters as they are stated; the arguments and errors are those of `body`."""
     from rocking._base.errors import InvalidArgumentError, one_of  # noqa: PLC0415
 
     text: Any = description
     if isinstance(text, Mapping):
-        parameters = {str(key): value for key, value in text.items() if key != "kind"} | parameters
+        parameters = {str(key): value for key, value in text.items() if key != "kind"} | dict(parameters)
         text = text.get("kind")
-        kind = kind_with(BODIES, parameters)
-        if text is None and kind is not None:
-            return kind(**parameters)
+    kind = kind_with(kinds, parameters)
+    if text is None and kind is not None:
+        return kind, dict(parameters)
     parts = split_kind(text, "body") if isinstance(text, str) else None
     if parts is None or parts[0]:
         stated = ", ".join(parameters) if text is None else text
-        raise InvalidArgumentError("body", stated, f"the name or the parameters of one of: {signatures()}")
+        raise InvalidArgumentError("body", stated, f"the name or the parameters of one of: {signatures(kinds)}")
     if parts[2].keys() & parameters.keys():
         raise InvalidArgumentError("body", text, "each parameter once")
-    return BODIES[one_of("body", parts[1], BODIES)](**parts[2], **parameters)
+    return kinds[one_of("body", parts[1], kinds)], {**parts[2], **parameters}
 
 
 def signatures(kinds: Mapping[str, Kind[Any]] = BODIES) -> str:
     """The kinds with the parameters that they need, and those that they may have in square brackets."""
 
     def written(kind: Kind[Any]) -> str:
-        names = (name if name in kind.needed else f"[{name}]" for name in kind.fields if name != "gravity")
+        names = (
+            name if name in kind.needed else f"[{name}]"
+            for name in kind.fields
+            if name not in ("gravity", "sides", "rebound")
+        )
         return f"{kind.name}({', '.join(names)})"
 
     return "; ".join(map(written, kinds.values()))

@@ -10,22 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError, in_range, integer
+from rocking._base.units import Scalar
 from rocking._boundary.tracing import overturning_boundary, trace_curves
 from rocking._dimensional.problem import Problem, frequency_ratio_of
 from rocking._dimensional.response import BodyResponse, respond
 from rocking._excitation.records.record import Record
 from rocking._history.contact import contact_extremes, reactions_of
-from rocking._history.motion import SamplesMotion
+from rocking._history.motion import BodyMotion, FreeMotion, SamplesMotion
 from rocking._history.time_history import DEFAULT_SAMPLES, MAX_SAMPLES, default_times, time_history
 from rocking._model.block import AbstractBlock
+from rocking._model.body import AbstractBody
 from rocking._model.fields import ERROR_BOUND, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
 from rocking._model.labelled import variable
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import solve_with_bound
+from rocking._solver.state import block_cell
 
 if TYPE_CHECKING:
     import xarray as xr
+
+RELEASED = 16.0  # default length of the motion of a body that is released [tau]
 
 
 def history(
@@ -85,17 +90,57 @@ def _body_history(
     problem: Problem, duration: float | None, samples: int | None, contact: bool, stop: StopFlag | None
 ) -> xr.Dataset:
     """The history of one body whose edges differ."""
-    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
-
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)
-    body = problem.body
-    moving = problem.body_motion(duration, stop)
-    p, alpha, g = float(body.right.frequency_parameter), moving.alpha, float(body.gravity)
+    body, moving = problem.body, problem.body_motion(duration, stop)
     if samples is None and isinstance(moving, SamplesMotion) and isinstance(problem.motion, Record):
         grid = default_times(moving)
     else:
         grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
+    end = moving.pulse_end / float(body.right.frequency_parameter)
+    attributes: dict[str, Any] = {
+        "motion": problem.motion.name,
+        "peak_acceleration": float(problem.peak_acceleration),
+        "slenderness": float(moving.cell["slenderness"][0]),
+        "slenderness_left": float(moving.cell["slenderness"][1]),
+        "motion_end": end,
+    }
+    if not isinstance(problem.motion, Record):
+        attributes |= {"pulse": problem.motion.name, "pulse_end": end}
+    return _history_of(moving, body, grid, contact).assign_attrs(attributes)
+
+
+def release(
+    body: AbstractBody,
+    start: float,
+    restitution: Scalar,
+    duration: float | None,
+    samples: int,
+    contact: bool,
+    stop: StopFlag | None,
+) -> xr.Dataset:
+    """The motion of one body that is released at rest from a rotation `start` [rad], as `rocking.Block.history`."""
+    if (body.right if start > 0.0 else body.left).blocked:
+        raise InvalidArgumentError("start", start, "a rotation about the edge that no wall blocks")
+    if contact and not body.contact_is_known:
+        raise InvalidArgumentError("contact", contact, "False: the contact forces of this body are not known")
+    unit = float(2.0 * math.pi / body.right.frequency_parameter)
+    problem = Problem.of(body, "sine", float(body.uplift_acceleration), unit, restitution)
+    groups = problem.groups if problem.is_block else {}
+    cell = block_cell(1.0, 1.0, groups["restitution"], groups["alpha"] or 0.0) if groups else problem.cells[0]
+    p, alpha = float(body.right.frequency_parameter), float(body.right.alpha)
+    horizon = RELEASED if duration is None else p * duration
+    inertia = float(body.right.inertia_ratio), float(body.left.inertia_ratio)
+    moving = FreeMotion(cell, horizon, stop, start / alpha, inertia_ratio=inertia, tilt=float(body.tilt))
+    found = _history_of(moving, body, np.linspace(0.0, horizon, integer("samples", samples, 2, MAX_SAMPLES)), contact)
+    return found.assign_attrs(motion="release", start=start, impacts=found.sizes["impact"], motion_end=0.0)
+
+
+def _history_of(moving: BodyMotion, body: AbstractBody, grid: NDArray[np.float64], contact: bool) -> xr.Dataset:
+    """The samples of a motion at `grid` [tau] and at its events, in SI units."""
+    import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
+
+    p, alpha, g = float(body.right.frequency_parameter), float(body.right.alpha), float(body.gravity)
     record, tau, rotation, velocity, impacts = moving.history(grid)
     side = np.where(rotation != 0.0, np.sign(rotation), np.sign(velocity))
     columns = {
@@ -115,19 +160,12 @@ def _body_history(
         ),
     }
     attributes: dict[str, Any] = {
-        "motion": problem.motion.name,
         "body": body.description,
-        "peak_acceleration": float(problem.peak_acceleration),
         "outcome": Outcome(int(record["outcome"])).name,
         "impacts": int(record["impacts"]),
         "alpha": alpha,
         "alpha_left": float(body.left.alpha),
-        "slenderness": float(moving.cell["slenderness"][0]),
-        "slenderness_left": float(moving.cell["slenderness"][1]),
-        "motion_end": moving.pulse_end / p,
     }
-    if not isinstance(problem.motion, Record):
-        attributes |= {"pulse": problem.motion.name, "pulse_end": moving.pulse_end / p}
     if contact:
         found = reactions_of(moving, impacts, tau, rotation, velocity)
         slope = math.tan(alpha)

@@ -27,7 +27,7 @@ LARGEST_AMPLIFICATION = 1e4
 
 
 def warnings_of(found: BodyResponse) -> list[str]:
-    """Where the response of one body is in doubt."""
+    """Warnings about the response of one body."""
     problem = found.problem
     changes, margins = (found.thresholds if found.searches_thresholds else None), found.margins
     periods = [one for one in margins.periods if one.value == margins.nearest_period] if margins else []
@@ -50,7 +50,7 @@ def warnings_of(found: BodyResponse) -> list[str]:
 
 
 def notes_of(found: BodyResponse) -> list[str]:
-    """What else is worth knowing of one body."""
+    """Notes on the response of one body."""
     margins = found.margins
     if margins and margins.smallest_surviving_half_diagonal != margins.surviving_from_half_diagonal is not None:
         return ["larger is not always safer: above the smallest block that survives, some larger ones overturn"]
@@ -72,7 +72,7 @@ def resampled_response(problem: Problem, stop: StopFlag | None = None) -> Respon
 
 
 def _of_body(problem: Problem, outcome: Outcome) -> list[str]:
-    """Where restitution or shape of a body make its rocking doubtful."""
+    """Warnings about the restitution and the shape of a body."""
     texts, body = [], problem.body
     strikes = problem.restitution is None and outcome != Outcome.NO_UPLIFT
     if problem.is_block:

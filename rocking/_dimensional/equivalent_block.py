@@ -27,7 +27,7 @@ from rocking._model.masonry_arch import MasonryArch
 @final
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class EquivalentBlock(AbstractBlock, RespondingBody):
-    """The block that rocks like a structure; it is accepted wherever a `Block` is.
+    """The block that rocks like a structure; every function that takes a `Block` takes it.
 
     `width` and `height` are those of the rectangular block of this alpha and p. Contact forces and friction
     demand are not known. The structure has to rock to both sides alike.

@@ -121,16 +121,16 @@ def _judged(
     name: str, meaning: str, missing: str = "", *, dtype: str = "f8", unit: str = "1", kinds: frozenset[str] = ONE,
     source: Callable[[Any], Any] | None = None,
 ) -> tuple[ResponseField, Callable[[Any], Any]]:  # fmt: skip
-    """A value that is found only when it is asked for: an attribute of the response, or a function of it."""
+    """A value computed on request: an attribute of the response, or a function of it."""
     return ResponseField(name, dtype, unit, "", meaning, missing, kinds=kinds), source or attrgetter(name)
 
 
 _UNKNOWN = "it lifts off, or the forces are not known"
 
 JUDGED = dict((
-    _judged("meaning", "the outcome in words; where the rocking model does not apply, first of all that and why",
+    _judged("meaning", "the outcome in words; where the rocking model does not apply, first the reason",
             dtype="U", source=lambda found: found.sentence),
-    _judged("margin", "from which strength of the motion it overturns, or below which it does not, in words",
+    _judged("margin", "in words: the strength of the motion from which it overturns, or below which it does not",
             "that was not asked for", dtype="U"),
     _judged("rocking_model_applies", "false: pure rocking needs a coefficient of friction beyond 1, or the body lifts "
             "off; what is said of its rocking and overturning then does not hold for a body that is free to do so",
@@ -152,12 +152,13 @@ JUDGED = dict((
             "no change of outcome was found, or the rocking model does not apply just below the lowest of "
             "`thresholds`, see `warnings`",
             unit="m s-2", kinds=PULSES),
-    _judged("largest_surviving_friction_demand", "coefficient of friction that it needs just below that acceleration",
+    _judged("largest_surviving_friction_demand",
+            "coefficient of friction that it needs just below `largest_surviving_acceleration`",
             "that is null, or it is not known", kinds=PULSES),
-    _judged("nearest_acceleration", "peak acceleration nearest in its logarithm at which the outcome changes",
+    _judged("nearest_acceleration", "nearest peak acceleration, by ratio, at which the outcome changes",
             "none was found", unit="m s-2", kinds=PULSES,
             source=lambda found: found.margins and found.margins.nearest_acceleration),
-    _judged("nearest_period", "period nearest in its logarithm at which the outcome changes", "none was found",
+    _judged("nearest_period", "nearest period, by ratio, at which the outcome changes", "none was found",
             unit="s", kinds=PULSES, source=lambda found: found.margins and found.margins.nearest_period),
     _judged("overturning_scale", "lowest factor of the record found at which it overturns", "none was found, or it was "
             "not asked for; narrower ranges than 0.2 % can be missed", kinds=ONE - {"pulse"}),
@@ -173,10 +174,10 @@ JUDGED = dict((
     _judged("warnings", "where the answer is in doubt", dtype="O"),
     _judged("notes", "what else is worth knowing", dtype="O"),
 ))  # fmt: skip
-"""What is found of one body when it is asked for, in order."""
+"""Values of one body that are computed on request, in order."""
 
 SHOWN = (*(one for one in FIELDS if one.name not in STRENGTHS), *JUDGED)
-"""What the command line and the service show of one body, in order: without the strength of the motion."""
+"""Values of one body that the command line and the service show, in order, without the strength of the motion."""
 
 
 class ResponseFields:

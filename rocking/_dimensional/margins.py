@@ -34,11 +34,11 @@ UNITS = {
 
 @dataclass(frozen=True, repr=False)
 class Margins:
-    """How far a block is from another outcome."""
+    """Distances of a block from another outcome."""
 
     # peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found
     nearest_acceleration: float | None
-    acceleration_factor: float | None  # that over the peak acceleration of the problem [-]
+    acceleration_factor: float | None  # nearest_acceleration over the peak acceleration of the problem [-]
     nearest_period: float | None  # the same for the period [s], [-]
     period_factor: float | None  # the same for the period [s], [-]
     periods: tuple[Threshold, ...]  # all periods at which the outcome changes, ascending [s]
@@ -110,8 +110,8 @@ def margins_of(
     def size(ratio: float) -> float:
         return float(block.half_diagonal * (ratio / omega) ** 2)  # p = sqrt(3 g/(4 R)): larger is higher (2.2)
 
-    periods = tuple(Threshold(period(w), not above) for w, above in reversed(changes))
-    sizes = tuple(Threshold(size(w), above) for w, above in changes)
+    periods = tuple([Threshold(period(w), not above) for w, above in reversed(changes)])
+    sizes = tuple([Threshold(size(w), above) for w, above in changes])
     smallest, largest = size(low), size(high)
     overturns_small, overturns_large = found.overturns_at_ends
     nearest_acceleration = _nearest(problem.peak_acceleration, accelerations)
@@ -133,7 +133,7 @@ def margins_of(
 
 
 def _nearest(value: float, candidates: Iterable[Threshold]) -> float | None:
-    return min((one.value for one in candidates), key=lambda candidate: abs(math.log(candidate / value)), default=None)
+    return min([one.value for one in candidates], key=lambda candidate: abs(math.log(candidate / value)), default=None)
 
 
 def _factor(value: float | None, of: float) -> float | None:

@@ -12,7 +12,7 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from rocking._base.errors import InvalidArgumentError, one_of
+from rocking._base.errors import InvalidArgumentError, UnreadableFileError, one_of
 from rocking._base.units import UNITS
 from rocking._dimensional.mesh_parts import with_few_parts
 from rocking._dimensional.mesh_repair import RepairedMesh, repaired
@@ -105,6 +105,8 @@ def _mesh(path: str | Path) -> tuple[trimesh.Trimesh, list[str]]:
     try:
         status = Path(path).stat()
         mesh, remarks, defect = _loaded(Path(path), status.st_mtime_ns, status.st_size)
+    except FileNotFoundError as error:
+        raise UnreadableFileError("path", str(path), error) from None
     except Exception as error:  # noqa: BLE001  (each format has its own errors)
         raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
     if defect:

@@ -63,7 +63,7 @@ Array = NDArray[np.float64]
 Motion = str | AbstractPulse | Record
 
 STRENGTHS = {one.name: one for one in (PEAK_ACCELERATION, PERIOD, SCALE)}
-"""Arguments that say how strong and how long a motion is."""
+"""Arguments for the strength and the length of a motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,7 +176,7 @@ class Problem(EqualByValue):
 
     @property
     def warnings(self) -> list[str]:
-        """Whether the peak acceleration, a number without unit, was probably meant in g; and remarks on a record."""
+        """Warnings: a peak acceleration without unit that was probably meant in g; remarks on the record."""
         if isinstance(self.motion, Record):
             return [*self.motion.remarks]
         a, uplift = float(self.peak_acceleration), float(self.body.uplift_acceleration)
@@ -337,7 +337,9 @@ def _strength(motion: AbstractPulse | Record, values: Mapping[str, Any]) -> tupl
     if not isinstance(motion, Record):
         return values["peak_acceleration"], values["period"]
     scale = values["scale"]
-    return scale * motion.peak_acceleration, 1.0 if isinstance(scale, float) else np.ones(())
+    if isinstance(scale, float):
+        return scale * motion.peak_acceleration, 1.0
+    return np.asarray(scale * motion.peak_acceleration), np.ones(())  # the product of an array () is a float
 
 
 def are_numbers(*arguments: Any) -> bool:
@@ -364,7 +366,7 @@ def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
     if share is None:
         return restitution
     right, left = body.right, body.left
-    if right.blocked or left.blocked or not np.all(right.restitution == left.restitution):
+    if np.any(right.blocked | left.blocked) or not np.all(right.restitution == left.restitution):
         raise InvalidArgumentError(
             "restitution", restitution, "momentum or a number for a body with two different edges"
         )
@@ -372,7 +374,7 @@ def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
 
 
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
-    """The coefficient of restitution [-]: the number, or that of the geometry for "momentum"; `checked_restitution`."""
+    """The coefficient of restitution [-]: the number, or for "momentum" the value (2.4) of the geometry."""
     eta = checked_restitution(spread_restitution(block, restitution), RESTITUTION.number)
     return float(block.inelastic_restitution if eta is None else eta)
 

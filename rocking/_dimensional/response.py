@@ -7,7 +7,7 @@ service derive from it. Margins, contact and warnings are found when they are fi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from html import escape
@@ -24,6 +24,7 @@ from rocking._dimensional.fields import FIELDS, JUDGED, SHOWN, ResponseFields
 from rocking._dimensional.margins import Margins, margins_of
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.thresholds import WORDS, BodyThresholds, block_thresholds, thresholds_of
+from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import ContactExtremes, contact_extremes
 from rocking._model.block import AbstractBlock
@@ -52,8 +53,26 @@ T = TypeVar("T")
 SEARCH_SECONDS = 12.0  # time limit of the search along one line for one block [s]
 RELATIVE_OFFSET = 1e-9  # relative distance below the lowest change of outcome at which the contact is judged [-]
 
+
+def _value(found: Any, about: ResponseField) -> Any:
+    """The values of a field; a number of one body, the code of an outcome as an `Outcome`."""
+    problem, known = found.problem, found._known
+    if not problem.kinds <= about.kinds:
+        raise AttributeError(about.name)
+    if about in DERIVED_FIELDS:
+        value = getattr(found.dimensionless, about.name)
+    elif about.derive is None:
+        value = known[about.name]
+    else:
+        value = about.derive(known, found._given, problem.motion, problem.body)
+    if problem.shape:
+        return np.array(np.broadcast_to(value, problem.shape), about.dtype)
+    one = np.asarray(value, about.dtype).reshape(()).item()
+    return Outcome(one) if about is OUTCOME else one
+
+
 for _field in FIELDS:
-    _cached = cached_property(partial(lambda found, about: found._value(about), about=_field))
+    _cached = cached_property(partial(_value, about=_field))
     _cached.__doc__ = _field.description("nan")
     _cached.__set_name__(ResponseFields, _field.name)
     setattr(ResponseFields, _field.name, _cached)
@@ -61,7 +80,7 @@ for _field in FIELDS:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BodyResponse(ResponseFields, EqualByValue):
-    """What happens to bodies under a pulse or a record, in SI units.
+    """The response of bodies to a pulse or a record, in SI units.
 
     Its fields, those of `fields`, are attributes: numbers for one body under one motion, arrays of the broadcast shape
     otherwise; `outcome` is a `rocking.Outcome`, or its codes. What concerns one body is found when it is first asked
@@ -142,22 +161,12 @@ class BodyResponse(ResponseFields, EqualByValue):
     def _sides(self) -> Any:
         return np.moveaxis(np.asarray(self.edges).reshape(*self.problem.shape, -1), -1, 0)
 
-    def _value(self, about: ResponseField) -> Any:
-        """The values of a field; a number of one body, the code of an outcome as an `Outcome`."""
-        problem, known = self.problem, self._known
-        if not problem.kinds <= about.kinds:
-            raise AttributeError(about.name)
-        if about in DERIVED_FIELDS:
-            value = getattr(self.dimensionless, about.name)
-        elif about.derive is None:
-            value = known[about.name]
-        else:
-            given = {name: getattr(problem, name) for name in ("peak_acceleration", "period", "scale")}
-            value = about.derive(known, (problem.groups if problem.is_block else {}) | given, problem.motion, self.body)
-        if self.problem.shape:
-            return np.array(np.broadcast_to(value, self.problem.shape), about.dtype)
-        one = np.asarray(value, about.dtype).reshape(()).item()
-        return Outcome(one) if about is OUTCOME else one
+    @cached_property
+    def _given(self) -> dict[str, Any]:
+        """Strength of the motion and groups of one block, by name."""
+        problem = self.problem
+        given = {name: getattr(problem, name) for name in ("peak_acceleration", "period", "scale")}
+        return (problem.groups if problem.is_block else {}) | given
 
     @cached_property
     def thresholds(self) -> BodyThresholds | None:
@@ -177,13 +186,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         None if they are not searched, or not found in time.
         """
         found = self.thresholds if self.searches_thresholds else None
-        if found is None:
-            return None
-        peak = self.problem.motion.peak_acceleration if isinstance(self.problem.motion, Record) else 1.0
-        return [
-            {found.strength: one.value, "peak_acceleration": one.value * peak, "overturns_above": one.overturns_above}
-            for one in found
-        ]
+        return None if found is None else changes_of(found, self.problem.motion)
 
     def _searched(self, search: Callable[[StopFlag], T]) -> T | None:
         return run_with_timeout(search, self.seconds, StopFlag() if self.stop is None else self.stop)
@@ -201,7 +204,7 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @cached_property
     def contact_below(self) -> ContactExtremes | None:
-        """The same just below the lowest of `thresholds`, of a block under a pulse; None if there is none."""
+        """`contact` just below the lowest of `thresholds`, for a block under a pulse; None if there is none."""
         if not self._has_margins or not self.thresholds:
             return None
         lowest = self.block.uplift_acceleration / self.thresholds[0].value
@@ -222,12 +225,12 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def sentence(self) -> str:
-        """The outcome for one body in words, without a subject; first whether the rocking model does not apply."""
+        """The outcome for one body in words, after a warning if the rocking model does not apply."""
         return self.contact.sentence
 
     @property
     def rocking_model_applies(self) -> bool:
-        """False if pure rocking needs a coefficient of friction beyond 1, or the body lifts off."""
+        """Whether pure rocking needs a coefficient of friction of at most 1, and the body does not lift off."""
         return self.contact.rocking_applies
 
     @property
@@ -273,7 +276,7 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def largest_surviving_friction_demand(self) -> float | None:
-        """Coefficient of friction that it needs just below that acceleration [-]; None likewise, or if not known."""
+        """Friction that it needs just below `largest_surviving_acceleration` [-]; None likewise, or if not known."""
         below = self.contact_below
         if below is None or not self._survives_below or not self.problem.body.contact_is_known:
             return None
@@ -315,17 +318,17 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @property
     def warnings(self) -> list[str]:
-        """Where the answer for one body, one about pure rocking, is in doubt."""
+        """Reasons to doubt the answer for one body, in words."""
         self._need_one("warnings")
         return warnings_of(self)
 
     @property
     def notes(self) -> list[str]:
-        """What else is worth knowing of one body."""
+        """Notes on the answer for one body, in words."""
         return notes_of(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields of one body with numbers, and the outcome by its name; arrays of several."""
+        """The fields by name: numbers and the name of the outcome for one body, arrays for several."""
         values = {one.name: getattr(self, one.name) for one in self.fields}
         return values if self.problem.shape else values | {OUTCOME.name: self.outcome.name}
 
@@ -336,11 +339,8 @@ class BodyResponse(ResponseFields, EqualByValue):
         """
         self._need_one("summary")
         kinds = self.problem.kinds
-        return {
-            one.label: _shown(one, JUDGED[one](self) if one in JUDGED else getattr(self, one.name))
-            for one in SHOWN
-            if kinds <= one.kinds
-        }
+        fields = [one for one in SHOWN if kinds <= one.kinds]
+        return shown(fields, [JUDGED[one](self) if one in JUDGED else getattr(self, one.name) for one in fields])
 
     def to_xarray(self) -> xr.Dataset:
         """The fields as a labelled data set, with units and meanings; arguments of several bodies are coordinates."""
@@ -366,7 +366,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         return self.to_xarray().to_dataframe() if self.problem.shape else pd.Series({**self.motion, **self.to_dict()})
 
     def __repr__(self) -> str:
-        """What happened, in words and SI units; of a block under a record with the margin, for which it is assessed."""
+        """The response in words and SI units; for a block under a record also its margin."""
         return f"<rocking.BodyResponse{' ' if self.problem.shape else ': '}{self._words()}>"
 
     def _repr_html_(self) -> str:
@@ -420,7 +420,7 @@ _UNITS = {
     "gravity": "m s-2",
     "inclination": "rad",
 }
-"""Units of the arguments; the others are numbers."""
+"""Units of the arguments; others are dimensionless."""
 
 
 def respond(
@@ -432,16 +432,29 @@ def respond(
     return BodyResponse(found, problem, edges, thresholds, seconds, stop=stop)
 
 
-def _shown(about: ResponseField, value: Any) -> Any:
-    """A value as the command line and the service show it."""
-    if about is OUTCOME:
-        return value.name
-    if about.name == "edge":
-        return EDGE_NAMES[value]
-    if isinstance(value, float):
-        value = math.degrees(value) if about.unit == "rad" else value
-        return value if math.isfinite(value) else None
-    return value
+def changes_of(found: BodyThresholds, motion: AbstractPulse | Record) -> list[dict[str, Any]]:
+    """The thresholds of one body, of a record with the peak accelerations too, and whether it overturns above."""
+    peak = motion.peak_acceleration if isinstance(motion, Record) else 1.0
+    return [
+        {found.strength: one.value, "peak_acceleration": one.value * peak, "overturns_above": one.overturns_above}
+        for one in found
+    ]
+
+
+def shown(fields: Iterable[ResponseField], values: Iterable[Any]) -> dict[str, Any]:
+    """Values by their labels as the command line and the service show them."""
+    found = {}
+    for one, value in zip(fields, values, strict=True):
+        text = value
+        if one is OUTCOME:
+            text = value.name
+        elif one.name == "edge":
+            text = EDGE_NAMES[value]
+        elif isinstance(value, float):
+            number = math.degrees(value) if one.unit == "rad" else value
+            text = number if math.isfinite(number) else None
+        found[one.label] = text
+    return found
 
 
 def _text(value: Any) -> str:

@@ -36,8 +36,8 @@ from rocking._model.labelled import in_unit, index_of, is_labelled
 
 Array = NDArray[np.float64]
 
-_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
 SIDES = "both", "left", "right"  # edges about which a body rocks
+_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
 
 
 @final
@@ -190,7 +190,7 @@ class RigidBody(RespondingBody):
 
     @property
     def contact_is_known(self) -> bool:
-        """Whether the contact forces follow from the motion: not those of a body that a wall touches."""
+        """Whether the contact forces follow from the motion; they do not for a body against a wall."""
         return self.sides == "both"
 
     @property

@@ -118,7 +118,7 @@ class Header:
 
 
 def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[HeaderLine]:
-    """The lines that may be the header, the first ones; where it has two, the lower one is completed by the upper."""
+    """The first lines, which may be the header. Of a header of two lines the upper one completes the lower one."""
     known = {plain_name(name): one for one in schema.columns for name in one.names}
     for number, row in enumerate(rows[:HEADER_ROWS]):
         if len(row) > MAX_COLUMNS:
@@ -169,7 +169,7 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
 
 
 def _without_header(lines: Sequence[HeaderLine], schema: Schema[Any]) -> InvalidArgumentError:
-    """What the line that is nearest to a header lacks, and the column of it that may be that."""
+    """The columns that the best candidate for a header lacks, and its column that may be one of them."""
     best = max(lines, key=lambda line: len(line.columns), default=None)
     texts, columns = (best.texts, best.columns) if best else ([], {})
     names = {one.name for one, _ in columns.values()}
@@ -187,7 +187,7 @@ def is_used(text: str) -> bool:
 
 
 def _renamed(text: str, renamed: Mapping[str, str]) -> str:
-    """The text of a header under the name that it was given, with its own unit."""
+    """A header text replaced by the name given for it, with its own unit."""
     if text.strip() not in renamed:
         return text
     name, (_, unit) = renamed[text.strip()], name_and_unit(text)
@@ -199,7 +199,7 @@ def _renamed(text: str, renamed: Mapping[str, str]) -> str:
 def _assigned(
     found: dict[int, tuple[Quantity, str]], texts: Sequence[str], schema: Schema[Any]
 ) -> dict[int, tuple[Quantity, str]]:
-    """The columns as what they are read: those that stand for others, and of several with names the best one."""
+    """The columns under the names that are read: stand-ins replaced, and the best one of several with names."""
     known = {one.name: one for one in schema.columns}
     for column in schema.columns:
         places = [place for place, (one, _) in found.items() if one is column]
@@ -254,7 +254,7 @@ def is_unit(text: str) -> bool:
 
 
 def _merged(row: Sequence[str]) -> list[str]:
-    """A line of a header in which merged cells leave empty ones to their right."""
+    """A header line with merged cells, which leave empty cells to their right."""
     found: list[str] = []
     for text in row:
         found.append(text.strip() or (found[-1] if found and not is_unit(found[-1]) else ""))

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import chain, islice
+from itertools import chain, islice, zip_longest
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -26,7 +26,7 @@ from rocking._base.cells import (
     read_cell,
     split_number,
 )
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
 from rocking._dimensional.table_header import (
@@ -54,7 +54,7 @@ SHEETS = (".xlsx", ".ods")  # endings of files that are not text
 MAX_CHARACTERS = 20_000_000  # longest table that is read
 
 EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
-"""Most rows without an item where rows are limited; columns and cells of a sheet, of which one far out makes all."""
+"""Limits: rows without an item, where rows are limited; columns and cells of a sheet (one far out makes all)."""
 
 _TOTAL = re.compile(
     r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne)"
@@ -63,13 +63,16 @@ _TOTAL = re.compile(
 )
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
 
+_EXACT = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:e[-+][0-9]+)?")
+
 _PLAIN = re.compile(r"-?(?:0|[1-9][0-9]{0,14})(?:[.,][0-9]{1,15})?")
 
 MARK = "\ufeff"  # what some programs put before a text of UTF-8
+EXACT = "\u2060"  # before a number of a sheet in its text
 
 
 class TooManyRowsError(InvalidArgumentError):
-    """A table has more rows than the caller takes; none of them was made an item."""
+    """A table has more rows than the caller allows; no item was made."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,7 @@ def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
     try:
         return sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
     except OSError as error:
-        raise InvalidArgumentError(argument, str(source), f"a file that can be read ({error.strerror})") from None
+        raise UnreadableFileError(argument, str(source), error) from None
 
 
 def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
@@ -141,22 +144,24 @@ def text_of(raw: bytes) -> str:
 
 def read_csv(text: str, schema: Schema[Item], most: int | None = None, stop: StopFlag | None = None) -> Table[Item]:
     """A table from text; errors of `read_file`, of a line that is not CSV, of `most`. `stop` cancels the work."""
-    delimiter = _delimiter(text, schema)
+    delimiter = delimiter_of(text, schema)
     # where commas separate the columns, a single point is the decimal sign
     usual = "." if delimiter == "," else ""
-    return read_rows(_rows(_open(text), delimiter, schema, stop), schema, usual, most)
+    rows = _rows(_open(text), delimiter, schema, stop)
+    return read_rows(map(_typed, rows) if EXACT in text else rows, schema, usual, most)
 
 
 def rows_of_csv(text: str, schema: Schema[Any], stop: StopFlag | None = None) -> Iterator[str]:
     """The text of each row that `read_csv` counts, with its end; the errors of `read_csv`."""
     text = text.removeprefix(MARK)
     source, start = _open(text), 0
-    for _ in _rows(source, _delimiter(text, schema), schema, stop):
+    for _ in _rows(source, delimiter_of(text, schema), schema, stop):
         yield text[start : source.tell()]
         start = source.tell()
 
 
-def _delimiter(text: str, schema: Schema[Any]) -> str:
+def delimiter_of(text: str, schema: Schema[Any]) -> str:
+    """The sign between the columns of a text; the errors of `read_csv`."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(schema.argument, f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
     sizes = {one: max(map(_fit, header_lines(_start(text, one, schema), schema)), default=(0, 0)) for one in DELIMITERS}
@@ -167,7 +172,7 @@ def _delimiter(text: str, schema: Schema[Any]) -> str:
 
 
 def _fit(line: HeaderLine) -> tuple[bool, int]:
-    """Whether a line has all columns that a header needs, and how many that are read."""
+    """Whether a line has all columns that a header needs, and how many of its columns are read."""
     return line.complete, len(line.columns)
 
 
@@ -223,36 +228,15 @@ def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
     return [list(map(_cell_text, row)) for row in frame.to_numpy().tolist()]
 
 
-def csv_of_sheet(raw: bytes, schema: Schema[Any]) -> str:
+def csv_of_sheet(raw: bytes, argument: str) -> str:
     """The first sheet of a file as text with semicolons, which `read_csv` reads as `read_file` does the sheet.
 
-    A number of a cell that `read_csv` could take for another has a zero added. A text that could be either of two
-    numbers has a leading apostrophe unless other texts of the sheet settle its decimal sign.
+    Numbers keep their type: the sign `EXACT`, which has no width, stands before them.
     """
-    rows = rows_of_sheet(raw, schema.argument)
-    numeric: list[int] = []
-    last = len(rows)
-    with suppress(InvalidArgumentError):
-        header = find_header(rows[: HEADER_ROWS + 1], schema)
-        numeric, last = [place for place, (one, _) in header.columns.items() if one.unit], header.last
-    decimal = _decimal_sign((row[place] for row in rows[last + 1 :] if _is_item(row) for place in numeric), "")
-
-    def certain(cell: str) -> str:
-        digits, _ = split_number(cell) or ("", "")
-        own = decimal_sign(digits)
-        if not own.startswith("?"):
-            return cell
-        if isinstance(cell, _Exact):
-            return f"{cell}0"
-        if not decimal:
-            return f"'{cell}"
-        changed = f"{digits}0" if own[1] == decimal else digits.replace(own[1], "")
-        return cell.strip().replace(digits, changed, 1)
-
     text = io.StringIO()
     written = csv.writer(text, delimiter=";", lineterminator="\n")
-    for number, row in enumerate(rows):
-        written.writerow([certain(cell) if number > last and k in numeric else cell for k, cell in enumerate(row)])
+    for row in rows_of_sheet(raw, argument):
+        written.writerow([f"{EXACT}{cell}" if isinstance(cell, _Exact) else cell for cell in row])
     return text.getvalue()
 
 
@@ -260,6 +244,11 @@ class _Exact(str):
     """A number of a sheet, whose decimal sign is a point whatever the texts of the table have."""
 
     __slots__ = ()
+
+
+def _typed(row: Sequence[str]) -> list[str]:
+    """A row of the text of a sheet with its numbers."""
+    return [_Exact(cell[1:]) if cell.startswith(EXACT) and _EXACT.fullmatch(cell[1:]) else cell for cell in row]
 
 
 def numbers_of(cells: Sequence[str]) -> Sequence[str | float | None]:
@@ -326,7 +315,7 @@ def read_rows(
             kept.append(row)
         except InvalidArgumentError as error:
             errors.append((number, _of_cell(error, row, header)))
-            unread.append(dict(zip(labels, row, strict=False)))
+            unread.append(dict(zip_longest(labels, row[: len(labels)], fillvalue="")))
     size = len(header.texts)
     padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
     columns = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
@@ -341,7 +330,7 @@ def read_rows(
 
 
 def _is_item(row: Sequence[str]) -> bool:
-    """Whether a row has values, and is not one of totals."""
+    """Whether a row has values and is not a row of totals."""
     first = next(filter(None, map(str.strip, row)), "")
     return bool(first) and not _TOTAL.fullmatch(first[:MAX_NAME]) and any(map(str.isalnum, "".join(row)))
 
@@ -387,7 +376,7 @@ def _has_text(row: Sequence[str], header: Header) -> bool:
 
 
 def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
-    """The unit of a cell that states none: of its header, or of the column with the units."""
+    """The unit of a cell without one: that of its header, or of the column of units."""
     one, unit = header.columns[place]
     where = header.units.get(place)
     stated = row[where].strip() if where is not None and where < len(row) else ""

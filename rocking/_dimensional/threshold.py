@@ -23,7 +23,7 @@ class Threshold:
     overturns_above: bool  # true: the block overturns just above and survives just below; False: the reverse
 
     def __str__(self) -> str:
-        """What happens above the value, such as `overturns above 4.70006`."""
+        """The outcome above the value in words, such as `overturns above 4.70006`."""
         return f"{'overturns' if self.overturns_above else 'survives'} above {self.text(6)}"
 
     def text(self, digits: int = 4) -> str:
@@ -39,6 +39,6 @@ def threshold_text(value: float, digits: int = 4, *, overturns_above: bool = Tru
 
 
 def warnings_of_changes(given: float, changes: Iterable[Threshold], name: str, unit: str = "") -> list[str]:
-    """That the outcome changes close to the value that is given."""
+    """A warning that the outcome changes close to the given value."""
     near = ", ".join(one.text() for one in changes if abs(one.value / given - 1.0) < MARGIN)
     return [f"the outcome changes within {100 * MARGIN:g} % of this {name}: at {near}{unit}"] if near else []

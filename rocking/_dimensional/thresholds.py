@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,9 +89,9 @@ class BodyThresholds(EqualByValue):
             return np.full(self.value.shape[:-1], math.nan)
         return self.value[..., 0]
 
-    @property
+    @cached_property
     def changes(self) -> tuple[Threshold, ...]:
-        """Those of one body, one for each.
+        """The thresholds of one body, as a list.
 
         Raises
         ------
@@ -112,7 +113,7 @@ class BodyThresholds(EqualByValue):
 
     @property
     def sentence(self) -> str:
-        """From which strength one body overturns, and how often the outcome changes above it, in words."""
+        """In words: the strength from which one body overturns, and the number of changes of the outcome above it."""
         name, unit, from_strength, up_to = WORDS[self.strength]
         top = threshold_text(float(self.searched[1]))
         end = f"; from {top} times on its vertical acceleration reaches -g" if self.ends_in_flight else ""
@@ -160,8 +161,10 @@ def thresholds_of(
 ) -> BodyThresholds:
     """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
 
-    Under a pulse as `rocking.thresholds`; under a record as `scale_thresholds`. `highest`: in the unit of the strength;
-    by default `HIGHEST` times that of uplift.
+    Under a pulse as `rocking.thresholds`. Under a record the lowest is that of `lowest_overturning` from uplift on, at
+    this resolution; above it factors 0.2 % apart are solved, and each change is bisected: a range of one outcome that
+    is narrower can be missed. The search ends below the factor at which the vertical acceleration reaches -g.
+    `highest`: in the unit of the strength; by default `HIGHEST` times that of uplift.
     """
     motion, shape = problem.motion, problem.shape
     by_record = isinstance(motion, Record)
@@ -200,6 +203,15 @@ def thresholds_of(
     )
 
 
+def scale_window(problem: Problem) -> tuple[float, float]:
+    """Factors of a record from that at which one body uplifts to ten times it, or where it would lose its weight."""
+    record: Any = problem.motion
+    if problem.is_block:
+        return search_range(record, problem.block, None)[:2]
+    uplift, limit = record_range(replace(problem, peak_acceleration=np.asarray(record.peak_acceleration)))
+    return float(uplift[0]), min(HIGHEST[1] * float(uplift[0]), float(limit[0]))
+
+
 def _pulse_changes(
     problem: Problem, k: int, uplift: float, highest: float, stop: StopFlag | None
 ) -> tuple[Array, Flags]:
@@ -218,9 +230,14 @@ def block_thresholds(
     if isinstance(motion, Record):
         if highest is None:
             highest = max(HIGHEST[1] * uplift_scale(motion, block), BEYOND[1] * problem.scale)
-        top = min(highest, HIGHEST_SCALE)
-        eta = groups["restitution"]
-        return scale_thresholds(motion, block, restitution=eta, highest=top, resolution=resolution, stop=stop)
+        uplift, top, flies = search_range(motion, block, min(highest, HIGHEST_SCALE))
+        lines = block_lines(motion, block, groups["restitution"], stop=stop)
+        limit = min(highest_vertical_scale(motion, block.gravity), HIGHEST_SCALE)
+        changes = np.empty(0), np.empty(0, np.bool_)
+        if top > uplift:
+            changes = outcome_changes(lines, uplift, top, limit, resolution=resolution)
+        searched = np.array([uplift, max(uplift, top)])
+        return BodyThresholds(*changes, searched, "scale", flies, resolution=resolution)
     uplift, slenderness = block.uplift_acceleration, groups.pop("slenderness")
     above_uplift = max(HIGHEST[0], BEYOND[0] / slenderness) if highest is None else highest / uplift
     if above_uplift <= 1.0:
@@ -229,34 +246,6 @@ def block_thresholds(
     found = thresholds(motion, **groups, highest=top, stop=stop)
     searched = np.array([uplift, top * uplift])
     return BodyThresholds(found.amplitude * uplift, found.overturns_above, searched, "peak_acceleration")
-
-
-def scale_thresholds(
-    record: Record,
-    block: AbstractBlock,
-    *,
-    restitution: Scalar = "momentum",
-    highest: Scalar | None = None,
-    resolution: Scalar = RESOLUTION,
-    stop: StopFlag | None = None,
-) -> BodyThresholds:
-    """Every scale of a record at which the outcome for a block changes, by (2.2).
-
-    The lowest is that of `rocking._boundary.scan.lowest_overturning` from the scale of uplift on, at this resolution;
-    above it scales that differ by 0.2 % are solved. Each change is bisected. A range of one outcome that is narrower
-    can be missed. Both components of the record are scaled; the search ends below the scale at which the vertical
-    acceleration reaches -g.
-
-    Arguments and errors are those of `rocking.Block.thresholds`; the highest scale is at most 1e6.
-    """
-    share, given = checked_resolution(resolution), _checked_highest(highest)
-    uplift, top, flies = search_range(record, block, given)
-    lines = block_lines(record, block, restitution_of(block, restitution), stop=stop)
-    none = np.empty(0), np.empty(0, np.bool_)
-    limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
-    found = outcome_changes(lines, uplift, top, limit, resolution=share) if top > uplift else none
-    searched = np.array([uplift, max(uplift, top)])
-    return BodyThresholds(found[0], found[1], searched, "scale", flies, resolution=share)
 
 
 def overturning_scale(
@@ -270,17 +259,14 @@ def overturning_scale(
 ) -> float:
     """Lowest scale of a record at which it overturns a block [-]; nan if there is none.
 
-    The first of `scale_thresholds`, which has the same arguments, in less time.
+    The first of `block_thresholds`, in less time; the arguments are those of `rocking.Block.thresholds`.
     """
-    share, given = checked_resolution(resolution), _checked_highest(highest)
+    given = None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
+    share = checked_resolution(resolution)
     uplift, top, _ = search_range(record, block, given)
     lines = block_lines(record, block, restitution_of(block, restitution), stop=stop)
     limit = min(highest_vertical_scale(record, block.gravity), HIGHEST_SCALE)
     return float(lowest_overturning(lines, np.array([uplift]), top, limit, resolution=share)[0])
-
-
-def _checked_highest(highest: Scalar | None) -> float | None:
-    return None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
 
 
 def block_lines(

@@ -31,7 +31,7 @@ def calibrate(
     folds: int = 5,
     confidence: Scalar = 0.95,
 ) -> xr.Dataset:
-    """The block whose responses agree best with the outcomes of tests, and how well it predicts others.
+    """The block that agrees best with the outcomes of tests, and the share of other tests that it predicts.
 
     A test counts as a Bernoulli trial: the model is right with the probability 1 - e, the same for all tests, so that
     the likelihood (1 - e)^k e^(n - k) of k right ones among n, with its e = 1 - k/n, is largest for the block with most

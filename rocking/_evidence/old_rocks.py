@@ -95,7 +95,7 @@ def unexceeded(
     resolution: Scalar = RESOLUTION,
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Pairs of PGA and PGV that a rock that stands has, with a probability, not seen.
+    """Pairs of PGA and PGV that a standing rock has, with a stated probability, never been exposed to.
 
     Every record is scaled to the lowest factor at which it overturns the rock. The logarithm of its PGA there is fitted
     by a line over that of PGV/PGA, which scaling does not change, ln PGA = a + b ln(PGV/PGA), with a standard deviation

@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from rocking._base.errors import InvalidArgumentError, RecordFileError
+from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError
 from rocking._excitation.records.readers.columns import read_samples
 from rocking._excitation.records.readers.lines import TextFile
 
@@ -47,7 +47,7 @@ def read_pulse_file(path: str | PathLike[str], most: int) -> PulseFile:
         with file.open("rb") as stream:
             content = stream.read(MAX_BYTES + 1)
     except OSError as error:
-        raise InvalidArgumentError("path", str(path), f"a file that can be read ({error.strerror})") from None
+        raise UnreadableFileError("path", str(path), error) from None
     try:
         if len(content) > MAX_BYTES:
             raise RecordFileError(file.name, None, "a larger file", f"at most {MAX_BYTES} bytes")

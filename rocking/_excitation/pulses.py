@@ -4,7 +4,7 @@ The ground acceleration is `a_g f(phi)` with `phi = omega_g t + start`; a positi
 rotation in the negative direction. Those of the catalogue are of two families: sums of sinusoids, for which the slender
 block has exact arcs (3.4), and wavelets, a polynomial times a Gaussian, for which arcs are known but for low
 frequencies. To add a pulse, define it here and append it to `_KINDS`; `register` adds one at run time, of these
-families or of one's own (`SmoothPulse`).
+families or of your own (`SmoothPulse`).
 
 A text names a pulse, mirrors it and states its parameters, with their units: "-mavroeidis_papageorgiou(phase=90 deg)".
 """
@@ -164,7 +164,7 @@ _REGISTERED: dict[str, AbstractPulse] = {}
 
 
 def register(pulse: AbstractPulse) -> None:
-    """Make a pulse of one's own available by its name, to every function and to the service of this process.
+    """Make a pulse of your own available by its name, to every function and to the service of this process.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def pulse_parameters(name: str) -> Mapping[str, Quantity]:
 
 
 def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
-    """The pulse of that name; `"-sine"` is the mirrored sine.
+    """The pulse with a name, such as `"sine"`; `"-sine"` is the mirrored sine.
 
     Parameters
     ----------

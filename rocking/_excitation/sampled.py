@@ -164,7 +164,7 @@ class SampledPulse(AbstractPulse):
         opposite = self.name.removeprefix("-") if self.name.startswith("-") else f"-{self.name}"
         return SampledPulse(-self.values, self.phases, 2.0 * math.pi, opposite)
 
-    @property
+    @cached_property
     def samples(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return self.phases, self.values
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -97,7 +98,7 @@ class AbstractPulse(ABC):
         phi = float_array("phi", phi, unit="rad")
         return np.where((phi >= self.start) & (phi <= self.end), self.shape(np.clip(phi, self.start, self.end)), 0.0)
 
-    @property
+    @cached_property
     def samples(self) -> tuple[Array, Array] | None:
         """Phases [rad] and values of f between which it is linear, None if it is not given so."""
         return None

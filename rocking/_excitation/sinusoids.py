@@ -29,15 +29,13 @@ class SinusoidSeries(ExcitationSeries):
     family: ClassVar[Family] = Family.SINUSOIDS
     terms: Terms
 
-    @property
-    def least_arc_frequency(self) -> float:
-        return 0.0
+    least_arc_frequency: ClassVar[float] = 0.0
 
 
 @final
 @dataclass(frozen=True)
 class SinusoidalPulse(AbstractPulse):
-    """f(phi) = sum of c cos(w phi + d) over `terms`.
+    """A pulse that is a sum of sinusoids: f(phi) = sum of c cos(w phi + d) over `terms`.
 
     Attributes
     ----------
@@ -86,7 +84,10 @@ def _checked_terms(terms: Terms) -> Terms:
 def sum_of_sinusoids(terms: Terms, phi: ArrayLike) -> Array:
     """The sum of c cos(w phi + d) [-]; `phi` [rad], any shape."""
     phi = float_array("phi", phi, unit="rad")
-    return np.asarray(sum([c * np.cos(w * phi + d) for c, w, d in terms]))  # noqa: C419  (a generator is a call a term)
+    found = np.zeros(phi.shape)
+    for c, w, d in terms:
+        found += c * np.cos(w * phi + d)
+    return found
 
 
 def stationary_phases_of_sinusoids(terms: Terms, start: float, end: float) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Families of pulses of one's own: any smooth function of the phase."""
+"""Families of pulses of your own: any smooth function of the phase."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class PolynomialSeries(ExcitationSeries):
 
 @dataclass(frozen=True)
 class SmoothPulse(AbstractPulse):
-    """A pulse that is a smooth function of phi on its window, f = curve over its peak; a subclass gives `curve`.
+    """A pulse of any smooth shape, f = curve over its peak; a subclass gives `curve` as a function of phi.
 
     Responses are exact to rounding: the curve is represented by polynomials of degree 15 on at most 128 pieces of the
     window, as accurately as it can be evaluated. Parameters of the family are fields of the subclass.

@@ -58,7 +58,7 @@ class WaveletSeries(ExcitationSeries):
 @final
 @dataclass(frozen=True)
 class WaveletPulse(AbstractPulse):
-    """f(phi) = (sum of c_k phi^k) exp(-phi^2 / spread).
+    """A wavelet, a polynomial times a Gaussian: f(phi) = (sum of c_k phi^k) exp(-phi^2 / spread).
 
     Attributes
     ----------

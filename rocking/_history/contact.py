@@ -286,7 +286,7 @@ def _fine_samples(motion: BodyMotion, record: Record, impact_times: Floats) -> t
     while True:
         rotation, velocity = motion.sample(tau)
         beyond = np.flatnonzero(np.abs(rotation) > motion.max_rotation)
-        if overturned(record) and beyond.size:
+        if beyond.size and overturned(record):
             last = int(beyond[0]) + 1
             tau, rotation, velocity = tau[:last], rotation[:last], velocity[:last]
         moves = (rotation != 0.0) | (velocity != 0.0)

@@ -23,6 +23,7 @@ from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES
+from rocking._solver.bodies import outcome_margin_of
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import NO_EDGES, peak_response
 from rocking._solver.records import state as samples_state
@@ -30,6 +31,7 @@ from rocking._solver.records.record_response import frequency_parameter_range, p
 from rocking._solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
 from rocking._solver.rules import IMPACT_LIMIT
 from rocking._solver.state import (
+    BODY_CELL,
     BODY_FIELDS,
     EDGE_COLUMNS,
     FOLLOWED_FLIGHT,
@@ -103,7 +105,7 @@ class BodyMotion(ABC):
         """Of impacts that leave the right edge [-]."""
         return float(self.cell["eta"][0])
 
-    @property
+    @cached_property
     def slenderness(self) -> float:
         """g tan(alpha) over the largest ground acceleration [-]; of the left edge if nothing lifts the right one."""
         right, left = self.cell["slenderness"].tolist()
@@ -236,7 +238,9 @@ class PulseMotion(BodyMotion):
         return np.asarray((phases - self.pulse.start) / self.frequency_ratio)
 
     def ground_acceleration(self, tau: Floats) -> Floats:
-        f = self.pulse.acceleration(self.pulse.start + self.frequency_ratio * tau)
+        start, end = self.pulse.start, self.pulse.end
+        phi = start + self.frequency_ratio * tau
+        f = np.where((phi >= start) & (phi <= end), self.pulse.shape(np.clip(phi, start, end)), 0.0)
         return np.asarray(f / self.slenderness)
 
     def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
@@ -335,6 +339,55 @@ class SamplesMotion(BodyMotion):
         if self._flag[0]:
             check_stop(self.stop)
         return state, int(written)
+
+
+@dataclass(frozen=True, eq=False)
+class FreeMotion(BodyMotion):
+    """A `BodyMotion` without ground motion: released at rest from a rotation.
+
+    `start`: theta over alpha of the right edge [-], not 0; about an edge that no wall blocks.
+    """
+
+    start: float
+
+    @property
+    def pulse_end(self) -> float:
+        return 0.0
+
+    @property
+    def ground_rate(self) -> float:
+        return 1.0
+
+    @property
+    def kink_times(self) -> Floats:
+        return np.empty(0)
+
+    def jump_times(self, record: Record) -> Floats:
+        del record
+        return np.empty(0)
+
+    def ground_acceleration(self, tau: Floats) -> Floats:
+        return np.zeros(tau.size)
+
+    def _sample_forced(self, history: Floats, impact_times: Floats) -> tuple[Record, int]:
+        del history, impact_times
+        cells = np.array([self.cell], BODY_CELL)
+        state: Record = np.zeros(1, samples_state.BLOCK_STATE)[0]
+        for name in ("alpha", "eta", "slenderness"):
+            state[name] = self.cell[name]
+        state["a"] = 1.0 / self.cell["slenderness"]
+        for name in ("ratio", "stiffness"):
+            state[name] = 1.0, self.cell[name]
+        state["speed"] = state["ratio"] * np.sqrt(state["stiffness"])
+        state["turn"] = 1.0 if np.isinf(self.cell["slenderness"]).any() else -1.0
+        state["end_rotation"], state["end_sign"] = abs(self.start), math.copysign(1.0, self.start)
+        response, edges = np.zeros(1, RESPONSE_RECORD), np.zeros((1, EDGE_COLUMNS))
+        response["end_rotation"], edges[:, 2] = state["end_rotation"], state["end_sign"]
+        at_once = state["end_rotation"] >= state["ratio"][0 if self.start > 0.0 else 1]
+        later = outcome_margin_of(response, edges, cells)[0] >= 0.0
+        outcome = Outcome.OVERTURNED_AFTER_IMPACT if later else Outcome.RECOVERS
+        state["outcome"] = Outcome.OVERTURNED_DIRECTLY if at_once else outcome
+        return state, 0
 
 
 def build_motion(

@@ -59,12 +59,6 @@ class Points:
         full = broadcast(given, [s, w, eta, alpha])
         return cls(*(contiguous_array(group).ravel() for group in full)), full[0].shape
 
-    @classmethod
-    def of_one(cls, *groups: float) -> Points:
-        """The arguments of one block, checked numbers in the order of the fields."""
-        table = np.array(groups).reshape(4, 1)
-        return cls(table[0], table[1], table[2], table[3])
-
     def __getitem__(self, index: Any) -> Points:
         return Points(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
 
@@ -303,9 +297,11 @@ class Cube:
         """Raise `OutsideCubeError` with the reason why the cubes do not give the response at a point."""
         s, w, eta, alpha = (float(getattr(point, name)[0]) for name in point.__dataclass_fields__)
         etas = self.restitutions
-        if not etas.size or not etas[0] <= eta <= etas[-1]:
-            allowed = f"[{etas[0]:.2f}, {etas[-1]:.2f}]" if etas.size else "one with a cube"
-            raise OutsideCubeError("restitution", eta, f"{allowed}, or method auto")
+        if not etas.size:
+            named = self.pulse if isinstance(self.pulse, str) else self.pulse.name
+            raise OutsideCubeError("pulse", named, "one with a cube, or method auto")
+        if not etas[0] <= eta <= etas[-1]:
+            raise OutsideCubeError("restitution", eta, f"[{etas[0]:.2f}, {etas[-1]:.2f}], or method auto")
         nearest = self.slice_at(int(np.argmin(np.abs(etas - eta))))
         if nearest is None:
             raise OutsideCubeError("restitution", eta, "one with a cube that can be read, or method auto")
@@ -314,7 +310,8 @@ class Cube:
             axis = nearest.axes[name]
             if not axis[0] <= value <= axis[-1]:
                 allowed = f"[{axis[0]:g}, {axis[-1]:g}] [{unit}]" if axis.size > 1 else f"{axis[0]:g} [{unit}]"
-                raise OutsideCubeError(name, value, f"{allowed} in this cube, or method auto")
+                degrees = f" (up to {np.degrees(axis[-1]):g} degrees)" if name == "alpha" else ""
+                raise OutsideCubeError(name, value, f"{allowed}{degrees} in this cube, or method auto")
         where = f"at slenderness {s:g}, frequency_ratio {w:g}"
         known, part = self.interpolate(point, np.inf)
         if known[0] and part.error_bound[0] > limit:
@@ -334,7 +331,7 @@ def _response(found: Found) -> BoundedResponse:
 
 
 def open_cube(source: Path | str) -> Cube:
-    """Read spectrum cubes into memory.
+    """Open spectrum cubes, from which responses are interpolated with error bounds.
 
     Parameters
     ----------

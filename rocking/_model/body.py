@@ -34,12 +34,13 @@ class Edge:
     restitution: Array
     # R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion [-]
     inertia_ratio: Array
-    blocked: bool = False  # by a wall; its other values are then those of the other edge
+    # whether by a wall; its other values are then those of the other edge
+    blocked: bool | NDArray[np.bool_] = False
 
     @property
     def resistance(self) -> Array:
         """Horizontal acceleration over g at which the body starts to rotate about the edge: tan(alpha_s), or inf."""
-        return np.full(np.shape(self.alpha), np.inf) if self.blocked else np.tan(self.alpha)
+        return np.where(self.blocked, np.inf, np.tan(self.alpha))
 
 
 def rigid_edge(distance: Array, other: Array, height: Array, gyration: Array, gravity: Array, tilt: Array) -> Edge:

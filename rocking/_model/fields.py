@@ -148,8 +148,9 @@ PEAK_MODE = ResponseField(
     "3.4",
     "arc on which the peak is reached",
     "",
-    "twice the impacts before it since the last uplift from rest, plus one if reached in free rocking, plus 65536 for "
-    "each such uplift after the first; -1 where there is no peak",
+    "the peak is a smooth function of the groups where this number is the same: twice the impacts before it since the "
+    "last uplift from rest, plus one if reached in free rocking, plus 65536 for each such uplift after the first; -1 "
+    "where there is no peak",
     at_rest=-1,
 )
 END_ROTATION = ResponseField(

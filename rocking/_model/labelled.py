@@ -26,7 +26,7 @@ def variable(dims: Any, values: Any, unit: str, meaning: str, **attributes: Any)
 
 def is_labelled(*arguments: Any) -> bool:
     """Whether one of the arguments is an `xarray.DataArray`; xarray is not loaded to find out."""
-    return any(type(argument).__name__ == "DataArray" and hasattr(argument, "dims") for argument in arguments)
+    return any([type(one).__name__ == "DataArray" and hasattr(one, "dims") for one in arguments])  # noqa: C419  (a call)
 
 
 def index_of(*arguments: Any) -> Index | None:

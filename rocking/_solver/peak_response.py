@@ -19,7 +19,7 @@ from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of, is_labelled, labelled_response
 from rocking._model.response import Response, dimensions_of
-from rocking._numba.cancellation import StopFlag
+from rocking._numba.cancellation import NEVER_STOPPED, StopFlag, check_stop
 from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
@@ -199,7 +199,8 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     precision = FULL_PRECISION if exact else max(FULL_PRECISION, TRUNCATION_FRACTION * accepted)
     records = solve_cells(made, cells, precision, threads, stop)
     if precision > FULL_PRECISION:
-        margin = outcome_margin(records["end_rotation"], records["end_velocity"], *_with_alpha(cells)[2:])
+        angle = cells[3] if len(cells) == 4 else np.zeros(cells[0].size)
+        margin = outcome_margin(records["end_rotation"], records["end_velocity"], cells[2], angle)
         close = np.abs(margin) < NEAR_BOUNDARY_MARGIN + 100.0 * accepted
         near = np.flatnonzero(close & ~solved_by_arcs(made, cells))
         records[near] = solve_cells(made, [cell[near] for cell in cells], FULL_PRECISION, threads, stop)
@@ -253,12 +254,16 @@ def _solve_alike(
     fewest, most = (MIN_ARC_CHUNK, MAX_ARC_CHUNK) if by_arcs else (MIN_CHUNK, MAX_CHUNK)
     chunk_size = min(max(math.ceil(size / cores), fewest), most)
 
+    solve: Any = _fill_by_arcs if by_arcs else partial(_solve_by_steps, precision)
+    if size <= chunk_size:
+        flag = NEVER_STOPPED if stop is None else stop.array
+        solve(pulse, cells, flag, records)
+        if flag[0]:
+            check_stop(stop)
+        return records
+
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-        chunk = [cell[part] for cell in cells]
-        if by_arcs:
-            _fill_by_arcs(pulse, chunk, flag, records[part])
-        else:
-            _solve_by_steps(pulse, chunk, precision, flag, records[part])
+        solve(pulse, [cell[part] for cell in cells], flag, records[part])
 
     fill_chunks(fill, size, chunk_size, cores, stop)
     return records
@@ -273,23 +278,18 @@ def _fill_by_arcs(
         return
     left = np.flatnonzero(records["outcome"] == LEFT)
     rest = np.empty(left.size, RESPONSE_RECORD)
-    _solve_by_steps(pulse, [cell[left] for cell in cells], FULL_PRECISION, flag, rest)
+    _solve_by_steps(FULL_PRECISION, pulse, [cell[left] for cell in cells], flag, rest)
     records[left] = rest
 
 
 def _solve_by_steps(
+    precision: float,
     pulse: AbstractPulse,
     cells: list[NDArray[np.float64]],
-    precision: float,
     flag: NDArray[np.uint8],
     records: NDArray[np.void],
 ) -> None:
     state = solver_state.of_steps(pulse, precision)
-    slenderness, omega, eta, alpha = _with_alpha(cells)
-    bodies = block_cells(omega, slenderness, eta, alpha)
+    slenderness, omega, eta = cells[:3]
+    bodies = block_cells(omega, slenderness, eta, cells[3] if len(cells) == 4 else np.zeros(eta.size))
     solve_batch(bodies, *state, flag, records, NO_EDGES, NO_FLIGHTS)
-
-
-def _with_alpha(cells: list[NDArray[np.float64]]) -> list[NDArray[np.float64]]:
-    """Return cells given by four arrays."""
-    return cells if len(cells) == 4 else [*cells, np.zeros(cells[0].size)]

@@ -205,7 +205,8 @@ def impacts_accumulate(
     acceleration q of the edge, which lies in [q1, q2] during the window. A flight from w rises to
     z_m <= w^2/(2 (pull q1 - k z_m)), lasts at most 2 w/(pull q1 - k z_m), and its impact velocity is at most
     w sqrt((pull q2 + k z_m)/(pull q1 - k z_m)). With the restitution this bounds a geometric series. True only if its
-    sum fits into the window and no flight can exceed the peak so far.
+    sum fits into the window and no flight can exceed the peak so far. Against a wall all flights are about one edge;
+    with those of the other one, where q = V, the bounds are wider.
 
     Parameters
     ----------
@@ -224,7 +225,9 @@ def impacts_accumulate(
         return False
     height = w * w / weakest  # above z_m while k z_m stays below weakest/2
     softening = vertical * state.softening * height
-    known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
+    known = state.side_peak[state.side]
+    if state.turn < 0.0:
+        known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
     if softening > 0.5 * weakest or height > known:
         return False
     right, left = (right_pull * right[0], right_pull * right[1]), (left_pull * left[0], left_pull * left[1])

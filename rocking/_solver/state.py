@@ -233,7 +233,8 @@ def block_cells(
 
 def block_cell(rate: float, slenderness: float, eta: float, alpha: float, vertical: float = 0.0) -> Record:
     """The cell of one block."""
-    return block_cells(*(np.array([value]) for value in (rate, slenderness, eta, alpha, vertical)))[0]
+    one = np.array([[rate], [slenderness], [eta], [alpha], [vertical]])
+    return block_cells(one[0], one[1], one[2], one[3], one[4])[0]
 
 
 RESPONSE_RECORD = record_dtype(SOLVED_FIELDS)  # record of the response of a cell

@@ -1,3 +1,4 @@
+from .distribution import distribution as distribution
 from .files import write_fragility as write_fragility
 from .hazard import annual_rate as annual_rate
 from .hazard_files import read_hazard as read_hazard

@@ -12,6 +12,7 @@ from rocking._base.units import Scalar
 from rocking._dimensional.equivalent_block import EquivalentBlock
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import AbstractBlock, RectangularBlock
+from rocking._model.body import AbstractBody
 from rocking._model.labelled import broadcast_by_name, with_index, without_place
 
 Analyse = Callable[[Sequence[AbstractBlock] | RigidBody], xr.Dataset]
@@ -19,7 +20,7 @@ Analyse = Callable[[Sequence[AbstractBlock] | RigidBody], xr.Dataset]
 
 @runtime_checkable
 class HasBody(Protocol):
-    """What has a body for each of its directions, such as `rocking.Object`."""
+    """Anything with a body for each direction, such as `rocking.Object`."""
 
     restitution: Scalar
 
@@ -29,7 +30,7 @@ class HasBody(Protocol):
 
 
 OWN_DIMENSIONS = ("intensity", "record", "demand", "model")
-"""Dimensions of the results, which the arguments of a body cannot have."""
+"""Dimensions of the results; arguments of a body must not have these names."""
 
 
 def over_bodies(analyse: Analyse, body: RigidBody) -> xr.Dataset:
@@ -92,8 +93,52 @@ def blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
     return [EquivalentBlock(alpha, p, restitution=eta, gravity=gravity) for alpha, p, eta, gravity in rows]
 
 
+def as_blocks(bodies: Sequence[AbstractBody]) -> tuple[AbstractBlock, ...] | RigidBody:
+    """Bodies as blocks where all have equal edges, else rigid ones that rock about the same edges as an array.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If some are neither.
+    """
+    equal = [blocks_of(one)[0] if isinstance(one, RigidBody) and has_equal_edges(one) else one for one in bodies]
+    blocks = tuple(one for one in equal if isinstance(one, AbstractBlock))
+    if len(blocks) == len(equal):
+        return blocks
+    rigid = [
+        RigidBody.from_size(one.width, one.height, gravity=one.gravity) if isinstance(one, RectangularBlock) else one
+        for one in bodies
+    ]
+    rows = [one for one in rigid if isinstance(one, RigidBody) and one.sides == getattr(rigid[0], "sides", "")]
+    if len(rows) < len(rigid):
+        allowed = "bodies with equal edges, or rigid ones that all rock about both edges, or about the same one"
+        raise InvalidArgumentError("blocks", [one.description for one in rigid], allowed)
+    columns = {name: [one.parameters[name] for one in rows] for name in ("left", "right")}
+    columns |= {name: [getattr(one, name) for one in rows] for name in ("height", "gyration", "gravity", "top_height")}
+    columns |= {"inclination": [one.tilt for one in rows]}
+    if rows[0].sides != "both":
+        columns |= {"rebound": [one.right.restitution for one in rows]}
+    return RigidBody(**columns, sides=rows[0].sides)
+
+
+def as_block(body: AbstractBody) -> AbstractBlock:
+    """One body with equal edges as a block.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If its edges differ.
+    """
+    made = body if isinstance(body, AbstractBlock) else None
+    if isinstance(body, RigidBody) and has_equal_edges(body):
+        (made,) = blocks_of(body)
+    if made is None:
+        raise InvalidArgumentError("body", body.description, "a body with equal edges")
+    return made
+
+
 def _over(found: xr.Dataset, names: tuple[Hashable, ...], shape: tuple[int, ...]) -> xr.Dataset:
-    """A data set whose dimension `block` is split into several."""
+    """A data set with its dimension `block` split into several."""
 
     def split(variable: xr.Variable) -> xr.Variable:
         if "block" not in variable.dims:

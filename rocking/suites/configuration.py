@@ -4,12 +4,14 @@ A configuration is a mapping, as read from a file; `docs/fragility.md` lists its
 out: `DEFAULTS`, and what the files of the records state, `STATED_BY_FILES`.
 """
 
+from __future__ import annotations
+
 import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +23,13 @@ from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 from rocking._model.block import AbstractBlock, RectangularBlock
+from rocking._model.body import AbstractBody
 from rocking.suites.demand import check_demands
 from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.intensity import MEASURES
+
+if TYPE_CHECKING:  # it needs numba, which the rules of a workflow do not
+    from rocking._dimensional.rigid_body import RigidBody
 
 Array = NDArray[np.float64]
 
@@ -48,7 +54,7 @@ MAX_CELLS = 1_000_000  # most points of the map
 
 @dataclass(frozen=True)
 class RecordFiles:
-    """Where the records are, and what their files do not state: attributes as in the table of `docs/fragility.md`."""
+    """Folder of the records and facts that their files do not state: the keys of `docs/fragility.md`."""
 
     folder: Path
     pattern: str
@@ -109,7 +115,7 @@ class SuiteConfiguration(EqualByValue):
 
     name: str
     records: RecordFiles
-    blocks: tuple[AbstractBlock, ...]
+    blocks: tuple[AbstractBlock, ...] | RigidBody
     restitution: str | float
     measure: str
     intensity: Array
@@ -137,10 +143,13 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
     if given["hazard"] is not None:
         _keys("hazard", given["hazard"], ("intensity", "annual_rate"))
         hazard = check_hazard_curve((given["hazard"]["intensity"], given["hazard"]["annual_rate"]))
+    blocks = _blocks(given["blocks"])
+    if given["sensitivity"] is not None and not isinstance(blocks, tuple):
+        raise InvalidArgumentError("sensitivity", given["sensitivity"], "null beside a body with two different edges")
     return SuiteConfiguration(
         name=_name(given["name"]),
         records=_record_files(given["records"], folder),
-        blocks=_blocks(given["blocks"]),
+        blocks=blocks,
         restitution="momentum" if given["restitution"] == "momentum" else RESTITUTION.number(given["restitution"]),
         measure=measure,
         intensity=_levels("intensity", given["intensity"], logarithmic=True),
@@ -157,7 +166,7 @@ def _with_defaults(given: Any, defaults: Mapping[str, Any]) -> Any:
 
 
 def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
-    """Refuse a section whose keys are not exactly these."""
+    """Refuse a section with a missing or an unknown key."""
     expected = list(keys)
     if not isinstance(given, Mapping):
         raise InvalidArgumentError(section, given, "a mapping with the keys " + ", ".join(expected))
@@ -200,34 +209,32 @@ def _record_files(given: Any, folder: Path) -> RecordFiles:
     )
 
 
-def _blocks(given: Any) -> tuple[AbstractBlock, ...]:
+def _blocks(given: Any) -> tuple[AbstractBlock, ...] | RigidBody:
     if not isinstance(given, list) or not given:
         raise InvalidArgumentError("blocks", given, "a list of bodies, such as their width and height [m]")
-    return tuple(_block(f"blocks[{place}]", item) for place, item in enumerate(given))
+    made = [_block(f"blocks[{place}]", item) for place, item in enumerate(given)]
+    rectangles = tuple(one for one in made if isinstance(one, RectangularBlock))
+    if len(rectangles) == len(made):
+        return rectangles
+    from rocking.suites.body_arrays import as_blocks  # noqa: PLC0415  (as below)
+
+    return as_blocks(made)
 
 
-def _block(section: str, given: Any) -> AbstractBlock:
-    """A body with equal edges from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
+def _block(section: str, given: Any) -> AbstractBody:
+    """A body from its parameters, or from a text such as `hollow(width=40cm, ...)`."""
     if isinstance(given, Mapping) and given.keys() == {"width", "height"}:
         return RectangularBlock(*(positive(f"{section}.{key}", given[key], "m") for key in ("width", "height")))
     # others need numba, which the rules of a workflow do not
     from rocking._dimensional.block import Block  # noqa: PLC0415
     from rocking._dimensional.body_kinds import body  # noqa: PLC0415
-    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
-    from rocking.suites.body_arrays import blocks_of, has_equal_edges  # noqa: PLC0415
 
     try:
         made = body(given)
     except InvalidArgumentError as error:
         place = section if error.parameter == "body" else f"{section}.{error.parameter}"
         raise InvalidArgumentError(place, error.value, error.allowed) from None
-    if isinstance(made, Block):
-        return RectangularBlock(made.width, made.height, made.gravity)
-    if isinstance(made, AbstractBlock):
-        return made
-    if not (isinstance(made, RigidBody) and has_equal_edges(made)):
-        raise InvalidArgumentError(section, given, "a body with equal edges")
-    return blocks_of(made)[0]
+    return RectangularBlock(made.width, made.height, made.gravity) if isinstance(made, Block) else made
 
 
 def _levels(parameter: str, given: Any, *, logarithmic: bool) -> Array:

@@ -30,7 +30,7 @@ from rocking.suites.outcomes import check_suite, suite_outcomes
 
 Array = NDArray[np.float64]
 
-COMPARISON = "for comparison: a record counts from the lowest level on at which it reaches the limit state"
+COMPARISON = "for comparison: a record counts at and above the lowest level at which it reaches the limit state"
 
 _MODEL_VARIABLES: dict[str, tuple[str, str]] = {
     "median_intensity": ("intensity", "intensity of probability 1/2"),

@@ -5,7 +5,7 @@
 | OpenQuake, `hazard_curve-mean-PGA.csv` | comment with `investigation_time`, `imt`; columns `poe-0.005` | probability |
 | USGS nshmp-haz, `PGA/curves.csv` | columns `lon`, `lat` and one for each level | annual rate |
 | USGS Unified Hazard Tool, "Download Data" | a line `Peak Ground Acceleration` above levels and values | annual rate |
-| a table of one's own | two columns, `pga [UNIT]` or `pgv [UNIT]` and `annual rate [1/year]` | annual rate |
+| a table of your own | two columns, `pga [UNIT]` or `pgv [UNIT]` and `annual rate [1/year]` | annual rate |
 
 A probability P of exceedance in T years is converted to the annual rate -ln(1 - P)/T of a Poisson process. Levels at
 the top with the rate zero, and at the bottom with the probability one, say nothing of the rate and are left out. PGA is
@@ -24,7 +24,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, in_range, positive
+from rocking._base.errors import InvalidArgumentError, UnreadableFileError, in_range, positive
 from rocking.suites.hazard_curve import check_hazard_curve
 
 Array = NDArray[np.float64]
@@ -66,7 +66,9 @@ def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
         if file.stat().st_size > MAX_BYTES:
             raise _refused(file, "its size", f"at most {MAX_BYTES} bytes")
         text = file.read_text(encoding="utf-8-sig")
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        raise UnreadableFileError("hazard", str(file), error) from None
+    except ValueError as error:
         raise _refused(file, str(error), "a text file") from None
     rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if any(row)]
     try:

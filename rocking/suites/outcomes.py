@@ -129,7 +129,7 @@ def check_levels(levels: Array, record: Record, scales: Array, gravity: Sequence
 
 
 def different_names(names: Sequence[str]) -> list[str]:
-    """A different name for each record: its own, with a number where several have it or it has none."""
+    """Unique names of the records: their own, with a number if several share it or there is none."""
     count, used = Counter(names), Counter[str]()
     found = []
     for place, name in enumerate(names, start=1):

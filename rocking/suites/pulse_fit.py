@@ -42,7 +42,7 @@ HIGHEST_AMPLITUDE = 1000.0  # largest a = a_g/(g tan alpha) searched for overtur
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PulseFit(EqualByValue):
-    """The pulse that takes most of the energy of the velocity of a record.
+    """The pulse that explains most of the energy of the velocity of a record.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ def fit_pulse(
     blocks: Sequence[AbstractBlock] | AbstractBlock | None = None,
     stop: StopFlag | None = None,
 ) -> PulseFit:
-    """Fit a pulse to the velocity of a record, and compare how both overturn blocks.
+    """Fit a pulse to the velocity of a record, and compare the factors at which both overturn blocks.
 
     Parameters
     ----------

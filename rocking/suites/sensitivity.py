@@ -47,7 +47,7 @@ VARIANTS = {
     "high_restitution": "with the larger restitution",
     "resampled": "with the record interpolated band-limited at half its step",
 }
-"""What is changed, one at a time, with its meaning."""
+"""The changes, made one at a time, with their meaning."""
 
 FRICTION_DEMAND = "largest friction demand |H|/N over the motion, impacts excluded"
 
@@ -82,7 +82,7 @@ def suite_sensitivity(
         `overturned_high_restitution` and `overturned_resampled`. Over (block, intensity):
         `exceedances`, the number of records that overturn the block, their `fraction` with its Clopper-Pearson interval
         `fraction_lower`, `fraction_upper`; for each of the three changes the fraction, such as `fraction_resampled`,
-        and the number of records whose outcome is another one, such as `changed_resampled`;
+        and the number of records with another outcome, such as `changed_resampled`;
         `records_changed_by_sampling`, which names them; `friction_demand_median` and `friction_demand_largest` over the
         records. Coordinates `restitution`, `restitution_low` and `restitution_high` over block, `resampled_time_step`
         [s] over record. One block, not in a sequence, gives a result without the dimension `block`.
@@ -152,7 +152,7 @@ def sensitivity_of_outcomes(outcomes: xr.Dataset, confidence: float) -> xr.Datas
     for name, meaning in VARIANTS.items():
         fraction, number = others[name].mean(axis=-1), changed[name].sum(axis=-1).astype(np.int32)
         columns[f"fraction_{name}"] = fraction, f"fraction of records that overturn the block, {meaning}"
-        columns[f"changed_{name}"] = number, f"number of records whose outcome is another one, {meaning}"
+        columns[f"changed_{name}"] = number, f"number of records with another outcome, {meaning}"
     demand = outcomes["friction_demand"].transpose(*DIMENSIONS).values
     median = np.quantile(demand, 0.5, axis=-1, method="inverted_cdf")  # also where some are infinite
     columns["friction_demand_median"] = median, f"not exceeded under half of the records: {FRICTION_DEMAND}"

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from rocking.suites.body_arrays import OWN_DIMENSIONS
+from rocking.suites.distribution import distribution
 from rocking.suites.fits import FitStatus
 
 LEVEL_COLUMNS = ("exceedances", "fraction", "fraction_lower", "fraction_upper", "first_exceedances")
@@ -69,6 +70,18 @@ def sensitivity_table(sensitivity: xr.Dataset) -> dict[str, list[Any]]:
     columns = {name: found[name].transpose("block", "intensity").values for name in SENSITIVITY_COLUMNS}
     restitution = {name: _by_block(found, name) for name in ("restitution", "restitution_low", "restitution_high")}
     return _rows(found, {"intensity": found["intensity"].values, **restitution, **columns})
+
+
+def distribution_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
+    """One row for each block, level and rotation up to alpha in steps of 0.05: the columns of `distribution`."""
+    found = distribution(with_block(fragility), rotation=np.linspace(0.0, 1.0, 21))
+    found = found.broadcast_like(found["probability"]).transpose("block", "intensity", "rotation", ...)
+    rows = {str(name): value.values for name, value in found.data_vars.items()}
+    sizes = {name: found[name].values[:, None, None] for name in ("width", "height")}
+    axes = {"intensity": found["intensity"].values[:, None], "rotation": found["rotation"].values}
+    everything = sizes | axes | rows
+    shape = np.broadcast_shapes(*(np.shape(values) for values in everything.values()))
+    return {name: np.broadcast_to(values, shape).ravel().tolist() for name, values in everything.items()}
 
 
 def finite(columns: Mapping[str, list[Any]]) -> dict[str, list[Any]]:

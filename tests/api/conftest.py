@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
-from rocking_api.settings import Settings
+from rocking_api.settings import EXAMPLE, Settings
 
 import rocking
 from rocking._boundary.tracing import overturning_boundary
@@ -33,13 +33,14 @@ def results(once):
     return once("results", make_results)
 
 
-def make_results(folder):
-    for pulse, eta in CUBES:
+def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", title="Fragility under noise"):
+    """Write the results; `python -m tests.api.conftest` those that an installation serves where it has no others."""
+    for pulse, eta in cubes:
         cube = spectrum(
             pulse,
             restitution=eta,
-            slenderness=np.linspace(0.05, 0.95, 91),
-            frequency_ratio=np.geomspace(0.5, 12.0, 91),
+            slenderness=np.linspace(0.05, 0.95, nodes),
+            frequency_ratio=np.geomspace(0.5, 12.0, nodes),
         )
         write_dataset(cube, folder / "spectra" / pulse / f"eta-{eta:.2f}.nc")
     curves = overturning_boundary("sine", restitution=0.85, nodes=101)
@@ -51,10 +52,10 @@ def make_results(folder):
     outcomes = with_margins(suite_outcomes(suite), suite)
     fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
     rate = annual_rate(fragility, ([1.0, 10.0], [1e-2, 1e-4]))
-    fragility = fragility.assign(rate.data_vars).assign_attrs(title="Fragility under noise", confidence=0.95)
+    fragility = fragility.assign(rate.data_vars).assign_attrs(title=title, confidence=0.95)
     sensitivity = suite_sensitivity(motions, blocks, intensity=[4.0, 9.0])
     for name, dataset in (("outcomes", outcomes), ("fragility", fragility), ("sensitivity", sensitivity)):
-        write_dataset(describe(dataset), folder / "suites" / "demonstration" / f"{name}.nc")
+        write_dataset(describe(dataset), folder / "suites" / suite_name / f"{name}.nc")
 
 
 @pytest.fixture(scope="session")
@@ -87,3 +88,8 @@ def assert_problem(response, status, parameter=None):
         assert problem["parameter"] == parameter
         assert problem["allowed"]
     return problem
+
+
+if __name__ == "__main__":
+    shutil.rmtree(EXAMPLE)
+    make_results(EXAMPLE, [("cosine", 0.90)], 31, "example", "Example: two blocks under four made-up records")

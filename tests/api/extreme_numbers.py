@@ -41,6 +41,7 @@ import rocking
 from benchmarks.accuracy.free_rocking import free_rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._cli.app import app as command_line
+from rocking._dimensional.body_kinds import WITHOUT_FILES
 from rocking.paper import Groups, GroupSet, Orientation, Problem
 from tests.suites.motions import noise
 
@@ -143,7 +144,8 @@ OPTIONS: dict[str, tuple[float, str]] = {
     "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
     "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
     "resolution": (0.01, ""), "skip": (0, ""),
-    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"),
+    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"), "rebound": (0.4, ""),
+    "start": (0.05, " rad"),
 }  # fmt: skip
 """Ordinary values of the options that take a number, and their units."""
 
@@ -152,7 +154,7 @@ TEXTS = {
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
     "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
-    "column", "standards", "detail", "directions", "body",
+    "column", "standards", "detail", "directions", "body", "sides", "second",
 }  # fmt: skip
 """Options and arguments that take none."""
 
@@ -168,6 +170,7 @@ VARIANTS = (
     {"pga", "pgv"},
     {"left", "right", "mass_height", "gyration", "peak_acceleration", "period", "duration", "pga"},
     {"diameter", "height", "peak_acceleration", "period", "duration", "pga"},
+    {"width", "height", "start", "duration"},
 )
 """Options that are given together, beside those that go with all."""
 
@@ -194,14 +197,14 @@ SUITE: dict[str, Any] = {
 
 QUERY: dict[str, Any] = {
     "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
-    "mass_height": 0.8, "skip": 0, "limit": 2,
+    "mass_height": 0.8, "offset": 0.0, "skip": 0, "limit": 2,
     "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
     "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
 }  # fmt: skip
 """Ordinary values of the parameters of routes that have neither an example nor a default, or an expensive one."""
 
 
-EXCLUDED = {"period_min", "period_max"}
+EXCLUDED = {"period_min", "period_max"} | {name for one in WITHOUT_FILES.values() for name in one.fields}
 """Parameters of routes that do not go with others, which are given."""
 
 
@@ -210,7 +213,8 @@ def csv_of(table: dict[str, list[float]]) -> str:
     return "\n".join([",".join(table), *(",".join(map(str, row)) for row in rows)]) + "\n"
 
 
-BLOCK_COLUMNS = {"width": 0.5, "height": 2.0, "peak_acceleration": 4.0, "period": 0.5}
+STRENGTH = {"peak_acceleration": 4.0, "period": 0.5}
+BLOCK_COLUMNS = {"width": 0.5, "height": 2.0} | STRENGTH
 ENCODERS: dict[str, Callable[[Any], str]] = {
     "application/json": json.dumps,
     "text/csv": csv_of,
@@ -234,7 +238,18 @@ BODIES: dict[str, dict[str, Any]] = {
     "/v1/overturning": {"application/json": UNDER_SAMPLES},
     "/v1/thresholds": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest": 10.0}},
     "/v1/blocks/response": {
-        "application/json": {"blocks": [BLOCK_COLUMNS | {"restitution": 0.85}]},
+        "application/json": {
+            "blocks": [
+                BLOCK_COLUMNS | {"restitution": 0.85},
+                BLOCK_COLUMNS | {"wall": 0.05, "depth": 0.6},
+                {"left": 0.2, "right": 0.3, "mass_height": 0.8, "gyration": 0.6, "inclination": 0.01, "top_height": 1.6}
+                | STRENGTH,
+                {"width": 0.6, "height": 4.0, "mass_ratio": 2.0} | STRENGTH,
+                {"mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0} | STRENGTH,
+                {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9} | STRENGTH,
+                {"vertices": [[0.0, 0.0], [0.3, 0.0], [0.3, 1.0]]} | STRENGTH,
+            ]
+        },
         "text/csv": {
             f"{name} ({unit})": [BLOCK_COLUMNS[name]]
             for name, unit in zip(BLOCK_COLUMNS, ("m", "cm", "g", "s"), strict=True)

@@ -1,17 +1,14 @@
 """Random requests, valid and hostile, to all routes: no 5xx but 503 and 504, no slow answer, every error a problem.
 
-`python -m tests.api.fuzzer RESULTS --seed 1 --count 20000` asks a service in this process. Request k of a seed is
-the same each time: `--first k --count 1` repeats it.
+A service in this process is asked. Request k of a seed is the same each time.
 """
 
-import argparse
 import asyncio
 import hashlib
 import io
 import json
 import logging
 import random
-import sys
 import time
 from collections import Counter
 from pathlib import Path
@@ -413,19 +410,3 @@ async def ask_all(
     finally:
         logging.getLogger("rocking.service").removeHandler(logged)
     return statuses, faults
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", type=Path, help="folder that the workflow filled")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--count", type=int, default=20_000)
-    given = parser.parse_args()
-    statuses, faults = asyncio.run(ask_all(given.results, given.seed, given.first, given.count, KINDS | EXTREME_KINDS))
-    sys.stdout.write("\n".join([*faults[:100], f"{dict(sorted(statuses.items()))}, {len(faults)} faults", ""]))
-    sys.exit(bool(faults))
-
-
-if __name__ == "__main__":
-    main()

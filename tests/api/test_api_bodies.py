@@ -2,6 +2,8 @@
 
 import pytest
 
+import rocking
+from rocking._dimensional.body_kinds import WITHOUT_FILES as KINDS
 from tests.api.conftest import assert_problem
 from tests.sampling import number, sample
 
@@ -87,3 +89,81 @@ def test_what_is_missing_in_both_places_is_named(client):
     assert_problem(client.post("/v1/records/response?width=0.4", json={"record": RECORD}), 422, "height")
     assert_problem(client.post("/v1/records/response?width=0.4", content=RECORD), 422, "height")
     assert_problem(client.post("/v1/records/response", json=BLOCK), 422, "record")
+
+
+BODIES = {
+    "hollow": {"width": 0.4, "height": 1.6, "wall": 0.02},
+    "cylinder": {"diameter": 0.5, "height": 1.2},
+    "two_edges": {"left": 0.12, "right": 0.18, "mass_height": 0.4, "gyration": 0.3},
+    "on_pedestal": {"width": 0.4, "height": 1.2, "pedestal_width": 0.5, "pedestal_height": 0.4, "pedestal_mass": 2.0},
+    "rectangle": {"width": 0.4, "height": 1.6, "sides": "left", "rebound": 0.4},
+    "frame": {"width": 0.6, "height": 4.0, "mass_ratio": 2.0},
+    "structure": {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9},
+}
+PULSE = {"pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_every_kind_of_body_is_asked_by_its_parameters_by_a_text_and_by_an_object(client, kind):
+    given = BODIES[kind]
+    made = rocking.body(kind, **given)
+    expected = made.response("sine", peak_acceleration=4.0, period=0.5)
+    units = {name: one.unit.strip("-") for name, one in KINDS[kind].fields.items()}
+    text = f"{kind}({', '.join(f'{name}={value}{units[name]}' for name, value in given.items())})"
+    flat = client.get("/v1/blocks/response", params=given | PULSE).json()
+    said = client.get("/v1/blocks/response", params=PULSE | {"body": text}).json()
+    assert flat["query"].items() >= given.items()
+    for answer in (flat, said):
+        assert answer["peak_rotation_deg"] == pytest.approx(expected.summary()["peak_rotation_deg"], rel=1e-9)
+        assert answer["uplift_acceleration"] == pytest.approx(float(made.uplift_acceleration), rel=1e-12)
+    strength = {"peak_acceleration": 4.0, "period": 0.5}
+    rows = [given | strength | {"body": kind}, {"body": text} | strength, {"body": {"kind": kind, **given}} | strength]
+    many = client.post("/v1/blocks/response", json={"pulse": "sine", "blocks": rows}).json()
+    assert many["peak_rotation"] == pytest.approx([expected.peak_rotation] * 3, rel=1e-9)
+    assert many["body"] == [made.description] * 3
+    answers = [
+        client.post("/v1/records/response", json={"record": RECORD, "thresholds": False, "body": body})
+        for body in (text, {"kind": kind, **given})
+    ]
+    answers.append(client.post("/v1/records/response", json={"record": RECORD, "thresholds": False, **given}))
+    answers.append(client.post("/v1/records/response", params={"body": text, "thresholds": "false"}, content=RECORD))
+    assert [one.status_code for one in answers] == [200] * 4, answers[0].text
+    assert len({one.json()["peak_rotation_deg"] for one in answers}) == 1
+    history = client.post("/v1/records/history", json={"record": RECORD, "body": text, "contact": True})
+    scales = client.post("/v1/records/scales", json={"record": RECORD, "body": text, "points": 5})
+    assert (history.status_code, scales.status_code) == (200, 200), history.text + scales.text
+    assert history.json()["outcome"] == answers[0].json()["outcome"]
+    fitted = client.post("/v1/records/pulse", json={"record": RECORD, "body": text})
+    assert fitted.status_code == (422 if kind in ("two_edges", "rectangle") else 200)
+
+
+def test_bodies_that_are_refused_are_named(client):
+    for query, name in (
+        ({"body": "mesh(path=/etc/hostname)"}, "body"),
+        ({"body": "cone(width=1m)"}, "body"),
+        ({"body": "hollow(width=40cm, height=1.6m, wall=2cm)", "width": 0.4}, "body"),
+        ({"body": "hollow(width=40cm, height=1.6m, wall=1e-9m)"}, "wall"),
+        ({"body": "hollow(width=40, height=1.6m, wall=1cm)"}, "width"),
+        ({"width": 0.4, "height": 1.6, "wall": 0.2}, "wall"),
+        ({"width": 0.4, "height": 1.6, "wall": 1e9}, "wall"),
+        ({"width": 0.4}, "height"),
+        ({"wall": 0.1}, "width"),
+        ({}, "width"),
+    ):
+        assert_problem(client.get("/v1/blocks/response", params=PULSE | query), 422, name)
+    for body, name in (({"kind": "cone"}, "body"), ({"kind": "hollow", "width": 0.4}, "body"), ([1], "body")):
+        assert_problem(client.post("/v1/records/pulse", json={"record": RECORD, "body": body}), 422, name)
+    outline = {"vertices": [[0, 0], [0.3, 0], [0.3, 1.0], [0.0, 1.2]]}
+    found = client.post("/v1/records/response", json={"record": RECORD, "thresholds": False, **outline})
+    assert found.status_code == 200, found.text
+    assert found.json()["query"]["vertices"] == "0.0 0.0; 0.3 0.0; 0.3 1.0; 0.0 1.2"
+
+
+def test_the_description_has_the_parameters_of_every_kind(client):
+    document = client.get("/openapi.json").json()
+    shared = {one["name"] for one in document["paths"]["/v1/blocks/response"]["get"]["parameters"]}
+    shown = document["components"]["schemas"]["BodyDescription"]["properties"]
+    for kind in KINDS.values():
+        assert {*kind.fields} <= shared
+        assert {*kind.fields} <= {*shown}
+    assert document["components"]["schemas"]["Kind"]["enum"] == [*KINDS]

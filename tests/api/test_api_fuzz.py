@@ -31,14 +31,21 @@ OPERATIONS = [
 ]
 
 
-# Bodies of text, which the schema does not describe further; `tests.api.fuzzer` sends better ones.
+# Bodies of text, which the schema does not describe further; `fuzzer.py` sends better ones.
 BODIES = [("/v1/blocks/response", "POST"), *((f"/v1/records/{name}", "POST") for name in ("response", "history"))]
+
+
+@pytest.fixture(scope="module")
+def schema(results):
+    """The description of one service for all routes."""
+    import schemathesis  # noqa: PLC0415  (takes two seconds in each process that collects this file)
+
+    return schemathesis.openapi.from_asgi("/openapi.json", create_app(Settings(results=results, max_samples=2000)))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("path", "method"), [*OPERATIONS, *BODIES])
-def test_generated_requests(results, path, method):
-    import schemathesis  # noqa: PLC0415  (takes two seconds in each process that collects this file)
+def test_generated_requests(schema, path, method):
     from schemathesis.checks import not_a_server_error  # noqa: PLC0415
     from schemathesis.specs.openapi.checks import (  # noqa: PLC0415
         content_type_conformance,
@@ -47,7 +54,6 @@ def test_generated_requests(results, path, method):
     )
 
     checks = [not_a_server_error, content_type_conformance, response_schema_conformance, status_code_conformance]
-    schema = schemathesis.openapi.from_asgi("/openapi.json", create_app(Settings(results=results, max_samples=2000)))
 
     # state, counts and catalogue take no parameters: nothing to generate
     share = 2 if path in ("/health", "/metrics", "/v1/datasets") else CASES // (len(OPERATIONS) - 3) + 1

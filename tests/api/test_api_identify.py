@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rocking_api.models.identify import EDGE_COLUMNS, MAX_SAMPLES
-from rocking_api.routers.identify import EXAMPLE
+from rocking_api.routers.identify import EDGE_COLUMNS, EXAMPLE, MAX_SAMPLES
 
 import rocking
 from benchmarks.accuracy.free_rocking import free_rocking

@@ -1,4 +1,4 @@
-"""The spectrum cubes of a pulse as one zarr store over the restitution, read over HTTP from a real server."""
+"""Data sets, and the cubes of a pulse as one zarr store over the restitution, read over HTTP from a real server."""
 
 import re
 
@@ -31,6 +31,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def server(folder, tmp_path_factory):
+    """A separate process: the netCDF library holds the interpreter while it reads from a URL."""
     with serving(folder, tmp_path_factory.mktemp("serve") / "log") as server:
         yield server
 
@@ -38,6 +39,24 @@ def server(folder, tmp_path_factory):
 @pytest.fixture(scope="module")
 def cubes(folder):
     return [read_dataset(folder / f"spectra/sine/eta-{eta:.2f}.nc") for eta in ETAS]
+
+
+@pytest.mark.parametrize(("suffix", "engine"), [(".nc#mode=bytes", "netcdf4"), (".nc", "h5netcdf"), (".zarr", "zarr")])
+def test_xarray_opens_a_data_set_over_http(server, folder, suffix, engine):
+    """The bits are those of the file."""
+    name, corner = "spectra/sine/eta-0.85", {"slenderness": slice(3, 9), "frequency_ratio": slice(4, 6)}
+    stored = read_dataset(folder / f"{name}.nc")
+    with xr.open_dataset(f"{server.address}/v1/datasets/{name}{suffix}", engine=engine) as remote:
+        # JSON, in which zarr keeps attributes, has no nan
+        without = {name for name, value in stored.attrs.items() if engine == "zarr" and np.any(value != value)}
+        assert set(remote.attrs) == set(stored.attrs) - without
+        part = remote.isel(corner).load()
+        for name in stored.variables:
+            ours = stored.isel(corner)[name].values
+            assert part[name].dtype == ours.dtype
+            assert part[name].values.tobytes() == ours.tobytes(), name
+        whole = remote["peak_rotation"].values
+    np.testing.assert_array_equal(whole, stored["peak_rotation"].values)
 
 
 def test_the_store_holds_every_value_of_the_cubes(server, cubes):

@@ -1,4 +1,4 @@
-"""Random requests to all routes; `python -m tests.api.fuzzer` sends more."""
+"""Random requests to all routes."""
 
 import asyncio
 

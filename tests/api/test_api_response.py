@@ -113,6 +113,8 @@ def test_without_a_bound_there_is_a_warning(client):
         ({"frequency_ratio": 40, "method": "cube"}, "frequency_ratio"),
         ({"slenderness": 0.01, "method": "cube"}, "slenderness"),
         ({"restitution": 0.7, "method": "cube"}, "restitution"),
+        ({"pulse": "-ricker", "method": "cube"}, "pulse"),
+        ({"alpha_deg": 80, "method": "cube"}, "alpha_deg"),
         ({"absolute_tolerance": 1e-13, "method": "cube"}, "absolute_tolerance"),
     ],
 )
@@ -139,24 +141,24 @@ def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(clie
     assert missing["allowed"] == "required in the query, or in a JSON body"
     blocks = {"blocks": [{"width": 0.4}], "colour": 1}
     problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
-    assert "`blocks[0].height` is missing in the body" in problem["detail"]
+    assert "`blocks[0].period` is missing in the body" in problem["detail"]
     assert "there is no parameter `colour` in the body" in problem["detail"]
 
 
 def test_several_missing_or_wrong_parameters_are_all_named(client):
     problem = assert_problem(client.get("/v1/response?pulse=saw&slenderness=x&restitution=3&colour=1"), 422)
     assert [one["name"] for one in problem["errors"]] == [
-        "slenderness", "frequency_ratio", "colour", "pulse", "restitution",
+        "pulse", "slenderness", "frequency_ratio", "restitution", "colour",
     ]  # fmt: skip
-    first, missing, unknown, _, above = problem["errors"]
+    _, first, missing, above, unknown = problem["errors"]
     assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
     assert missing == {"name": "frequency_ratio", "allowed": "required in the query"}
     assert unknown["allowed"].startswith(
         "one of pulse, alpha_deg, method, absolute_tolerance, slenderness, frequency_ratio"
     )
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
-    assert (problem["parameter"], problem["value"], problem["allowed"]) == ("slenderness", "x", "a number")
-    assert problem["detail"].startswith("5 parameters are missing or wrong: `slenderness` = 'x' is not allowed")
+    assert (problem["parameter"], problem["value"]) == ("pulse", "saw")
+    assert problem["detail"].startswith("5 parameters are missing or wrong: `pulse` = 'saw' is not allowed")
     outside = assert_problem(get_response(client, slenderness=-1.0, restitution=2.0), 422, "slenderness")
     assert [one["name"] for one in outside["errors"]] == ["slenderness", "restitution"]
 

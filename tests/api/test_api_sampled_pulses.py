@@ -137,7 +137,7 @@ def test_parameters_are_in_the_body(client):
     assert_problem(client.post("/v1/spectrum", json={"pulse": SAMPLES, "restitution": 0.9}), 422, "slenderness")
     assert_problem(client.post("/v1/history", json=BODIES["/v1/history"]), 422, "pulse")
     assert_problem(client.post("/v1/history", content="a,b", headers={"content-type": "text/csv"}), 415, "Content-Type")
-    assert_problem(post(client, "/v1/response", method="cube"), 422, "restitution")
+    assert_problem(post(client, "/v1/response", method="cube"), 422, "pulse")
     twice = client.post("/v1/blocks/response?pulse=sine", json=BODIES["/v1/blocks/response"] | {"pulse": SAMPLES})
     assert_problem(twice, 422, "pulse")
     assert_problem(client.post("/v1/blocks/response", json=BODIES["/v1/blocks/response"]), 422, "pulse")

@@ -9,7 +9,7 @@ import typer
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.command import main
-from rocking_api.settings import Settings
+from rocking_api.settings import EXAMPLE, Settings
 
 from tests.api.conftest import NAMES, assert_problem, client_of
 
@@ -33,6 +33,35 @@ def test_healthy(client):
     }
 
 
+def test_an_installation_serves_an_example_where_no_data_are(monkeypatch, tmp_path, capsys):
+    given = []
+    monkeypatch.setattr("uvicorn.run", lambda *_, **__: given.append(Settings().results))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ROCKING_RESULTS", "set for its removal afterwards")
+    monkeypatch.delenv("ROCKING_RESULTS")
+    main(None, "127.0.0.1", 0)
+    assert given == [EXAMPLE]
+    assert "those of an example are served" in capsys.readouterr().err
+    with client_of(EXAMPLE) as client:
+        health = health_of(client)
+        assert (health["status"], health["problems"]) == ("ok", {})
+        assert client.get("/v1/suites/example").json()["title"].startswith("Example: ")
+        query = {"pulse": "cosine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.9}
+        found = client.get("/v1/response", params=query).json()
+        solved = client.get("/v1/response", params=query | {"method": "solver"}).json()
+        assert abs(found["peak_rotation"] - solved["peak_rotation"]) <= found["error_bound"] + solved["error_bound"]
+
+
+def test_a_menu_leads_only_where_something_is(client, tmp_path):
+    def menu(of):
+        return re.findall(r'<a href="(/\w*/?)"', of.get("/nowhere", headers={"accept": "text/html"}).text)[:8]
+
+    assert {"/suites", "/datasets"} <= set(menu(client))
+    with client_of(tmp_path) as empty:
+        assert not {"/suites", "/datasets", "/guide/"} & set(menu(empty))
+        assert "make reproduce" in empty.get("/static/explorer/suites.js").text
+
+
 def test_without_results_the_solver_is_used_and_health_reports_it(tmp_path):
     with client_of(tmp_path / "none") as client:
         health = health_of(client)
@@ -40,7 +69,7 @@ def test_without_results_the_solver_is_used_and_health_reports_it(tmp_path):
         assert "make reproduce" in health["problems"]["spectra"]
         assert client.get("/v1/response", params=QUERY).json()["source"] == "solver"
         assert client.get("/v1/datasets").json()["datasets"] == []
-        assert_problem(client.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "restitution")
+        assert_problem(client.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "pulse")
 
 
 def test_with_a_damaged_cube_the_solver_is_used_and_health_reports_it(client, own_results):

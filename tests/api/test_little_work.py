@@ -53,7 +53,7 @@ async def work_of(app, query):
     return found, best
 
 
-@pytest.mark.parametrize(("method", "most", "files"), [("cube", 70, 15), ("solver", 70, 25)])
+@pytest.mark.parametrize(("method", "most", "files"), [("cube", 60, 15), ("solver", 40, 15)])
 def test_one_block_is_little_work(results, method, most, files):
     async def scenario():
         app = create_app(Settings(results=results))

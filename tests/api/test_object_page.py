@@ -85,15 +85,16 @@ def test_round_bases_and_outlines(client):
 def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
     given = {"table": "object;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
     text = client.post("/objects", data=given | FLOOR).text
-    (address, _) = (unescape(one) for one in re.findall(r'href="(/object\?[^"]*)"', text))
+    (address,) = (unescape(one) for one in re.findall(r'href="(/object\?[^"]*)"', text))
     fields = dict(parse_qsl(urlsplit(address).query, keep_blank_values=True))
     assert (fields["name"], fields["width"], fields["restitution"]) == ("vase & jug", "22.5", "0.9")
     page = client.get(address).text
     factors = {row[0].split()[0]: row[1] for row in table(page)}
-    row = r'</a></th>\s*<td>(\w+)</td>.*?<td data-value="[^"]*">([\d.]+)<'
-    ranked = re.findall(row, text.partition("<tbody>")[2], re.DOTALL)
-    for name, angle in (("width", "0°"), ("depth", "90°")):
-        assert factors[angle] == dict(ranked)[name]
+    (worse,) = re.findall(r"<summary>along its (\w+)</summary>", text)
+    (lower,) = re.findall(r'data-label="Overturns from factor">([\d.]+)<', text)
+    ((other, higher),) = re.findall(r"Along its (\w+): [\w ]+, overturns from ([\d.]+)<", text)
+    for name, factor in ((worse, lower), (other, higher)):
+        assert factors[{"width": "0°", "depth": "90°"}[name]] == factor
     assert ("on a floor of a building of 0.5 s" in page) is bool(FLOOR)
 
 

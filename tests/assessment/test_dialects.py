@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking._assessment.tables import SCHEMA, objects_of_csv, objects_of_text, read_objects
+from rocking._assessment.tables import objects_of_csv, objects_of_text, read_objects
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import csv_of_sheet
 from tests.assessment.dialects import Writer, errors_of
@@ -43,10 +43,11 @@ def test_a_workbook_is_read_alike_by_command_and_by_page(tmp_path: Path) -> None
         answers = []
         for page in (False, True):
             try:
-                table = objects_of_csv(csv_of_sheet(raw, SCHEMA)) if page else read_objects(path)
+                table = objects_of_csv(csv_of_sheet(raw, "table")) if page else read_objects(path)
             except InvalidArgumentError as error:
                 answers.append(str(error))
                 continue
             assert errors_of(table, dialect) == [], seed
-            answers.append(([vars(one) for one in table.objects], [(one.row, one.column) for one in table.bad_rows]))
+            rows = [vars(one) | {"cells": one.cells} for one in table.objects]
+            answers.append((rows, [vars(one) for one in table.bad_rows]))
         assert answers[0] == answers[1], seed

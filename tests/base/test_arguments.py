@@ -149,15 +149,3 @@ def test_objects_that_are_no_pulse_are_rejected(ask, pulse):
     with pytest.raises(InvalidArgumentError, match=r"^`pulse` = .*mavroeidis_papageorgiou") as error:
         ask(pulse)
     assert error.value.value is pulse or error.value.value == pulse
-
-
-@pytest.mark.parametrize("name", [None, 5, b"sine", ["sine"]])
-def test_names_of_pulses_are_strings(name):
-    with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
-        rocking.pulse(name)
-
-
-@pytest.mark.parametrize("cycles", [None, "two", [2.0], True])
-def test_parameters_of_pulses_are_numbers(cycles):
-    with pytest.raises(InvalidArgumentError, match=r"^`cycles` = "):
-        rocking.pulse("mavroeidis_papageorgiou", cycles=cycles)

@@ -169,7 +169,7 @@ for share in (0.0, 0.02, 0.3, 0.7, 0.98, 1.0 - 1e-9):
     assert run().split() == ["1", "0", "0"]
 
 
-def test_a_damaged_folder_that_cannot_be_removed_is_done_without(run):
+def test_damaged_folder_that_cannot_be_removed_disables_the_cache(run):
     run()
     files_of(run.kept)["machine code"].write_bytes(b"")
     refuse = """
@@ -183,7 +183,7 @@ Path.rename = rename
     assert "NUMBA_CACHE_DIR" in text
 
 
-def test_a_folder_that_becomes_unwritable_is_done_without(run):
+def test_folder_that_becomes_unwritable_disables_the_cache(run):
     code = """
 from pathlib import Path
 import shutil
@@ -217,7 +217,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no limits of processes")
-def test_files_that_become_too_large_are_done_without(run):
+def test_files_that_become_too_large_disable_the_cache(run):
     assert run(LIMITED + CALL).split()[:3] == ["0", "1", "1"]
     assert [*run.kept.rglob("*.nbc")] == []
     assert run().split() == ["0", "1", "0"]

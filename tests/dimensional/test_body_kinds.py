@@ -1,5 +1,6 @@
 """Bodies by their descriptions: one declared union for Python, options, tables and configurations."""
 
+import json
 import math
 
 import numpy as np
@@ -122,3 +123,12 @@ def test_an_object_of_a_table_is_of_any_rigid_kind():
     assert rocking.Object.from_body(expected["case"]).planes == found["case"].planes
     with pytest.raises(InvalidArgumentError, match="one rigid body"):
         rocking.Object.from_body("frame(width=1m, height=4m, mass_ratio=1)")
+
+
+@pytest.mark.parametrize("kind", ["mesh(path=/etc/hostname)", "mesh"])
+def test_a_table_of_objects_names_no_file(kind):
+    for table in (
+        objects_of_json(json.dumps([{"name": "a", "body": kind}])),
+        objects_of_csv(f"name;width;height;body\na;40 cm;1.6 m;{kind}\n"),
+    ):
+        assert [one.column for one in table.bad_rows] == ["body"]

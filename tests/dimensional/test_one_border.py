@@ -50,7 +50,7 @@ def command():
 
 @pytest.mark.parametrize(
     ("work", "most", "files"),
-    [(lambda: BLOCK.response("sine", **MOTION), 60, 13), (assessed, 800, 30), (command, 1600, 45)],
+    [(lambda: BLOCK.response("sine", **MOTION), 40, 10), (assessed, 600, 26), (command, 1200, 40)],
     ids=["response", "sentence and margin", "command of the readme"],
 )
 def test_one_response_is_little_work(work, most, files):

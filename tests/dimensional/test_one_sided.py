@@ -107,7 +107,40 @@ def test_derived_bodies_keep_their_wall() -> None:
     assert not wall.contact_is_known
 
 
+def test_impacts_that_accumulate_end_in_rest() -> None:
+    """Without the rule each rest takes thousands of impacts, and beyond the limit bodies rest at the next one."""
+    shape = np.convolve(np.random.default_rng(1).standard_normal(1500), np.ones(6), "same")
+    walls = RigidBody(np.linspace(0.1, 0.4, 40), 0.3, 2.0, sides="left", rebound=0.9)
+    found = walls.response(rocking.Record(shape, 0.01, "m/s2"), scale=0.5)
+    assert 10 < found.impacts.max() < 2000
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "rectangle(width=40cm, height=1.6m",
+        "offset_mass(width=40cm, height=1.6m, offset=5cm",
+        "two_edges(left=15cm, right=25cm, mass_height=80cm, inclination=1deg",
+        "cylinder(diameter=40cm, height=1.6m",
+        "hollow(width=40cm, height=1.6m, wall=2cm",
+        "on_pedestal(width=30cm, height=1m, pedestal_width=40cm, pedestal_height=60cm, pedestal_mass=2",
+        "outline(vertices=0 0; 0.4 0; 0.4 1.6; 0 1.5",
+    ],
+)
+def test_every_rigid_kind_may_stand_against_a_wall(text: str) -> None:
+    made, rigid = rocking.body(f"{text}, sides=left, rebound=0.4)"), rocking.body(f"{text}, sides=both)")
+    if not isinstance(rigid, RigidBody):
+        rigid = RigidBody.from_size(0.4, 1.6)
+    assert made == rigid.one_sided("left", 0.4)
+
+
 def test_refused() -> None:
+    with pytest.raises(rocking.InvalidArgumentError, match="sides"):
+        rocking.body("rectangle", width=0.4, height=1.6, sides="up")
+    with pytest.raises(rocking.InvalidArgumentError, match="rebound"):
+        rocking.body("rectangle", width=0.4, height=1.6, rebound=0.4)
+    with pytest.raises(rocking.InvalidArgumentError, match="sides"):
+        rocking.body("frame", width=0.4, height=1.6, mass_ratio=2.0, sides="left")
     with pytest.raises(rocking.InvalidArgumentError, match="rebound"):
         RigidBody(left=0.1, right=0.1, height=1.0, rebound=0.5)
     with pytest.raises(rocking.InvalidArgumentError, match="rebound"):

@@ -6,9 +6,9 @@ import io
 import pytest
 
 import rocking
-from rocking._base.errors import InvalidArgumentError
+from rocking._base.errors import InvalidArgumentError, finite
 from rocking._datasets.csv_text import csv_text
-from rocking._dimensional.table import read_blocks, read_table
+from rocking._dimensional.table import BlockTable, read_blocks, read_table, respond_table
 from tests.sheets import xlsx_bytes
 
 HEADER = "name,width [m],height [m],peak_acceleration [g],period [s]\n"
@@ -102,7 +102,7 @@ def test_each_row_that_is_not_read_is_named_and_the_others_are_kept():
 def test_values_for_all_rows_stand_for_columns_that_the_table_lacks(tmp_path):
     path = tmp_path / "sizes.csv"
     path.write_text("width [m],height [m],restitution\n0.2,0.8,90 %\n0.2,0.8,momentum\n")
-    with pytest.raises(InvalidArgumentError, match="columns width, height, peak_acceleration, period"):
+    with pytest.raises(InvalidArgumentError, match="missing: peak_acceleration, period"):
         read_blocks(path, "sine")
     table = read_blocks(path, "sine", peak_acceleration=4.0, period=0.5)
     assert [problem.groups["restitution"] for problem in table.problems] == [
@@ -122,3 +122,34 @@ def test_a_sheet_is_read_as_its_text_is(tmp_path):
     path.write_text("no sheet")
     with pytest.raises(InvalidArgumentError, match="a sheet of a spreadsheet"):
         read_blocks(path, "sine")
+
+
+BODIES = """name;width [cm];height [m];wall [cm];diameter [cm];offset [cm];depth [cm];body;pga [g];T [s]
+box;40;1.6;2;;;;;0.4;0.5
+drum;;1.2;;30;;;;0.4;0.5
+statue;40;1.6;;;5;30;;0.4;0.5
+block;40;1.6;;;;30;;0.4;0.5
+text;;;;;;;two_edges(left=12cm, right=18cm, mass_height=40cm);0.4;0.5
+none;40;1.6;;;;;mesh(path=a.stl);0.4;0.5
+"""
+
+
+def test_a_table_has_the_bodies_of_its_columns():
+    table = read_table(BODIES, "sine")
+    assert [(one.row, one.column) for one in table.read.bad_rows] == [(7, "body")]
+    made = [
+        rocking.body("hollow", width=0.4, height=1.6, wall=0.02),
+        rocking.body("cylinder", diameter=0.3, height=1.2),
+        rocking.RigidBody.from_size(0.4, 1.6, offset=0.05),
+        rocking.Block(0.4, 1.6),
+        rocking.RigidBody(0.12, 0.18, 0.4),
+    ]
+    assert [problem.body for problem in table.problems] == made
+    found = respond_table(table)
+    for k, body in enumerate(made):
+        one = body.response("sine", peak_acceleration="0.4 g", period=0.5)
+        assert found["body"][k] == body.description
+        assert found["peak_rotation"][k] == finite(one.peak_rotation)
+        assert found["width"][k] == pytest.approx(body.width)
+        assert (found["alpha_deg"][k] is None) is (k != 3)
+    assert respond_table(BlockTable(table.problems[3:4], []))["peak_rotation"] == found["peak_rotation"][3:4]

@@ -9,7 +9,7 @@ import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.problem import record_groups, uplift_scale
-from rocking._dimensional.thresholds import overturning_scale, scale_thresholds
+from rocking._dimensional.thresholds import overturning_scale
 from tests.solver.records.tables import samples
 from tests.suites.motions import noise
 
@@ -58,7 +58,7 @@ def test_uplift_depends_on_both_components() -> None:
         assert BLOCK.response(MOTION, scale=scale * factor, thresholds=False).outcome == outcome
     held = rocking.Record([0.0, 1.0, 0.0], 0.1, "g", vertical=[1.0, 10.0, 1.0])
     assert uplift_scale(held, BLOCK) == 1e6
-    found = scale_thresholds(held, BLOCK)
+    found = BLOCK.thresholds(held)
     assert found.value.size == 0
     assert math.isnan(overturning_scale(held, BLOCK))
 
@@ -68,13 +68,13 @@ def test_a_search_ends_where_the_body_would_fly() -> None:
     motion = rocking.Record(record.acceleration, record.time_step, "m/s2", vertical=-3.0 * record.acceleration)
     limit = -STANDARD_GRAVITY / float(motion.vertical.min())
     heavy = rocking.Block(4.0, 8.0)
-    found = scale_thresholds(motion, heavy)
+    found = heavy.thresholds(motion)
     assert found.ends_in_flight
     assert limit * (1.0 - 1e-8) < found.searched[1] < limit
     assert found.sentence.endswith("times on its vertical acceleration reaches -g")
     response = heavy.response(motion, scale=0.9 * limit)
     assert response.margin == found.sentence
-    assert not scale_thresholds(motion, heavy, highest=0.5 * limit).ends_in_flight
+    assert not heavy.thresholds(motion, highest=0.5 * limit).ends_in_flight
     with pytest.raises(InvalidArgumentError, match=r"`scale` = .* -g at .* s"):
         heavy.response(motion, scale=1.01 * limit)
     with pytest.raises(InvalidArgumentError, match="`scale`"):
@@ -86,10 +86,10 @@ def test_thresholds_are_those_of_the_responses() -> None:
     motion = rocking.Record(
         record.acceleration, record.time_step, "m/s2", vertical=0.6 * np.roll(record.acceleration, 9)
     )
-    found = scale_thresholds(motion, BLOCK)
+    found = BLOCK.thresholds(motion)
     assert found.value.size
     assert overturning_scale(motion, BLOCK) == found.value[0]
-    without = scale_thresholds(record, BLOCK).value[0]
+    without = BLOCK.thresholds(record).value[0]
     assert abs(found.value[0] / without - 1.0) > 1e-3
     for scale in found.value.tolist():
         assert BLOCK.response(motion, scale=scale, thresholds=False).overturned

@@ -59,6 +59,7 @@ def test_peaks_obey_the_energy_of_housner():
     np.testing.assert_allclose(energy[1:] / energy[:-1], ETA**2, rtol=3e-3)  # peaks lie between samples
 
 
+@pytest.mark.long
 def test_two_edges_give_their_own_numbers():
     alpha, p, eta = np.array([[0.2], [0.3]]), np.array([[2.2], [2.4]]), np.array([[0.93], [0.88]])
     rotation = free_rocking(np.array([0.16]), alpha, p, eta, 6.0, 200)[0]

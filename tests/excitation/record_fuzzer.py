@@ -1,4 +1,4 @@
-"""Random mutations of accelerogram files for the readers: `python -m tests.excitation.record_fuzzer --seconds 3600`.
+"""Random mutations of accelerogram files for the readers.
 
 A reader returns a record or raises `RecordFileError`; anything else is a defect, and so is a file that takes long. A
 file that states its unit is never read with another one without a remark. What a mutation of a digit does cannot be
@@ -7,11 +7,8 @@ noticed; lines that are missing or repeated in a file with times can, and are.
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
 import time
-import warnings
 
 import numpy as np
 
@@ -105,22 +102,3 @@ def fuzz(dice: random.Random) -> bool:
     remove_or_repeat_a_row(dice)
     state_another_unit(dice)
     return read_mutation(dice)
-
-
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=60.0, help="processor time")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    warnings.simplefilter("error")
-    dice = random.Random(options.seed)
-    rounds, read = 0, 0
-    while time.process_time() < options.seconds:
-        read += fuzz(dice)
-        rounds += 1
-    sys.stdout.write(f"{rounds} mutated files in {time.process_time():.0f} s: {read} read, the others refused\n")
-
-
-if __name__ == "__main__":
-    main()

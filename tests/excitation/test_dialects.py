@@ -10,6 +10,5 @@ CASES = number(100, 10_000)
 
 @pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds
 def test_no_dialect_is_read_as_another_motion(seed):
-    """`python -m tests.excitation.dialects --count 10000 --seed 1` reads more; the seed is in a failure."""
-    found = run(CASES, seed)
-    assert found["read"] > 0.9 * CASES  # with all that a person who knows the file may state
+    """The seed is in a failure."""
+    assert run(CASES, seed) > 0.9 * CASES  # with all that a person who knows the file may state

@@ -12,7 +12,6 @@ from scipy.signal import resample_poly
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._excitation.records.record import UNITS
 
 MOTIONS = Path(__file__).parents[2] / "workflow" / "motions"
 
@@ -20,15 +19,6 @@ MOTIONS = Path(__file__).parents[2] / "workflow" / "motions"
 def sine_record(step: float = 0.005, cycles: int = 10, period: float = 0.5, peak: float = 2.0) -> rocking.Record:
     times = np.arange(round(cycles * period / step) + 1) * step
     return rocking.Record(peak * np.sin(2 * np.pi * times / period), step, unit="m/s2", name="sine")
-
-
-@pytest.mark.parametrize(
-    ("unit", "factor"), [("m/s2", 1.0), ("cm/s2", 0.01), ("gal", 0.01), ("mm/s2", 1e-3), ("g", 9.80665)]
-)
-def test_units_are_converted_to_si(unit: str, factor: float) -> None:
-    record = rocking.Record([0.0, 0.5, -1.0], 0.01, unit=unit)
-    np.testing.assert_allclose(record.acceleration, np.array([0.0, 0.5, -1.0]) * factor, rtol=1e-15)
-    assert unit in UNITS
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from rocking._excitation.records.record import UNITS
 from rocking._numba.cancellation import StopFlag
 from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, THREE, File, at2, esm, pairs, rows
 from tests.excitation.record_fuzzer import fuzz
+from tests.sampling import number
 
 
 @pytest.mark.parametrize("file", [*GOOD.values(), *ODD.values()], ids=[*GOOD, *ODD])
@@ -114,14 +115,8 @@ def test_reading_takes_at_most_four_times_the_memory_of_the_file(header: str, ro
 
 
 def test_a_missing_file_is_an_invalid_argument(tmp_path) -> None:
-    with pytest.raises(InvalidArgumentError, match="a file that can be read"):
+    with pytest.raises(InvalidArgumentError, match="no such file"):
         rocking.read_record(tmp_path / "none.at2")
-
-
-@pytest.mark.parametrize("arguments", [{"unit": "furlong"}, {"time_step": 0.0}, {"time_step": float("nan")}])
-def test_arguments_are_checked(arguments: dict) -> None:
-    with pytest.raises(InvalidArgumentError, match=next(iter(arguments))):
-        parse_record(at2().encode(), "x.at2", **arguments)
 
 
 def test_errors_can_be_sent_between_processes() -> None:
@@ -142,10 +137,9 @@ def test_seismic_formats_without_obspy_name_the_package(monkeypatch) -> None:
 
 
 def test_mutated_files_are_read_or_refused() -> None:
-    """A few seconds; `python -m tests.excitation.record_fuzzer --seconds 3600` runs longer."""
-    dice = random.Random(0)
-    read = sum(fuzz(dice) for _ in range(2000))
-    assert 50 < read < 1900
+    count, dice = number(500, 100_000), random.Random(0)
+    read = sum(fuzz(dice) for _ in range(count))
+    assert 0.02 * count < read < 0.95 * count
 
 
 def test_the_vertical_component_of_a_second_file(tmp_path) -> None:
@@ -203,7 +197,7 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
         rocking.read_record(path, component="NS_g", vertical="up")
     with pytest.raises(RecordFileError, match="argument `component`"):
         rocking.read_record(path, vertical="EW_g")
-    with pytest.raises(InvalidArgumentError, match=r"`vertical` = .* a file that can be read"):
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = .*: no such file"):
         rocking.read_record(path, component="NS_g", vertical=tmp_path / "none.at2")
     path.write_text(at2())
     with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):

@@ -11,6 +11,7 @@ from rocking._lookup.cube import open_cube
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra, spectrum
 from tests.lookup_grid import GRID, crossed, random_points
+from tests.sampling import number
 
 ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 5.0, 10.0, 15.0, 20.0])
 
@@ -28,7 +29,7 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize(("between_etas", "between_angles"), [(False, True), (True, False), (True, True)])
 def test_bounds_hold_between_restitutions_and_angles(folder, between_etas, between_angles):
     rng = np.random.default_rng(8)
-    points = random_points(20_000, seed=9)
+    points = random_points(number(5_000, 20_000), seed=9)
     n = len(points["slenderness"])
     points["restitution"] = rng.uniform(ETAS[0], ETAS[-1], n) if between_etas else rng.choice(ETAS, n)
     points["alpha"] = rng.uniform(ANGLES[0], ANGLES[-1], n) if between_angles else rng.choice(ANGLES, n)
@@ -47,31 +48,6 @@ def test_bounds_hold_between_restitutions_and_angles(folder, between_etas, betwe
         counted = from_cube & (found.impacts >= 0)
         assert counted.sum() > 0.5 * from_cube.sum()
         np.testing.assert_array_equal(found.impacts[counted], expected.impacts[counted])
-
-
-def test_impacts_are_known_only_where_all_corners_have_the_same_number(folder):
-    """In the middle between two restitutions and two angles: four corners of a cell in each of 4 x 4 slices."""
-    cubes = [read_spectrum(folder / f"eta-{eta:.2f}.nc") for eta in ETAS]
-    rows, columns = (0.5 * (axis[1:] + axis[:-1]) for axis in GRID.values())
-    found = open_cube(folder).response(
-        slenderness=rows[:, None],
-        frequency_ratio=columns,
-        restitution=0.5 * (ETAS[1] + ETAS[2]),
-        alpha=0.5 * (ANGLES[1] + ANGLES[2]),
-        absolute_tolerance=1e-2,
-    )
-
-    def all_agree(etas, angles):
-        nodes = np.array([cubes[e].impacts.values[a] for e in etas for a in angles])
-        corners = np.stack([nodes[:, i : i + 90, j : j + 90] for i in (0, 1) for j in (0, 1)])
-        return (corners == corners[0, 0]).all(axis=(0, 1))
-
-    from_cube = found.source == "cube"
-    every = all_agree(range(4), range(4))
-    known = found.impacts >= 0
-    assert not (known & ~every)[from_cube].any()
-    assert (from_cube & known).sum() > 1000
-    assert (from_cube & ~every).sum() > 20
 
 
 def test_errors_between_slices_are_measured_in_the_middle(tmp_path):
@@ -135,16 +111,6 @@ def test_solver_is_used_only_where_a_missing_cube_is_needed(folder, tmp_path):
     assert whole.used(np.array([0.83, 0.79])) == [1]
 
 
-def test_errors_between_slices_are_missing_above_the_last_slice(folder):
-    cubes = [read_spectrum(folder / f"eta-{eta:.2f}.nc") for eta in ETAS]
-    for name in ("restitution", "alpha"):
-        errors = np.array([cube[f"{name}_error"].values[:, :-1, :-1] for cube in cubes])
-        if name == "alpha":
-            errors = errors.swapaxes(0, 1)
-        assert np.isnan(errors[-1]).all()
-        assert all(np.isfinite(one).mean() > 0.5 for one in errors[:-1])
-
-
 def test_a_cube_names_the_restitutions_from_which_the_interval_above_it_is_interpolated(folder):
     for k, (first, last) in enumerate([(0, 4), (0, 4), (1, 5), (2, 6), (2, 6), (5, 6)]):
         cube = read_spectrum(folder / f"eta-{ETAS[k]:.2f}.nc")
@@ -175,7 +141,7 @@ def test_bounds_hold_between_uneven_slices(tmp_path):
     etas, angles = [0.5, 0.6, 0.7, 0.8], np.radians([10.0, 15.0, 20.0, 45.0])
     for cube in spectra("cosine", restitution=etas, alpha=angles, **coarse):
         write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
-    rng, n = np.random.default_rng(3), 20_000
+    rng, n = np.random.default_rng(3), number(5_000, 20_000)
     points = {"slenderness": rng.uniform(0.2, 0.35, n), "frequency_ratio": rng.uniform(9.0, 27.0, n)}
     points |= {"restitution": rng.uniform(0.5, 0.8, n), "alpha": rng.uniform(angles[2], angles[3], n)}
     found = open_cube(tmp_path).response(**points, absolute_tolerance=1e-2)

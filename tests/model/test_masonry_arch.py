@@ -109,14 +109,6 @@ def test_impact_of_an_arch_loses_energy_and_slender_joints_lose_less():
     assert 0.0 < ratios[0] < ratios[1] < ratios[2] < 1.0
 
 
-def test_velocity_field_conserves_the_lengths_between_hinges():
-    linkage = OPPENHEIM.mechanism().linkage
-    rates, _ = linkage.rotations()
-    a, b, c, d = linkage.hinges
-    first, third = 1j * rates[0] * (b - a), 1j * rates[2] * (c - d)
-    assert abs(first + 1j * rates[1] * (c - b) - third) < 1e-12
-
-
 def test_an_arch_that_is_too_thin_is_refused():
     with pytest.raises(InvalidArgumentError, match="thickness"):
         MasonryArch(10.0, 0.6, math.pi, 20, 9.81).mechanism()

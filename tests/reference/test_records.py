@@ -8,7 +8,7 @@ import pytest
 from reference.exact_response import working_precision
 from reference.records import BITS, integrate_record, response_and_amplification
 from stress.records import judge, random_case, summary
-from tests.sampling import sample
+from tests.sampling import number
 from tests.solver.records.tables import rows
 
 
@@ -35,16 +35,16 @@ def test_the_amplification_of_a_small_single_flight_follows_from_its_threshold()
 
 
 def test_random_cases() -> None:
-    verdicts = [judge(random_case(seed)) for seed in range(25)]
+    verdicts = [judge(random_case(seed)) for seed in range(number(8, 25))]
     found = summary(verdicts)
     assert found["wrong"] == 0
     assert found["overturned"] > 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_more_random_cases() -> None:
     """`python -m stress.records` runs a thousand."""
-    found = summary([judge(random_case(seed)) for seed in sample(range(100, 125), 6)])
+    found = summary([judge(random_case(seed)) for seed in range(100, 125)])
     assert found["wrong"] == 0
     assert found["largest error over allowed"] < 0.1
 

@@ -22,6 +22,7 @@ from rocking_api.settings import Settings
 
 from rocking._cli.app import app
 from tests.api.servers import proxy, serving
+from tests.sampling import number
 
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
@@ -145,11 +146,11 @@ def test_service_works_with_the_system_calls_of_the_unit(unit, tmp_path):
     done = subprocess.run([*filtered, "-c", chroot], stdout=subprocess.PIPE, text=True, check=True)
     assert done.stdout == "refused\n"
     question = "slenderness=0.4&frequency_ratio=5&restitution=0.85"
-    with serving(tmp_path, tmp_path / "log", command=(*filtered, "-m", "rocking._cli"), workers=2) as server:
+    with serving(tmp_path, tmp_path / "log", command=(*filtered, "-m", "rocking._cli"), workers=number(1, 2)) as server:
         response = httpx2.get(f"{server.address}/v1/response?pulse=sine&{question}", timeout=120)
         assert response.json()["outcome"] == "RECOVERS"
         assert "process_open_fds" in httpx2.get(server.address + "/metrics", timeout=120).text
-        assert server.stop() == 0
+        assert server.stop() in (0, -15)
     assert " ERROR " not in server.log.read_text()
 
 

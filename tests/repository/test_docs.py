@@ -4,6 +4,7 @@ import json
 import os
 import re
 import runpy
+import shlex
 import shutil
 import subprocess
 import sys
@@ -21,8 +22,7 @@ import rocking
 from rocking import plot
 from rocking._cli.app import app
 from rocking._excitation import pulses
-from tests.api.servers import serving
-from tests.sampling import ALL, but_long
+from tests.sampling import ALL, but_long, sample
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -44,6 +44,7 @@ PRINTED = {
     "own_body": ["crushed by 6 cm: restitution 0.948"],
     "own_family": ["3.08448126"],
     "own_pulse": ["2.02417318"],
+    "precarious_rock": ["0 deg         0.07"],
     "record": ["49 changes of the outcome", "overturns above 1.13384"],
     "spectrum": ["rotation", "0.04483"],
 }
@@ -90,18 +91,12 @@ def test_examples_and_pages_import_public_names_only():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", PRINTED)
-def test_example(name, smoke_results, monkeypatch, capsys, tmp_path):
+@pytest.mark.parametrize("name", [name for name in PRINTED if name != "ask_a_server"])  # test_readme.py
+def test_example(name, smoke_results, monkeypatch, capsys):
     monkeypatch.setenv("ROCKING_RESULTS", str(smoke_results))
     monkeypatch.setenv("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
     monkeypatch.setattr(pulses, "_REGISTERED", {})
-    path = str(ROOT / "examples" / f"{name}.py")
-    if name == "ask_a_server":
-        with serving(smoke_results, tmp_path / "log") as server:
-            monkeypatch.setenv("ROCKING_SERVER", server.address)
-            runpy.run_path(path)
-    else:
-        runpy.run_path(path)
+    runpy.run_path(str(ROOT / "examples" / f"{name}.py"))
     output = capsys.readouterr().out
     assert [text for text in PRINTED[name] if text not in output] == []
     assert len(plt.get_fignums()) == PICTURES[name]
@@ -153,9 +148,8 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]
     commands = [line for line in commands if ALL or "--mesh" not in line]  # takes ten seconds, most of this test
-    assert len(commands) >= 8
-    for command in commands:
-        done = CliRunner().invoke(app, command.split()[1:])
+    for command in sample(commands, 12):
+        done = CliRunner().invoke(app, shlex.split(command)[1:])
         assert done.exit_code == 0, f"{command}: {done.output}"
         if " -o " in command:
             assert Path(command.split()[-1]).stat().st_size > 10_000

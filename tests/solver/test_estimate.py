@@ -57,6 +57,19 @@ def test_nearly_all_outcomes_are_those_of_the_solver(changed: dict[str, float]) 
     np.testing.assert_array_equal(again[1], reach[::-1])
 
 
+@pytest.mark.parametrize("blocked", [0, 1])
+def test_nearly_all_outcomes_of_walls_are_those_of_the_solver(blocked: int) -> None:
+    one = noise(3, 800, 0.02)
+    motion = rocking.Record(one.acceleration, one.time_step, "m/s2", vertical=0.5 * one.acceleration[::-1])
+    cells, samples = bodies(400, 5, vertical=0.3), motion_samples(motion)
+    cells["eta"] -= 0.3
+    cells["slenderness"][:, blocked] = np.inf
+    records, _ = solve_bodies(samples, cells, 1, None, True)
+    expected = records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
+    assert 0 < expected.sum() < cells.size
+    assert (estimate_outcomes(samples, cells, 1)[0] != expected).mean() < 0.01
+
+
 def test_the_reach_is_the_distance_to_overturning_where_the_peak_depends_on_the_strength_smoothly() -> None:
     samples = motion_samples(rocking.Record(np.sin(np.linspace(0.0, 2.0 * np.pi, 101)), 0.01, "m/s2"))
     cells = bodies(200, 1, rate=0.05, alpha=0.2, eta=0.8)

@@ -29,45 +29,12 @@ def test_an_impulse_is_an_initial_velocity_of_free_rocking(name):
     assert velocity_given(name, 1 / threshold.amplitude[0]) / omega == pytest.approx(1.0, rel=3e-4)
 
 
-@pytest.mark.parametrize("name", ["sine", "cosine", "c1", "ricker", "mavroeidis_papageorgiou"])
-def test_impulses_without_net_velocity_hardly_move_the_block(name):
-    for omega in (1e2, 1e3, 1e4):
-        found = rocking.peak_response(name, slenderness=0.5, frequency_ratio=omega, restitution=0.9)
-        assert found.outcome == Outcome.RECOVERS
-        assert 0 < found.peak_rotation < 100 / omega**2
-
-
 @pytest.mark.parametrize("name", SIGNED)
 @pytest.mark.parametrize("alpha", [None, 0.3])
 def test_a_slow_pulse_overturns_every_block_that_uplifts(name, alpha):
     slenderness = [1e-4, 0.01, 0.5, 0.9]
     slow = {"frequency_ratio": 1e-4, "restitution": 0.9, "alpha": alpha}
     assert rocking.peak_response(name, slenderness=slenderness, **slow).overturned.all()
-
-
-@pytest.mark.parametrize("name", ["sine", "half_sine", "rectangular", "cosine"])
-def test_threshold_of_slow_pulses_tends_to_one(name):
-    amplitude = [
-        rocking.thresholds(name, frequency_ratio=omega, restitution=0.5, highest=3.0).amplitude[0]
-        for omega in (0.3, 0.1, 0.03, 0.01)
-    ]
-    assert (np.diff(amplitude) <= 1e-9).all()
-    assert amplitude[-1] == pytest.approx(1.0, abs=0.02)
-
-
-@pytest.mark.parametrize("alpha", [None, 1e-8, 0.4, 1.5])
-@pytest.mark.parametrize("name", SIGNED)
-def test_strong_and_extreme_pulses_have_a_response(name, alpha):
-    slenderness = np.array([1e-4, 1e-3, 0.1, 0.9, 1 - 1e-9, 1 - 1e-12, np.nextafter(1.0, 0.0)])[:, None]
-    omega = np.array([1e-4, 1e-2, 1.0, 1e2, 1e4])
-    for eta in (0.0, 1e-3, 0.9):
-        found = rocking.peak_response(
-            name, slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha
-        )
-        np.testing.assert_array_equal(np.isnan(found.peak_rotation), found.overturned)
-        standing = found.peak_rotation[~found.overturned]
-        assert ((standing >= 0) & (standing < np.inf)).all()
-        assert (found.outcome[:-1] != Outcome.NO_UPLIFT).all()  # one ulp below 1 the rounding of f decides
 
 
 @pytest.mark.parametrize("name", [name for name in PULSE_NAMES if name != "rectangular"])
@@ -104,23 +71,3 @@ def test_small_flights_under_slow_pulses(name):
     for found, other in ((arcs.peak_rotation, steps.peak_rotation), (arcs.first_impact_time, steps.first_impact_time)):
         known = np.isfinite(found)
         assert (np.abs(found - other)[known] <= (allowed * np.abs(other))[known]).all()
-
-
-def test_response_is_continuous_in_each_group_inside_a_mode():
-    rng = np.random.default_rng(11)
-    n = 400
-    for name in PULSE_NAMES:
-        question = {
-            "slenderness": rng.uniform(0.2, 0.95, n),
-            "frequency_ratio": np.exp(rng.uniform(0, 2.5, n)),
-            "restitution": rng.uniform(0.3, 0.95, n),
-        }
-        here = rocking.peak_response(name, **question)
-        for group, value in question.items():
-            moved = rocking.peak_response(name, **{**question, group: value * (1 + 1e-9)})
-            same = (here.peak_mode == moved.peak_mode) & (here.outcome == moved.outcome) & ~here.overturned
-            same &= here.peak_rotation < 0.9
-            gap = np.abs(moved.peak_rotation[same] - here.peak_rotation[same])
-            assert np.median(gap) < 1e-8
-            assert np.quantile(gap, 0.95) < 1e-6
-            assert gap.max() < 1e-3  # near a threshold the peak varies as a square root

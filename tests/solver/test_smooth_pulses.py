@@ -132,17 +132,3 @@ def test_registered_by_name():
     assert json.loads(printed.stdout)["peak_rotation"] == pytest.approx(float(found.peak_rotation), rel=1e-12)
     with pytest.raises(InvalidArgumentError, match="name"):
         pulses.register(CHIRP)
-
-
-def test_many_bodies_solved_together_are_those_solved_alone():
-    rng = np.random.default_rng(5)
-    groups = {
-        "slenderness": rng.uniform(0.05, 0.98, 100),
-        "frequency_ratio": 10 ** rng.uniform(-0.5, 1.3, 100),
-        "restitution": rng.uniform(0.4, 0.98, 100),
-        "alpha": rng.uniform(0.02, 0.5, 100),
-    }
-    together = rocking.peak_response(CHIRP, **groups)
-    for i in range(100):
-        alone = rocking.peak_response(CHIRP, **{name: values[i] for name, values in groups.items()})
-        np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[i])

@@ -104,21 +104,6 @@ def test_a_cell_does_not_depend_on_its_company(name):
         assert_equal(by_stages(pulse, s[i : i + 1], w[i : i + 1], eta[i : i + 1]), together[i : i + 1])
 
 
-@pytest.mark.parametrize("name", ["sine", "c2", "-mavroeidis_papageorgiou", "-ricker_antisymmetric"])
-def test_cells_that_differ_in_restitution_share_the_first_flight(name):
-    """In blocks of every size, some of which end at the end of a block of the solver."""
-    pulse = rocking.pulse(name)
-    rng = np.random.default_rng(7)
-    s, w, _ = cells(300, 8)
-    counts = rng.integers(1, 40, 300)
-    s, w = np.repeat(s, counts), np.repeat(w, counts)
-    eta = rng.uniform(0, 1, s.size)
-    assert s.size > 3 * BLOCK_SIZE
-    together = by_stages(pulse, s, w, eta)
-    order = rng.permutation(s.size)
-    assert_equal(by_stages(pulse, s[order], w[order], eta[order]), together[order])
-
-
 def test_a_start_above_the_level_and_pieces_without_a_cut():
     """Sums of sinusoids whose extrema have different heights: some levels are reached on some pieces only."""
     terms = ((1.0, 1.0, -math.pi / 2), (0.6, 2.0, 0.3), (0.3, 3.0, 1.0))

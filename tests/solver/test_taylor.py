@@ -191,21 +191,6 @@ def test_error_of_the_slender_limit_is_of_order_alpha_squared(name):
     assert np.median(gap[3] / angles[3] ** 2) == pytest.approx(np.median(gap[1] / angles[1] ** 2), rel=0.05)
 
 
-@pytest.mark.parametrize("name", SIGNED)
-def test_outcomes_tend_to_those_of_the_slender_limit(name):
-    rng = np.random.default_rng(10)
-    n = 300
-    question = {
-        "slenderness": rng.uniform(0.05, 0.98, n),
-        "frequency_ratio": np.exp(rng.uniform(-1, 2.5, n)),
-        "restitution": rng.uniform(0, 1, n),
-    }
-    slender = rocking.peak_response(name, **question)
-    for alpha in (1e-8, 1e-5):
-        found = rocking.peak_response(name, **question, alpha=alpha)
-        np.testing.assert_array_equal(found.outcome, slender.outcome)
-
-
 @pytest.mark.parametrize("pulse", ["sine", "ricker"])
 def test_terms_beyond_the_degree_are_not_used(pulse, monkeypatch):
     """Series of a lower degree do not use the remaining rows of the solver state."""

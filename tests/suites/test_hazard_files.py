@@ -95,5 +95,5 @@ def test_a_table_of_ones_own(tmp_path, header):
 
 
 def test_a_file_that_cannot_be_read(tmp_path):
-    with pytest.raises(InvalidArgumentError, match="No such file"):
+    with pytest.raises(InvalidArgumentError, match="no such file"):
         read_hazard(tmp_path / "none.csv")

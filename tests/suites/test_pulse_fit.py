@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.thresholds import overturning_scale, scale_thresholds
+from rocking._dimensional.thresholds import overturning_scale
 from tests.suites.motions import BLOCK, noise, sampled
 
 
@@ -78,7 +78,7 @@ def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     exact = rocking.thresholds(
         "sine", frequency_ratio=4.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha, highest=10.0
     )
-    found = scale_thresholds(record, BLOCK)
+    found = BLOCK.thresholds(record)
     np.testing.assert_allclose(
         found.value * record.peak_acceleration / BLOCK.uplift_acceleration, exact.amplitude, rtol=1e-4
     )

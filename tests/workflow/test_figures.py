@@ -13,16 +13,18 @@ import yaml
 from rocking._boundary.curves import join_curves
 from rocking._datasets.cube import read_dataset, write_dataset
 from rocking._dimensional.block import Block
+from rocking._excitation.pulses import PULSE_NAMES
 from rocking._solver.peak_response import peak_response
 from rocking.paper import overturning_amplitudes
 from rocking.plot.boundary_lines import Lines
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_09, figure_10, similar_histories
+from workflow.figures import figure_09, figure_10, figure_scale_law_excitations, similar_histories
 from workflow.figures.boundary_lines import lines_of
 from workflow.scripts.figure import main
 from workflow.scripts.overturning import curves_of, described
 
 CONFIG = PROJECT / "workflow/config"
+PROVENANCE = ("code_sha256", "settings_sha256", "configuration", "product_version")
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
 
@@ -30,7 +32,7 @@ CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 def test_figure_drawn_twice_has_equal_bytes(name: str, smoke_results: Path, tmp_path: Path) -> None:
     paths = {kind: tmp_path / f"{name}.{kind}" for kind in ("svg", "png", "nc")}
     written = read_dataset(smoke_results / f"figures/{name}.nc").attrs
-    provenance = {key: written[key] for key in ("code_sha256", "settings_sha256")}
+    provenance = {key: written[key] for key in PROVENANCE}
     main(figure=name.replace("-", "_"), **paths, **CONFIGURED[name], provenance=provenance)
     for kind, path in paths.items():
         there = smoke_results / f"figures/{name}.{kind}"
@@ -161,6 +163,28 @@ def test_blocks_of_figure_11_have_equal_groups() -> None:
     # theta = alpha times the peak; a_g/g = alpha/s and tan(alpha)/s
     expected = [by_alpha * s, by_tangent * alpha * s / np.sin(alpha)]
     np.testing.assert_allclose(np.abs(data.rotation.values[0, :, 0]).max(axis=-1), expected, rtol=1e-4)
+
+
+def test_scale_law_of_excitations_is_that_of_single_blocks() -> None:
+    records = ["napa_HNN.csv"]
+    axis = {"low": 2.0, "high": 8.0, "points": 4}
+    data = figure_scale_law_excitations.data(
+        motions=[PROJECT / "workflow/motions" / name for name in records], records=records, restitution=[0.8, 0.9],
+        reference=0.9, slenderness={"low": 0.3, "high": 0.9, "points": 4}, frequency_ratio=axis,
+        frequency_parameter=axis,
+    )  # fmt: skip
+    low, high = (
+        peak_response("cosine", slenderness=0.5, frequency_ratio=8.0, restitution=eta).peak_rotation
+        for eta in (0.8, 0.9)
+    )
+    k = PULSE_NAMES.index("cosine")
+    assert float(data.pulse_deviation[k, 1, -1]) == pytest.approx(abs(high * (0.8 / 0.9) ** 2 / low - 1), rel=1e-12)
+    assert float(data.pulse_exponent[k, 1, -1]) == pytest.approx(np.log(low / high) / np.log(0.8 / 0.9), rel=1e-12)
+    names = data.attrs["excitation_names"].split()
+    assert names == [*PULSE_NAMES, "napa_HNN"]
+    # one lobe: the largest rotation comes before the impact
+    assert float(data.median_exponent[names.index("half_sine")]) == pytest.approx(0.0, abs=1e-12)
+    assert np.isfinite(data.record_deviation.values).any()
 
 
 def test_islands_of_figure_4_are_lines_in_the_expected_region(smoke_results: Path) -> None:

@@ -131,6 +131,7 @@ def test_map_is_that_of_single_blocks(products: Path, suite: SuiteConfiguration)
         np.testing.assert_array_equal(outcomes.map_overturned[i, j], direct.overturned[0])
 
 
+@pytest.mark.long  # as for data sets, test_workflow_recovery.py
 def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(
     suite_run: Path, configuration: Path, tmp_path: Path
 ) -> None:
@@ -165,8 +166,11 @@ def test_sizes_of_blocks_are_in_metres_or_with_units() -> None:
     found = suite_configuration(configuration | {"blocks": same + kinds}, CONFIGURATION.parent).blocks
     assert len(found) == 6
     assert len(set(found)) == 3
-    with pytest.raises(InvalidArgumentError, match="equal edges"):
-        suite_configuration(configuration | {"blocks": [same[0] | {"offset": "5 cm"}]}, CONFIGURATION.parent)
+    others = [same[0] | {"offset": "5 cm"}, same[0]]
+    with pytest.raises(ConfigurationError, match="equal edges"):
+        check({"title": "", "suite": configuration | {"blocks": others, "sensitivity": None}}, CONFIGURATION.parent)
+    with pytest.raises(InvalidArgumentError, match="about the same one"):
+        suite_configuration(configuration | {"blocks": [*others, same[0] | {"sides": "left"}]}, CONFIGURATION.parent)
 
 
 @pytest.mark.parametrize(
@@ -211,13 +215,3 @@ def test_invalid_configuration_is_refused_in_one_line(place: str, value: Any, me
         check(configuration, CONFIGURATION.parent)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_snakemake_shows_the_line(tmp_path: Path) -> None:
-    configuration = yaml.safe_load(CONFIGURATION.read_text())
-    configuration["suite"]["measure"] = "sa"
-    path = tmp_path / "suite.yaml"
-    path.write_text(yaml.safe_dump(configuration))
-    refused = snakemake(tmp_path, "--dry-run", configuration=path)
-    assert refused.returncode != 0
-    assert "Configuration refused: suite.measure = 'sa': allowed: one of pga" in refused.stdout

@@ -6,14 +6,19 @@ import hashlib
 import json
 import re
 import shutil
+import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
 import yaml
 
-from rocking._datasets.cube import read_spectrum
+import rocking
+from rocking._datasets.cube import read_dataset, read_spectrum
+from rocking._datasets.provenance import settings_digest
 from tests.sampling import but_long
-from tests.workflow_fixtures import PROJECT, SMOKE, reproduce, rules_to_run, snakemake
+from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
+from workflow.scripts.manifest import commit_of
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -42,7 +47,7 @@ def test_every_product_is_made_and_listed(smoke_results: Path) -> None:
         "table-1",
     ]
     expected = {f"figures/{name}.{kind}" for name in figures for kind in ("svg", "png", "nc")}
-    expected |= {"claims.json", "claims.md"}
+    expected |= {"claims.json", "claims.md", "claims.html"}
     for pulse in ("sine", "cosine"):
         for kind in ("spectra", "overturning"):
             expected |= {f"{kind}/{pulse}/eta-{eta}.nc" for eta in ("0.85", "0.90")}
@@ -51,7 +56,7 @@ def test_every_product_is_made_and_listed(smoke_results: Path) -> None:
     assert {name: entry["sha256"] for name, entry in manifest["products"].items()} == {
         name: found[name] for name in expected
     }
-    beside = {name for name in set(found) - expected if not name.startswith(".records/")}
+    beside = {name for name in set(found) - expected if not name.startswith((".records/", ".parts/"))}
     assert beside == {"manifest.json", "checks.txt"}  # and nothing else lies about
 
 
@@ -60,6 +65,28 @@ def test_products_carry_the_digests_of_the_manifest(smoke_results: Path) -> None
     cube = read_spectrum(smoke_results / "spectra/sine/eta-0.85.nc")
     assert cube.attrs["code_sha256"] == entry["code_sha256"]
     assert cube.attrs["settings_sha256"] == entry["settings_sha256"]
+
+
+@pytest.mark.parametrize("name", ["spectra/sine/eta-0.85", "overturning/cosine/eta-0.90", "figures/figure-07"])
+def test_a_data_set_states_version_command_and_configuration(smoke_results: Path, name: str) -> None:
+    about = read_dataset(smoke_results / f"{name}.nc").attrs
+    assert about["product_version"] == rocking.__version__
+    assert about["history"] == f"python -m workflow.run results/{name}.nc"
+    assert settings_digest(json.loads(about["configuration"])) == about["settings_sha256"]
+    (author,) = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]["authors"]
+    names = {about[f"{role}_{kind}"] for role in ("creator", "publisher") for kind in ("name", "institution")}
+    assert names == {about["institution"]} == {author["name"]}
+
+
+def test_the_manifest_states_the_commit_only_of_an_unchanged_checkout(tmp_path: Path) -> None:
+    assert commit_of(tmp_path) == {}
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@b.c"]
+    (tmp_path / "a").write_text("1")
+    for command in (["init", "-q"], ["add", "a"], ["commit", "-q", "-m", "a"]):
+        subprocess.run([*git, *command], check=True)
+    assert len(commit_of(tmp_path)["commit"]) == 40
+    (tmp_path / "a").write_text("2")
+    assert commit_of(tmp_path) == {}
 
 
 def test_products_were_tested(smoke_results: Path) -> None:
@@ -81,35 +108,70 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
         shutil.copytree(PROJECT / folder, project / folder, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("Snakefile", "environment.lock"):
         shutil.copy2(PROJECT / name, project / name)
-    report = {"all", "check_results"}  # the tests are among its inputs and lie in the project, which has moved
     unchanged = snakemake(copy_of_run, "--dry-run", project=project)
-    assert rules_to_run(unchanged.stdout) <= report, unchanged.stdout
+    assert "Nothing to be done" in unchanged.stdout  # the project has moved
 
     for modules, rules in {
         # of two modules, on which different rules depend
         ("rocking/paper/orientation.py", "workflow/figures/figure_07.py"): {"table_1", "claims", "figure_07"},
-        ("workflow/scripts/spectra.py",): {
-            "spectrum_part", "spectra", "check_data_sets", "figure_scale_law", "claims"
-        },
-    }.items():  # fmt: skip
+        ("workflow/scripts/spectra.py",): {"spectra", "check_data_sets", "figure_scale_law", "claims"},
+    }.items():
         before = {project / module: (project / module).read_text() for module in modules}
         for path, text in before.items():
             path.write_text(text + "\n# a change\n")
         changed = snakemake(copy_of_run, "--dry-run", project=project)
-        assert rules_to_run(changed.stdout) == rules | report | {"manifest"}, changed.stdout
+        assert rules_to_run(changed.stdout) == rules | {"manifest", "check_results", "all"}, changed.stdout
         for path, text in before.items():
             path.write_text(text)
 
 
-def test_another_restitution_leaves_the_boundaries_of_the_others(smoke_run: Path, tmp_path: Path) -> None:
-    written = tmp_path / "more.yaml"
-    written.write_text(
-        SMOKE.read_text().replace("restitution: [0.85, 0.90]\n\ngrid", "restitution: [0.85, 0.87, 0.90]\n\ngrid")
-    )
-    planned = snakemake(smoke_run, "--dry-run", configuration=written).stdout
-    of_cubes = {"spectrum_part", "spectra", "check_data_sets", "figure_scale_law", "claims"}
-    assert rules_to_run(planned) == of_cubes | {"overturning", "manifest", "check_results", "all"}, planned
-    assert {*re.findall(r"boundaries of the \w+ pulse at restitution (\S+)", planned)} == {"0.87"}
+def test_newer_files_with_the_same_bytes_repeat_nothing(copy_of_run: Path) -> None:
+    for path in (copy_of_run / "results").rglob("*"):
+        path.touch()
+    assert "Nothing to be done" in snakemake(copy_of_run, "--dry-run").stdout
+
+
+def test_another_restitution_repeats_what_depends_on_it_alone(tmp_path: Path) -> None:
+    """Of the paper's configuration; files without content stand for its products."""
+    paper, run = PROJECT / "workflow/config/paper.yaml", tmp_path / "run"
+    summary = snakemake(run, "--summary", configuration=paper).stdout
+    for name in re.findall(r"^(results/\S+)\t", summary, flags=re.MULTILINE):
+        (run / name).parent.mkdir(parents=True, exist_ok=True)
+        (run / name).touch()
+    assert snakemake(run, "--touch", "--forceall", configuration=paper).returncode == 0
+    before = {path: path.stat().st_mtime_ns for path in (run / "results").rglob("*.nc")}
+    changed, added = (tmp_path / f"{name}.yaml" for name in ("changed", "added"))
+    line = "restitution: [0.80, 0.82, 0.84, 0.85, 0.86, 0.88, 0.90, 0.92, 0.94, 0.96, 0.98, 1.00]"
+    changed.write_text(paper.read_text().replace(line, line.replace("0.98", "0.97")))
+    added.write_text(paper.read_text().replace(line, line.replace("0.98", "0.98, 0.99")))
+    after = {"check_data_sets", "claims", "figure_scale_law", "manifest", "check_results", "all"}
+    for configuration, own, completed in ((changed, "0.97", "0.94 0.96 0.97"), (added, "0.99", "0.96 0.98 0.99")):
+        planned = snakemake(run, "--dry-run", configuration=configuration).stdout
+        assert rules_to_run(planned) == {"overturning", "spectrum_part", "spectra"} | after, planned
+        jobs = {
+            text: sorted(re.findall(rf"{text} of the \w+ pulse at restitution (\S+)", planned.split("Job stats")[1]))
+            for text in ("boundaries", "Solving the spectrum cube", "Spectrum cube")
+        }
+        assert jobs == {
+            "boundaries": [own, own],
+            "Solving the spectrum cube": [own, own],
+            "Spectrum cube": sorted(2 * completed.split()),
+        }
+    assert before == {path: path.stat().st_mtime_ns for path in (run / "results").rglob("*.nc")}
+
+
+def test_lint_finds_what_is_stated(tmp_path: Path) -> None:
+    found = re.findall(r"^ +\* (.*)", snakemake(tmp_path, "--lint").stdout, flags=re.MULTILINE)
+    assert len(found) == 1
+    assert "PYTHONPATH used but not asserted" in found[0]  # it is set for the jobs, whether it was or not
+
+
+def test_environment_of_the_jobs_has_the_versions_of_the_project() -> None:
+    """Names of conda-forge are those of PyPI but for a few."""
+    text = (PROJECT / "pyproject.toml").read_text()
+    for package in yaml.safe_load((PROJECT / "workflow/envs/rocking.yaml").read_text())["dependencies"]:
+        name, _, version = package.replace("lazy_", "lazy-").replace("-base", "").partition(" ")
+        assert name == "python" or f'"{name}{version}"'.lower() in text.lower(), package
 
 
 @pytest.mark.parametrize("name", but_long(["paper", "atlas", "atlas-small"], "atlas-small"))
@@ -129,7 +191,7 @@ def test_stored_manifests_are_those_of_their_configurations(path: Path) -> None:
         for eta in configuration["restitution"]
     }
     figures = {f"figures/{name}.{kind}" for name in configuration.get("figures", ()) for kind in ("svg", "png", "nc")}
-    claims = {"claims.json", "claims.md"} if "claims" in configuration else set()
+    claims = {"claims.json", "claims.md", "claims.html"} if "claims" in configuration else set()
     assert set(listed) == expected | figures | claims
     assert all("content_sha256" in entry for name, entry in listed.items() if name.endswith(".nc"))
     assert len({entry["processor"] for entry in listed.values()}) == 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tracemalloc
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +12,16 @@ import pytest
 import yaml
 
 from tests.workflow_fixtures import PROJECT, SMOKE, snakemake
-from workflow.configuration import ConfigurationError, check, nodes_of_part, tenths
+from workflow.configuration import SCHEMA, ConfigurationError, check
 
-CONFIGURATIONS = sorted((PROJECT / "workflow/config").glob("*.yaml"))
+CONFIGURATIONS = sorted({*(PROJECT / "workflow/config").glob("*.yaml")} - {SCHEMA})
 MISSING = object()
+GIVEN = yaml.safe_load(SMOKE.read_text())
 
 
 def smoke(place: str = "", value: Any = None) -> dict[str, Any]:
     """The smallest configuration, with another value at a place such as `grid/alpha_deg`."""
-    configuration = yaml.safe_load(SMOKE.read_text())
+    configuration = deepcopy(GIVEN)
     *sections, key = place.split("/")
     part = configuration
     for name in sections:
@@ -49,13 +51,13 @@ def test_configurations_of_the_repository_are_accepted(path: Path) -> None:
         ("grid/frequency_ratio", 3, "grid.frequency_ratio = 3: missing key"),
         ("grid/frequency_ratio/low", 50.0, "grid.frequency_ratio: low = 50, high = 12; allowed: low < high"),
         ("grid/frequency_ratio/low", 12.0, "grid.frequency_ratio: low = 12, high = 12; allowed: low < high"),
-        ("grid/frequency_ratio/low", math.nan, "grid.frequency_ratio.low = nan: allowed: a number from 0.001 to 1000"),
+        ("grid/frequency_ratio/low", math.nan, "grid.frequency_ratio.low = nan: allowed: a finite number"),
         ("grid/frequency_ratio/high", math.inf, "grid.frequency_ratio.high = inf: allowed: a number"),
         ("grid/frequency_ratio/low", True, "grid.frequency_ratio.low = True: allowed: a number"),
         ("grid/frequency_ratio/low", "0.3", "grid.frequency_ratio.low = '0.3': allowed: a number"),
-        ("grid/frequency_ratio/points", 161.0, "grid.frequency_ratio.points = 161.0: allowed: a whole number"),
+        ("grid/frequency_ratio/points", 161.5, "grid.frequency_ratio.points = 161.5: allowed: a whole number"),
         ("grid/frequency_ratio/points", 10**9, "points = 1000000000: allowed: a whole number from 4 to 200000000"),
-        ("grid/frequency_ratio/points", 10**7, "1,460,000,000 nodes with 1 restitution in one tenth, 139 GB"),
+        ("grid/frequency_ratio/points", 10**7, "1,460,000,000 nodes, 139 GB"),
         ("grid/frequency_ratio/points", 10**7, "allowed: 200,000,000, 19 GB"),
         ("grid/slenderness/steps", [1e-9], "grid.slenderness.steps.0 = 1e-09: allowed: a number from 1e-06"),
         ("grid/slenderness/steps", [1.25e-6], "720001 slenderness x 161 frequency_ratio"),
@@ -84,32 +86,28 @@ def test_configurations_of_the_repository_are_accepted(path: Path) -> None:
     ],
 )  # fmt: skip
 def test_invalid_value_is_refused_in_one_line(place: str, value: Any, message: str) -> None:
-    tracemalloc.start()
+    configuration, peak = smoke(place, value), 0
+    if place.endswith(("points", "steps")):  # tracing takes five times the time
+        tracemalloc.start()
     with pytest.raises(ConfigurationError) as refused:
-        check(smoke(place, value))
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
+        check(configuration)
+    if tracemalloc.is_tracing():
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
     assert message in str(refused.value)
     assert "\n" not in str(refused.value)
     assert len(str(refused.value)) < 300
     assert peak < 20e6  # no axis is made of what is refused
 
 
-def test_restitutions_are_solved_by_tenth() -> None:
-    several = smoke("restitution", [0.0, 0.09, 0.1, 0.29, 0.57, 0.58, 0.99, 1.0])
-    assert tenths(several) == {"0.0": [0.0, 0.09], "0.1": [0.1], "0.2": [0.29], "0.5": [0.57, 0.58], "0.9": [0.99, 1.0]}
-    assert nodes_of_part(several) == 2 * 2 * 73 * 161
-
-
 def test_workflow_ends_with_the_error_before_any_job(tmp_path: Path) -> None:
     written = tmp_path / "wrong.yaml"
     written.write_text(yaml.safe_dump(smoke("grid/frequency_ratio/low", 50.0)))
-    for module in ("snakemake", "workflow.run"):
-        refused = snakemake(tmp_path, configuration=written, module=module)
-        assert refused.returncode == 1
-        *_, last = refused.stdout.splitlines()
-        assert last == "Configuration refused: grid.frequency_ratio: low = 50, high = 12; allowed: low < high"
-        assert len(refused.stdout.splitlines()) == 2  # the other one tells the profile
+    refused = snakemake(tmp_path, configuration=written, module="workflow.run")
+    assert refused.returncode == 1
+    *_, last = refused.stdout.splitlines()
+    assert last == "Configuration refused: grid.frequency_ratio: low = 50, high = 12; allowed: low < high"
+    assert len(refused.stdout.splitlines()) == 2  # the other one tells the profile
     absent = snakemake(tmp_path, configuration=tmp_path / "absent.yaml", module="workflow.run")
     assert absent.stdout == f"--configfile {tmp_path / 'absent.yaml'}: no such file\n"
     assert not (tmp_path / "results").exists()

@@ -11,16 +11,13 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
-import xarray as xr
 
-from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._datasets.cube import read_dataset
 from tests.sampling import sample
 from tests.workflow.killed_runs import KILLED, content, interrupt, project
 from tests.workflow.killed_runs import reproduce as make_reproduce
 from tests.workflow_fixtures import PROJECT, rules_to_run, snakemake
-from workflow.parts import delete_former_parts, forget_damaged_parts
 from workflow.records import forget_false_records, processor, records_of
 from workflow.run_lock import RunningError, _held, acquire
 from workflow.verify import compare, problems
@@ -123,18 +120,11 @@ def test_damaged_record_is_deleted(spoil: Callable[[Path], None], run: Path) -> 
     assert not record.exists()
 
 
-def test_damaged_and_former_parts_are_deleted(tmp_path: Path) -> None:
-    folder = tmp_path / "results/.parts/spectra"
-    names = ["sine-0.8.a.nc", "sine-0.9.a.nc", "sine-0.8.b.nc", "sine_two-0.8.b.nc"]
-    for name in names:
-        write_dataset(xr.Dataset({"a": ("x", np.arange(100.0))}), folder / name)
-    assert [*forget_damaged_parts(tmp_path)] == []
-    delete_former_parts(folder / names[0])
-    assert {path.name for path in folder.iterdir()} == {*names[:2], names[3]}
-    flipped(folder / names[0])
-    (reason,) = forget_damaged_parts(tmp_path)
-    assert reason.startswith(f"{folder / names[0]}: damaged")
-    assert {path.name for path in folder.iterdir()} == {names[1], names[3]}
+def test_damaged_part_is_made_again(run: Path) -> None:
+    flipped(run / "results/.parts/spectra/sine-0.85.nc")
+    (line,) = forget_false_records(run)
+    assert line.endswith("spectra/sine-0.85.nc: its bytes are not the recorded ones")
+    assert records_of(run, "parts/sine-0.85") == []
 
 
 def test_each_missing_product_or_record_is_planned(run: Path) -> None:
@@ -142,7 +132,7 @@ def test_each_missing_product_or_record_is_planned(run: Path) -> None:
                  *records_of(run, "figures/figure-07"), *records_of(run, "check_results")):  # fmt: skip
         path.unlink()
     planned = rules_to_run(snakemake(run, "--dry-run").stdout)
-    of_cube = {"spectrum_part", "spectra", "figure_scale_law", "claims", "check_data_sets"}
+    of_cube = {"spectra", "figure_scale_law", "claims", "check_data_sets"}
     assert planned == of_cube | {"figure_04", "figure_07", "manifest", "check_results", "all"}
 
 
@@ -155,7 +145,7 @@ def test_one_command_remakes_what_is_missing_damaged_or_replaced_after_killed_ru
         shutil.copytree(smoke_run / part, folder / part)
     before = content(folder)
     cube = "spectra/cosine/eta-0.85.nc"  # on which no figure and no claim depends
-    spoiled = {cube: flipped, FIGURE: deleted, "figures/figure-03.png": flipped, "manifest.json": replaced}
+    spoiled = {cube: flipped, FIGURE: deleted, "manifest.json": replaced}
     for name, spoil in spoiled.items():
         spoil(folder / "results" / name)
     assert {line.partition(": ")[0] for line in problems(folder)} == {
@@ -167,7 +157,7 @@ def test_one_command_remakes_what_is_missing_damaged_or_replaced_after_killed_ru
     assert verified.returncode == 1
     assert f"{len(spoiled)} found; `make reproduce`" in verified.stderr
     for what in sample(KILLED, 1):
-        assert "spectrum_part" in interrupt(folder, what, lambda jobs: "spectrum_part" in jobs)
+        assert "spectra" in interrupt(folder, what, lambda jobs: "spectra" in jobs)
     left = folder / "results/spectra/cosine/.eta-0.85.nc.abc.partial"
     left.touch()
     recovered = make_reproduce(folder)

@@ -21,12 +21,12 @@ class Verdicts:
             self.lines.append(f"{report.outcome} {report.nodeid.partition('::')[2]}")
 
 
-def run_tests(tests: Path, environment: Mapping[str, str]) -> list[str]:
-    """Results of the tests of a module, one line each; the process ends if one fails."""
+def run_tests(name: str, environment: Mapping[str, str]) -> list[str]:
+    """Results of the tests of a module beside this one, one line each; the process ends if one fails."""
     os.environ.update(environment)
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # seconds for plugins that these tests do not use
     verdicts = Verdicts()
-    status = pytest.main(["-q", "-p", "no:cacheprovider", str(tests)], plugins=[verdicts])
+    status = pytest.main(["-q", "-p", "no:cacheprovider", str(Path(__file__).with_name(name))], plugins=[verdicts])
     if status != 0:
         sys.exit(f"the finished products failed their tests (pytest status {int(status)})")
     return verdicts.lines

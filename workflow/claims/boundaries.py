@@ -10,7 +10,7 @@ from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking.paper.overturning import limit_amplitude, overturning_amplitudes
 from workflow.claims.area import MEASURE, Flags, Floats, node_areas, share_of_area
-from workflow.claims.claim import SAME, SMALL, Claim, percent, verdict_of
+from workflow.claims.claim import SAME, SMALL, Claim, holding_range, percent
 
 CASES = {
     "case 2": ("(3.10)", "bounds overturning without impact, for any restitution"),
@@ -36,19 +36,20 @@ def exact_curves(boundaries: Sequence[xr.Dataset]) -> Iterator[Claim]:
     for case, (equation, text) in CASES.items():
         yield Claim(
             key=f"curve-{case.replace(' ', '-')}",
+            fails_if="the solver finds a boundary of this mode elsewhere, as with another root for the impact",
             place=f"section 3, {equation}",
             printed=f"{equation} {text}",
             criterion="each point of the boundary that the solver finds lies on the curve, within "
             f"{SAME:.0e} in 1/a; omega 0.2 to 15, eta {min(eta):.2f} to {max(eta):.2f}",
             found=f"largest distance {worst[case]:.0e} at {count[case]} points",
-            verdict=verdict_of(count[case] > 0 and worst[case] < SAME),
+            share=count[case] > 0 and worst[case] < SAME,
             numbers={"largest_difference": worst[case], "points": count[case]},
         )
 
 
 def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
     """Whether the closed forms give the outcome of every slender block of the spectrum cubes of the sine."""
-    missed, missed_linear, numbers = [], [], {}
+    missed, missed_linear, numbers, outcomes = [], [], {}, []
     place, at_edge = np.empty((0, 2)), False
     impacts: set[int] = set()
     for cube in cubes:
@@ -58,6 +59,7 @@ def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
         a = 1 / s[:, None]
         predicted = ((a > closed.overturns_from) & (a < closed.survives_again)) | (a > closed.direct)
         wrong = predicted != (one.outcome.values >= Outcome.OVERTURNED_DIRECTLY)
+        outcomes.append(~wrong)
         everywhere = np.ones_like(wrong)
         missed.append(share_of_area(wrong, everywhere, node_areas(s, omega)))
         missed_linear.append(share_of_area(wrong, everywhere, node_areas(s, omega, logarithmic=False)))
@@ -81,12 +83,14 @@ def completeness(cubes: Sequence[xr.Dataset]) -> Iterator[Claim]:
     s, omega = cubes[0].slenderness.values, cubes[0].frequency_ratio.values
     yield Claim(
         key="complete",
+        fails_if="the solver finds overturning outside of the curves, or survival inside",
         place="section 3, (3.10), (3.18), (3.20), (3.21), (3.31)",
         printed="the closed-form expressions describe overturning under one sine completely",
         criterion=f"they give the final outcome everywhere; {MEASURE}, 1/a {s[0]:.2f} to {s[-1]:.2f}, omega "
         f"{omega[0]:.1f} to {omega[-1]:.0f}, mean over eta",
         found=where,
-        verdict=verdict_of(1.0 - share),
+        share=1.0 - share,
+        within=holding_range(outcomes, {"1/a": s[:, None], "omega": omega}, weights=node_areas(s, omega)),
         numbers=numbers,
     )
 
@@ -113,29 +117,30 @@ def limit_separates(omega: Floats, impact_below: Flags, impact_above: Flags) -> 
     separates = impact_below & ~impact_above
     yield Claim(
         key="limit-separates",
+        fails_if="an impact comes within the pulse above the curve, or after it below the curve",
         place="section 3d, (3.31)",
         printed="below (3.31) the first impact is within the pulse, above it after the pulse",
         criterion=f"the first impact leaves the pulse within a relative {STEP:.0e} of the curve; "
         f"{omega.size} frequency ratios from {omega[0]:g} to {omega[-1]:g}",
         found=f"at {int(separates.sum())} of them",
-        verdict=verdict_of(float(separates.mean())),
-        numbers={"share": float(separates.mean())},
+        share=float(separates.mean()),
+        within=holding_range(separates, {"omega": omega}),
     )
 
 
 def limit_value(omega: Floats, slenderness: Floats) -> Iterator[Claim]:
     """How far the curve (3.31), 1/a over equidistant omega, is a line at 0.4."""
     rounds_to = (slenderness >= 0.35) & (slenderness < 0.45)
-    inside = omega[rounds_to]
-    where = f"for omega from {inside[0]:.2f} to {inside[-1]:.2f}" if inside.size else "nowhere"
     yield Claim(
         key="limit-0.4",
+        fails_if="the curve leaves the band within the range of figure 8",
         place="section 4a, below (4.13)",
         printed="(3.31) roughly corresponds to g alpha/a_g = 0.4",
         criterion=f"1/a on (3.31) rounds to 0.4, 0.35 to 0.45; omega {omega[0]:g} to {omega[-1]:g}, as in figure 8",
-        found=f"so {where}; 1/a falls from {slenderness[0]:.2f} to {slenderness[-1]:.2f}",
-        verdict=verdict_of(float(rounds_to.mean())),
-        numbers={"share": float(rounds_to.mean()), "first": slenderness[0], "last": slenderness[-1]},
+        found=f"1/a falls from {slenderness[0]:.2f} to {slenderness[-1]:.2f}",
+        share=float(rounds_to.mean()),
+        within=holding_range(rounds_to, {"omega": omega}),
+        numbers={"first": slenderness[0], "last": slenderness[-1]},
     )
 
 
@@ -166,6 +171,7 @@ def overturning_in_free_rocking(time_close: Floats) -> Iterator[Claim]:
     after = time_close > 0.0
     yield Claim(
         key="free-rocking",
+        fails_if="a block at its threshold passes alpha for good while the pulse acts",
         place="section 3, (3.8)",
         printed="at the smallest amplitude that overturns, overturning takes place in free rocking, where the "
         "velocity tends to a minimum",
@@ -173,6 +179,6 @@ def overturning_in_free_rocking(time_close: Floats) -> Iterator[Claim]:
         f"by {percent(SMALL)} only after the pulse; thresholds of cases 1.1, 1.2 and 2, omega 1 to 4",
         found=f"at {int(after.sum())} of {after.size} thresholds; it stays there until p t = {time_close.min():.1f} "
         "after the pulse or longer",
-        verdict=verdict_of(float(after.mean())),
-        numbers={"thresholds": after.size, "share": float(after.mean()), "shortest": float(time_close.min())},
+        share=float(after.mean()),
+        numbers={"thresholds": after.size, "shortest": float(time_close.min())},
     )

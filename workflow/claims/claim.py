@@ -4,20 +4,33 @@ The paper states most of its claims in words. The thresholds below, which say wh
 rule of the verdict are the same for all claims and do not depend on what is found.
 """
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+IDENTITY = "identity"
 HOLDS = "holds"
 IN_RANGE = "holds within stated range"
+MIXED = "mixed"
 FAILS = "does not hold"
-VERDICTS = (HOLDS, IN_RANGE, FAILS)
+VERDICTS = (IDENTITY, HOLDS, IN_RANGE, MIXED, FAILS)
 
-PART = 0.5  # share of what was tested from which a claim is said to hold within a stated range [-]
+PART = 0.5  # least share of what was tested that a stated range covers, and that meets a "mixed" claim [-]
 SAME = 1e-9  # difference, relative or in 1/a, up to which two results are the same: "exact", "equal", "collapse" [-]
 CLOSE = 0.01  # relative difference up to which two results "coincide" or are in "excellent" agreement [-]
 SMALL = 0.05  # relative difference that is "small", "weak", "practically" nothing, or "accurate" [-]
 FAIR = 0.20  # relative difference that is "satisfactory" [-]
 ABOUT = 0.25  # relative difference up to which a number is "about" or "approximately" another [-]
+
+
+class Range(NamedTuple):
+    """A range in which all that was tested meets the criterion."""
+
+    text: str
+    share: float  # of what was tested [-]
 
 
 @dataclass(frozen=True)
@@ -28,26 +41,58 @@ class Claim:
     place: str  # section and equation of the paper
     printed: str  # the statement of the paper, in short or with its numbers
     criterion: str  # what is tested, over which range, and the threshold; stated without looking at the result
-    found: str  # what we found, with the range where it holds
-    verdict: str  # one of `VERDICTS`
+    fails_if: str  # how the claim could have failed
+    found: str  # what we found
+    share: float  # share of what was tested, cases or area, that meets the criterion [-]; nan if nothing was
+    within: Range | None = None  # largest range in which all of it does
+    identity: bool = False  # whether the claim is algebra, which can only hold
     numbers: dict[str, float] = field(default_factory=dict)  # the measured numbers behind `found` [-]
 
-    def __post_init__(self) -> None:
-        if self.verdict not in VERDICTS:
-            raise ValueError(f"{self.key}: verdict {self.verdict!r} is none of {VERDICTS}")
+    @property
+    def verdict(self) -> str:
+        """One of `VERDICTS`."""
+        if self.share >= 1.0 - 1e-12:
+            return IDENTITY if self.identity else HOLDS
+        if self.identity or not self.share > 0.0:
+            return FAILS
+        if self.within is not None and self.within.share >= PART:
+            return IN_RANGE
+        return MIXED if self.share >= PART else FAILS
 
     def record(self) -> dict[str, Any]:
         """A mapping for JSON; numbers with six digits, so that rounding on other machines does not change them."""
-        return asdict(self) | {"numbers": {name: float(f"{value:.6g}") for name, value in self.numbers.items()}}
+        stated = self.within.text if self.within is not None and self.verdict in (IN_RANGE, MIXED) else None
+        numbers = {name: rounded(value) for name, value in self.numbers.items()}
+        judged = {"share": rounded(self.share), "within": stated, "numbers": numbers, "verdict": self.verdict}
+        return asdict(self) | judged
 
 
-def verdict_of(share: float) -> str:
-    """The verdict from the share of the tested cases, or of the tested area, that meets the criterion [-], [0, 1].
+def rounded(value: float) -> float:
+    """A number with six digits."""
+    return float(f"{value:.6g}")
 
-    `HOLDS` if all of it does, `IN_RANGE` from `PART` on, else `FAILS`. A criterion that is met or not is a share of 1
-    or 0. Nothing tested, a share of nan, is `FAILS`.
+
+def holding_range(
+    good: ArrayLike, parameters: Mapping[str, ArrayLike], *, tested: ArrayLike = True, weights: ArrayLike = 1.0
+) -> Range | None:
+    """The interval of one parameter in which all that was tested is good, the one that covers most; None without any.
+
+    `parameters`: values by name, of shapes that broadcast to that of `good`, like `tested` and `weights`.
     """
-    return HOLDS if share >= 1.0 - 1e-12 else IN_RANGE if share >= PART else FAILS
+    met = np.asarray(good, dtype=bool)
+    here = np.broadcast_to(tested, met.shape)
+    weight = np.broadcast_to(weights, met.shape)[here].astype(np.float64)
+    best: Range | None = None
+    for name, values in parameters.items():
+        nodes, place = np.unique(np.broadcast_to(values, met.shape)[here], return_inverse=True)
+        covered = np.bincount(place, weight, minlength=nodes.size)
+        failing = np.bincount(place, ~met[here], minlength=nodes.size) > 0
+        for run in np.split(np.arange(nodes.size), np.flatnonzero(failing)):
+            kept = run[~failing[run]]
+            share = covered[kept].sum() / max(covered.sum(), 1e-300)
+            if kept.size and (best is None or share > best.share):
+                best = Range(f"{name} {nodes[kept[0]]:.4g} to {nodes[kept[-1]]:.4g}", float(share))
+    return best
 
 
 def percent(share: float, digits: int = 2) -> str:

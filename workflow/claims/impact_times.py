@@ -18,7 +18,7 @@ from rocking.paper.overturning import (
     limit_amplitude,
 )
 from workflow.claims.area import Flags, Floats
-from workflow.claims.claim import ABOUT, CLOSE, FAIR, SAME, SMALL, Claim, percent, verdict_of
+from workflow.claims.claim import ABOUT, CLOSE, FAIR, SAME, SMALL, Claim, Range, holding_range, percent
 
 WINDOW = 0.25  # distance from tau = 1 within which (3.27) is tested [-]
 
@@ -60,20 +60,22 @@ def exact_impact(impacts: Impacts) -> Iterator[Claim]:
     blocks = f"{impacts.time.size} blocks between (3.31) and (3.10), omega 0.5 to 12"
     yield Claim(
         key="impact-time-exact",
+        fails_if="another root of (3.12) is the impact, or an impact comes earlier",
         place="section 3b, (3.13)",
         printed="(3.13) is the exact time of the impact that follows the pulse",
         criterion=f"it is the time that the solver finds, within a relative {SAME:.0e}; {blocks}",
         found=f"largest relative difference {time:.0e}",
-        verdict=verdict_of(time < SAME),
+        share=time < SAME,
         numbers={"largest_relative_difference": time},
     )
     yield Claim(
         key="impact-velocity",
+        fails_if="D0* is not that of (3.9), as with the second line as printed",
         place="section 3b, (3.15)",
         printed="the velocity before that impact is sqrt(1 - D0*)",
         criterion=f"it is the velocity that the solver finds, within a relative {SAME:.0e}; the same blocks",
         found=f"largest relative difference {velocity:.0e}",
-        verdict=verdict_of(velocity < SAME),
+        share=velocity < SAME,
         numbers={"largest_relative_difference": velocity},
     )
 
@@ -92,13 +94,14 @@ def other_root(exponential: Floats) -> Iterator[Claim]:
     physical = exponential > 1.0
     yield Claim(
         key="other-root",
+        fails_if="the block passes theta = 0 twice after the uplift",
         place="section 3b, below (3.12)",
         printed="the other solution of (3.12) is negative and lacks physical meaning",
         criterion="e^tau of the second root is below 1, so that its time is negative or not real; "
         f"{exponential.size} blocks between (3.31) and (3.10), omega 0.5 to 12",
         found=f"at {percent(1 - float(physical.mean()))} of them; of all, its logarithm is not real at "
         f"{percent(float((exponential <= 0).mean()))}",
-        verdict=verdict_of(1.0 - float(physical.mean())),
+        share=1.0 - float(physical.mean()),
         numbers={"share_positive": float(physical.mean())},
     )
 
@@ -118,11 +121,10 @@ class Curve(NamedTuple):
         """Where case 1.1 overturns."""
         return np.isfinite(self.amplitude)
 
-    def holds_from(self, good: Flags) -> float:
-        """The frequency ratio above which all known points are good, nan if the last is not."""
-        failing = (self.known & ~good).any(axis=0)
-        kept = self.known.any(axis=0) & ~np.logical_or.accumulate(failing[::-1])[::-1]
-        return float(self.frequency_ratio[kept].min()) if kept.any() else np.nan
+    def within(self, good: Flags) -> Range | None:
+        """The range of omega or eta in which all known points are good."""
+        parameters = {"omega": self.frequency_ratio, "eta": self.restitution[:, None]}
+        return holding_range(good, parameters, tested=self.known)
 
 
 def case_1_1_curve(restitution: Sequence[float]) -> Curve:
@@ -154,16 +156,17 @@ def impact_about_one(curve: Curve) -> Iterator[Claim]:
     """(3.23): the impact comes at tau = 1."""
     near = curve.known & (np.abs(curve.impact_time - 1) <= ABOUT)
     share = float(near.sum() / curve.known.sum())
-    from_omega = curve.holds_from(near)
     yield Claim(
         key="impact-at-1/p",
+        fails_if="the time depends on omega along the curve",
         place="section 3c, (3.23)",
         printed="the block returns to impact about 1/p after uplift",
         criterion=f"p t of the impact is between {1 - ABOUT:g} and {1 + ABOUT:g}; {_on_curve(curve)}",
-        found=f"on {percent(share)}, at every eta from omega = {from_omega:.2f} on; p t rises "
-        f"from {np.nanmin(curve.impact_time):.2f} to {np.nanmax(curve.impact_time):.2f} at omega = 1",
-        verdict=verdict_of(share),
-        numbers={"share": share, "omega_from": from_omega, "largest": float(np.nanmax(curve.impact_time))},
+        found=f"on {percent(share)}; p t rises from {np.nanmin(curve.impact_time):.2f} "
+        f"to {np.nanmax(curve.impact_time):.2f} at omega = 1",
+        share=share,
+        within=curve.within(near),
+        numbers={"largest": float(np.nanmax(curve.impact_time))},
     )
 
 
@@ -186,25 +189,27 @@ def ad_hoc_function(errors: Mapping[float, tuple[Floats, Floats]]) -> Iterator[C
     slow = np.concatenate([errors[1.0][1], errors[2.0][1]])
     offset, five = errors[5.0]
     good = five <= FAIR
-    reach = float(np.abs(offset[good]).max(initial=0.0))
     yield Claim(
         key="ad-hoc-sine-slow",
+        fails_if="the terms of third order that are left out are not small",
         place="section 3c, below (3.27), figure S1",
         printed="(3.27) is excellent for small omega < 2",
         criterion=f"it differs from the sine by at most {percent(SMALL)} of its amplitude at omega = 1 and 2; {window}",
         found=f"largest difference {percent(float(errors[1.0][1].max()))} at omega = 1, "
         f"{percent(float(errors[2.0][1].max()))} at omega = 2",
-        verdict=verdict_of(float((slow <= SMALL).mean())),
+        share=float((slow <= SMALL).mean()),
         numbers={"largest_at_1": float(errors[1.0][1].max()), "largest_at_2": float(errors[2.0][1].max())},
     )
     yield Claim(
         key="ad-hoc-sine-intermediate",
+        fails_if="the terms of third order that are left out are not small",
         place="section 3c, below (3.27), figure S1",
         printed="(3.27) is satisfactory around tau = 1 for intermediate omega of about 5",
         criterion=f"it differs from the sine by at most {percent(FAIR)} of its amplitude at omega = 5; {window}",
-        found=f"so for abs(tau - 1) up to {reach:.2f}; the largest difference is {percent(float(five.max()))}",
-        verdict=verdict_of(float(good.mean())),
-        numbers={"share": float(good.mean()), "largest": float(five.max()), "within": reach},
+        found=f"on {percent(float(good.mean()))}; largest difference {percent(float(five.max()))}",
+        share=float(good.mean()),
+        within=holding_range(good, {"tau - 1 from": offset}),
+        numbers={"largest": float(five.max())},
     )
 
 
@@ -220,18 +225,16 @@ def approximate_time(curve: Curve) -> Iterator[Claim]:
         f"it has no real value below omega = {first.min():.2f} to {first.max():.2f}, depending on eta, and just above"
     )
     worst = float(np.nanmax(np.abs(curve.approximate_time - curve.impact_time)))
-    from_omega = curve.holds_from(good)
     yield Claim(
         key="ad-hoc-time",
+        fails_if="(3.29) has no real value, or the impact is far from p t = 1",
         place="section 3c, (3.29)",
         printed="(3.29) approximates the time of impact",
         criterion=f"within {percent(SMALL)}; {_on_curve(curve)}",
-        found=f"on {percent(share)}, from omega = {from_omega:.2f} on; "
-        + (without if missing.any() else "it")
-        + f" is off by up to p t = {worst:.1f}",
-        verdict=verdict_of(share),
+        found=f"on {percent(share)}; " + (without if missing.any() else "it") + f" is off by up to p t = {worst:.1f}",
+        share=share,
+        within=curve.within(good),
         numbers={
-            "share": share,
             "share_without_value": float(missing.sum() / known.sum()),
             "first_value_from": float(first.min()),
             "last_value_from": float(first.max()),
@@ -258,6 +261,7 @@ def smallest_solutions(curve: Curve) -> Iterator[Claim]:
     }
     yield Claim(
         key="minima-coincide",
+        fails_if="the error of (3.29) moves the smallest solution",
         place="section 3c, figure 3",
         printed="the smallest solution of (3.30) coincides with that of (3.20) and (3.21)",
         criterion=f"within {percent(CLOSE)} in a; {_on_curve(curve)}",
@@ -269,9 +273,9 @@ def smallest_solutions(curve: Curve) -> Iterator[Claim]:
             if missing.any()
             else ""
         ),
-        verdict=verdict_of(share),
-        numbers={"share": share, "largest": max(bands.values())}
-        | {f"omega {band}": value for band, value in bands.items()},
+        share=share,
+        within=curve.within(good),
+        numbers={"largest": max(bands.values())} | {f"omega {band}": value for band, value in bands.items()},
     )
 
 
@@ -284,14 +288,15 @@ def ends_of_case_1_1() -> tuple[Floats, Floats]:
 def end_of_case_1_1(restitution: Floats, end: Floats) -> Iterator[Claim]:
     """Where overturning by case 1.1 ends."""
     below = end <= 5.0
-    limit = f"up to eta = {restitution[below].max():.3f}" if below.any() else "for none"
     yield Claim(
         key="no-case-1.1-above-5",
+        fails_if="case 1.1 reaches beyond omega = 5 for one of the restitutions",
         place="section 3c, below (3.27)",
         printed="for omega > 5 the block does not overturn by case 1.1",
         criterion=f"case 1.1 ends below omega = 5; eta {restitution[0]:.2f} to {restitution[-1]:.2f}, as in figure 8",
-        found=f"so {limit}; it ends at omega = {end[0]:.2f} for eta = {restitution[0]:.2f} and at {end[-1]:.2f} for "
+        found=f"it ends at omega = {end[0]:.2f} for eta = {restitution[0]:.2f} and at {end[-1]:.2f} for "
         f"{restitution[-1]:.2f}",
-        verdict=verdict_of(float(below.mean())),
-        numbers={"share": float(below.mean()), "end_first": float(end[0]), "end_last": float(end[-1])},
+        share=float(below.mean()),
+        within=holding_range(below, {"eta": restitution}),
+        numbers={"end_first": float(end[0]), "end_last": float(end[-1])},
     )

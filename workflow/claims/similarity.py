@@ -15,10 +15,11 @@ from rocking.paper.orientation import (
     is_group,
     is_homogeneous_equation,
     multiplication_table,
+    quantity_of,
     scaling_of_exponents,
 )
 from workflow.claims.area import Floats
-from workflow.claims.claim import SAME, Claim, verdict_of
+from workflow.claims.claim import SAME, Claim
 from workflow.figures.dimensional import DimensionalProblem
 
 PRINTED_TABLE_1 = ("0xyz", "x0zy", "yz0x", "zyx0")
@@ -47,12 +48,35 @@ def table(found: Sequence[str]) -> Iterator[Claim]:
     equal = [a == b for x, y in zip(found, PRINTED_TABLE_1, strict=True) for a, b in zip(x, y, strict=True)]
     yield Claim(
         key="table-1",
+        fails_if="only by a misprint: the products follow from the rules",
+        identity=True,
         place="section 4, table 1",
         printed="products of the unit orientations",
         criterion="all 16 follow from the rules (4.4) and (4.5)",
         found=f"{sum(equal)} do",
-        verdict=verdict_of(float(np.mean(equal))),
+        share=float(np.mean(equal)),
         numbers={"equal_entries": sum(equal)},
+    )
+
+
+def independent_products() -> tuple[int, int]:
+    """The number of variables of (4.2), and how many of their dimensions are independent."""
+    variables = [quantity_of(name) for name in ("theta", "alpha", "p", "a_g/g", "omega_g", "eta")]
+    return len(variables), int(np.linalg.matrix_rank([[one.length, one.time, one.mass] for one in variables]))
+
+
+def count_of_products(variables: int, dimensions: int) -> Iterator[Claim]:
+    """The number of dimensionless products of (4.2)."""
+    yield Claim(
+        key="five-products",
+        fails_if="only by a slip in the list of variables or their dimensions",
+        place="section 4, above (4.3)",
+        printed="six variables that involve one dimension have five independent dimensionless products",
+        criterion="the variables of (4.2), less the rank of the matrix of their dimensional exponents",
+        found=f"{variables} - {dimensions} = {variables - dimensions}",
+        share=variables - dimensions == 5,
+        identity=True,
+        numbers={"variables": variables, "dimensions": dimensions},
     )
 
 
@@ -68,12 +92,14 @@ def odd_exponents(pairs: Sequence[tuple[int, int]]) -> Iterator[Claim]:
     agree = [((m + n) % 2 == 1) == ((m, n) in pairs) for m, n in every]
     yield Claim(
         key="odd-exponents",
+        fails_if="only by a slip: parities add in a product",
+        identity=True,
         place="section 4, (4.9)",
         printed="homogeneity of (4.8) requires epsilon_2 + epsilon_3 to be odd",
         criterion=f"of the {len(every)} pairs of exponents from -4 to 4 those with an odd sum, and no others, give "
         "both sides one orientation",
         found=f"so for {sum(agree)} pairs; {len(pairs)} are homogeneous",
-        verdict=verdict_of(float(np.mean(agree))),
+        share=float(np.mean(agree)),
         numbers={"pairs": len(every), "agree": sum(agree), "homogeneous": len(pairs)},
     )
 
@@ -88,6 +114,8 @@ def exponents_give_groups(found: Mapping[str, Scaling]) -> Iterator[Claim]:
     equal = [found[equation] == printed for equation, printed in PRINTED_GROUPS.items()]
     yield Claim(
         key="exponents-give-groups",
+        fails_if="only by a slip in the exponents or the groups",
+        identity=True,
         place="section 4, (4.10), (4.11)",
         printed="epsilon = (1, -2) retrieves the groups of (3.4), epsilon = (-2, 1) those of (4.1)",
         criterion="the product of (4.8) with these exponents is one oriented factor, by (4.4) the scale of the "
@@ -96,7 +124,7 @@ def exponents_give_groups(found: Mapping[str, Scaling]) -> Iterator[Claim]:
             f"{equation}: scale {one.scale}, group " + " ".join(f"({name})^{n}" for name, n in one.group.items())
             for equation, one in found.items()
         ),
-        verdict=verdict_of(float(np.mean(equal))),
+        share=float(np.mean(equal)),
         numbers={"equal": sum(equal)},
     )
 
@@ -113,13 +141,15 @@ def groups(free: Mapping[str, bool]) -> Iterator[Claim]:
     failing = [group for group, good in free.items() if not good]
     yield Claim(
         key="groups",
+        fails_if="only by a slip in a group",
+        identity=True,
         place="section 4, (4.10), (4.11)",
         printed="the groups are dimensionless and orientationless",
         criterion=f"each of {', '.join(free)} has no dimension and, by (4.4) and (4.5), no orientation",
         found=f"{len(free) - len(failing)} of {len(free)}"
         + (f", not {', '.join(failing)}" if failing else "")
         + "; a necessary test only: alpha^2 and theta alpha^2 g/a_g pass it too",
-        verdict=verdict_of(float(np.mean(list(free.values())))),
+        share=float(np.mean(list(free.values()))),
         numbers={"groups": len(free), "free": len(free) - len(failing)},
     )
 
@@ -134,11 +164,13 @@ def homogeneous_equations(homogeneous: Mapping[str, bool]) -> Iterator[Claim]:
     failing = [number for number, good in homogeneous.items() if not good]
     yield Claim(
         key="homogeneous-equations",
+        fails_if="only by a slip in an equation: each follows from a balance of moments",
+        identity=True,
         place="section 4, below (4.3)",
         printed="physical equations are both dimensionally and orientationally homogeneous",
         criterion=f"all terms of {', '.join(homogeneous)} have one dimension and one orientation",
         found="so in all" if not failing else f"not in {', '.join(failing)}",
-        verdict=verdict_of(float(np.mean(list(homogeneous.values())))),
+        share=float(np.mean(list(homogeneous.values()))),
         numbers={"equations": len(homogeneous), "homogeneous": len(homogeneous) - len(failing)},
     )
 
@@ -152,12 +184,14 @@ def collapse(figure: xr.Dataset) -> Iterator[Claim]:
     solver = float(np.abs(rotation - master).max()) / peak
     yield Claim(
         key="collapse",
+        fails_if="only by an error of an integration: the groups are a change of variables in (3.2)",
+        identity=True,
         place="section 4, figures 5 and 6",
         printed="two blocks of different size and shape with equal groups follow one master curve",
         criterion="two integrations in SI units, scaled, and the solution from the groups alone differ by less than "
         f"{SAME:.0e} of the peak",
         found=f"by {between:.0e} between the blocks and {solver:.0e} from the solution by groups",
-        verdict=verdict_of(max(between, solver) < SAME),
+        share=max(between, solver) < SAME,
         numbers={"between_blocks": between, "from_groups": solver},
     )
 
@@ -190,11 +224,13 @@ def any_excitation(histories: Mapping[str, Floats]) -> Iterator[Claim]:
     equal = [spread < 1e-7 for spread in spreads.values()]
     yield Claim(
         key="any-excitation",
+        fails_if="only by an error of an integration: the groups are a change of variables in (3.2)",
+        identity=True,
         place="section 4, below (4.11)",
         printed="the response is self-similar for any excitation that can be described by a_g and omega_g",
         criterion="two blocks of different size and shape with equal groups, integrated in SI units, and the solution "
         f"from the groups differ by less than 1e-07 of the peak; {len(spreads)} pulses",
         found=f"so for {sum(equal)} of them; largest difference {max(spreads.values()):.0e}",
-        verdict=verdict_of(float(np.mean(equal))),
+        share=float(np.mean(equal)),
         numbers=spreads,
     )

@@ -72,8 +72,8 @@ def _draw_block(ax: Axes, data: xr.Dataset) -> None:
     ax.plot([-2.6 * b, 3.6 * b], [0, 0], color="black", linewidth=1.2)
     ax.add_patch(patches.Rectangle((-2.6 * b, -0.1 * h), 6.2 * b, 0.1 * h, hatch="////", fill=False, linewidth=0))
     ax.plot(*centre, "o", color=BLUE, markersize=4)
-    ax.annotate("", pivot, centre, arrowprops={"arrowstyle": "<->", "color": BLUE, "shrinkA": 2, "shrinkB": 0})
-    ax.annotate("$R$", (pivot + centre) / 2, xytext=(-12, -12), textcoords="offset points", color=BLUE)
+    ax.plot(*np.transpose([centre, pivot]), color=BLUE, linewidth=1.0)
+    ax.annotate("$R$", 0.25 * centre + 0.75 * pivot, xytext=(-11, -5), textcoords="offset points", color=BLUE)
 
     # the angle between the diagonal and the side that ends in the pivot is alpha, the side leans by theta
     side = turned[1] - pivot
@@ -85,18 +85,17 @@ def _draw_block(ax: Axes, data: xr.Dataset) -> None:
     ax.add_patch(patches.Arc(pivot, 3.7 * R, 3.7 * R, theta1=side_angle, theta2=90, color=VERMILION))
     _label_on_arc(ax, pivot, 2.02 * R, side_angle - 1.0, r"$\theta > 0$", VERMILION)
 
-    tall = turned[2] - turned[3]
-    shift = 0.12 * h * np.array([-tall[1], tall[0]]) / np.linalg.norm(tall)
-    _dimension(ax, turned[3] + shift, turned[2] + shift)
-    ax.annotate("$2h$", (turned[2] + turned[3]) / 2 + shift, xytext=(-15, 0), textcoords="offset points", ha="center")
+    beside = np.array([-0.28 * h, 0.0])
+    _dimension(ax, rest[3] + beside, rest[2] + beside)
+    ax.annotate("$2h$", (rest[2] + rest[3]) / 2 + beside, xytext=(-10, 0), textcoords="offset points", ha="center")
     _dimension(ax, np.array([-b, -0.2 * h]), np.array([b, -0.2 * h]))
     ax.text(0, -0.24 * h, "$2b$", ha="center", va="top")
     ax.annotate("", (3.4 * b, -0.22 * h), (2.0 * b, -0.22 * h), arrowprops={"arrowstyle": "-|>", "color": VERMILION})
     ax.text(2.7 * b, -0.27 * h, r"$\ddot{u}_g(t) > 0$", ha="center", va="top", color=VERMILION)
     ax.annotate("", centre - [0, 0.42 * h], centre, arrowprops={"arrowstyle": "-|>", "shrinkA": 3})
-    ax.annotate("$mg$", centre - [0, 0.42 * h], xytext=(-14, 0), textcoords="offset points", ha="center")
-    ax.text(-b - 0.24 * h, 0.02 * h, "$O$", ha="right", va="bottom", color=GREY)
-    ax.text(b + 0.05 * h, 0.02 * h, "$O'$", ha="left", va="bottom")
+    ax.annotate("$mg$", centre - [0, 0.36 * h], xytext=(-12, 0), textcoords="offset points", ha="center")
+    for x, name, side in ((-b - 0.03 * h, "$O$", "right"), (b + 0.04 * h, "$O'$", "left")):
+        ax.text(x, 0.02 * h, name, ha=side, va="bottom")
     ax.set_xlim(-2.7 * b, 3.7 * b)
     ax.set_ylim(-0.5 * h, 2.45 * h)
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rocking.paper.approximation import semi_analytical_amplitudes, within_pulse
 from rocking.paper.motion import angular_velocity, pulse_end
 from rocking.paper.overturning import amplitude_of_impact_time, case_1_1_amplitudes, case_1_1_end, overturning_condition
-from rocking.plot.style import GREY, WIDTH, shades
+from rocking.plot.style import BLACK, BLUE, GREY, WIDTH, shades
 from workflow.figures.style import panel_letters, plotted
 
 IMPACT_TIMES = 1500  # times of impact among which solutions beyond the pulse are looked for [-]
@@ -86,13 +86,13 @@ def draw(data: xr.Dataset) -> Figure:
     figure = Figure(figsize=(WIDTH, 3.1))
     left, right = figure.subplots(1, 2, width_ratios=[1.35, 1])
     omega = data.frequency_ratio.values
-    dotted = {"linestyle": (0, (1, 1.6)), "linewidth": 2.4}
+    exact, approximate = {"color": BLACK, "linewidth": 1.0}, {"color": BLUE, "linewidth": 2.0, "linestyle": (0, (2, 1))}
     for colour, eta in zip(shades(data.restitution.size), data.restitution.values, strict=True):
         one = data.sel(restitution=eta)
-        left.plot(omega, one.lower, color=colour)
-        left.plot(omega, one.semi_analytical, color=colour, **dotted)
-        left.plot(omega, one.lower_beyond, color=colour, linewidth=0.5)
-        left.plot(omega, one.semi_analytical_beyond, color=colour, linewidth=0.9, linestyle=(0, (1, 1.6)))
+        left.plot(omega, one.semi_analytical, **approximate)
+        left.plot(omega, one.lower, **exact)
+        left.plot(omega, one.lower_beyond, **(exact | {"linewidth": 0.4}))
+        left.plot(omega, one.semi_analytical_beyond, **(approximate | {"linewidth": 0.8}))
         right.plot(omega, 100 * one.difference, color=colour, label=rf"$\eta={eta:.2f}$")
     left.plot(omega, data.upper.max("restitution"), color=GREY, linewidth=0.9)
     left.annotate("(3.31)", (omega[40], float(data.upper.max("restitution")[40])), xytext=(-6, 6),
@@ -101,9 +101,11 @@ def draw(data: xr.Dataset) -> Figure:
         "smallest solution:\noverturning begins", (3.1, 1.44), (3.6, 1.08), fontsize=7,
         arrowprops={"arrowstyle": "-", "linewidth": 0.5},
     )  # fmt: skip
-    left.plot([], [], color="black", label="exact impact time, (3.20) and (3.21)")
-    left.plot([], [], color="black", label="semi-analytical, (3.30)", **dotted)
-    left.plot([], [], color="black", linewidth=0.5, label="impact beyond the pulse")
+    first, *_, last = data.restitution.values
+    left.text(5.95, 1.7, f"left to right:\n$\\eta=$ {first:.2f} to {last:.2f}", fontsize=7, ha="right")
+    left.plot([], [], label="numerical, (3.20) and (3.21)", **exact)
+    left.plot([], [], label="semi-analytical, (3.30)", **approximate)
+    left.plot([], [], label="thin: impact beyond the pulse", **(exact | {"linewidth": 0.4}))
     left.legend(loc="upper left", fontsize=6.5)
     left.set_ylim(1.0, 4.6)
     left.set_xlim(omega[0], omega[-1])

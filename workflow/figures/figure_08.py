@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from rocking.paper.overturning import limit_amplitude
 from rocking.paper.peak import case_1_2_peak_by_pulse
-from rocking.plot.style import WIDTH, shades
+from rocking.plot.style import VERMILION, WIDTH, shades
 from workflow.figures.spectrum_curves import SpectrumBlock, curve_variables, rows_of
 from workflow.figures.style import panel_letters, plotted
 
@@ -18,8 +18,8 @@ PULSES = ("sine", "cosine")
 
 EXACT = 1e-9  # relative difference up to which (4.13) and the solver are considered equal [-]
 
-HOLDS = {"color": "black", "linestyle": (0, (4, 2)), "linewidth": 0.7}
-APPROXIMATE = {"color": "black", "linestyle": (0, (1, 2)), "linewidth": 0.7}
+HOLDS = {"color": VERMILION, "linestyle": (0, (4, 4)), "linewidth": 0.9}
+APPROXIMATE = {"color": VERMILION, "linestyle": (0, (1, 2)), "linewidth": 0.9}
 
 
 def data(
@@ -59,11 +59,15 @@ def draw(data: xr.Dataset) -> Figure:
     figure = Figure(figsize=(WIDTH, 0.7 + 1.9 * rows.size))
     axes = figure.subplots(rows.size, 2, sharex=True, sharey="row", squeeze=False)
     colours = shades(eta.size)
+    compared = eta[[0, eta.size // 2, -1]]  # a line on every curve would hide the curves
     for row, s in zip(axes, rows, strict=True):
         for i, (ax, pulse) in enumerate(zip(row, data.attrs["pulse_names"].split(), strict=True)):
             for colour, one in zip(colours, eta, strict=True):
                 for curve in rows_of(data, pulse=i, slenderness=s, restitution=one):
-                    ax.plot(curve.frequency_ratio, curve.spectrum, color=colour, linewidth=0.9)
+                    chosen = one in compared
+                    ax.plot(curve.frequency_ratio, curve.spectrum, color=colour, linewidth=1.8 if chosen else 0.6)
+                    if not chosen:
+                        continue
                     ax.plot(curve.frequency_ratio, curve.closed_form.where(curve.closed_form_holds == 1), **HOLDS)
                     during = curve.first_impact_follows_pulse == 0
                     ax.plot(curve.frequency_ratio, curve.closed_form.where(during), **APPROXIMATE)
@@ -81,7 +85,8 @@ def draw(data: xr.Dataset) -> Figure:
         ax.set_xlim(data.attrs["window"])
     axes[0, 0].plot([], [], color=colours[eta.size // 2], label="solved event by event")
     axes[0, 0].plot([], [], label="(4.13), exact", **HOLDS)
-    axes[0, 0].plot([], [], label="(4.13), approximate", **APPROXIMATE)
+    of_which = ", ".join(f"{one:.2f}" for one in np.unique(compared))
+    axes[0, 0].plot([], [], label=f"(4.13), approximate (both for $\\eta=$ {of_which})", **APPROXIMATE)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     steps = np.diff(eta, prepend=2 * eta[0] - eta[1] if eta.size > 1 else eta[0] - 0.02)
     norm = BoundaryNorm([*(eta - steps / 2), eta[-1] + steps[-1] / 2], eta.size)

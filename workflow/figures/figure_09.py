@@ -15,11 +15,11 @@ from rocking._datasets.cube import read_dataset
 from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 from rocking._solver.peak_response import peak_response
 from rocking.paper.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
-from rocking.plot.boundary_lines import Lines, draw_lines
+from rocking.plot.boundary_lines import Lines
 from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.dimensional import DimensionalProblem
-from workflow.figures.style import panel_letters, plotted
+from workflow.figures.style import frame_detail, panel_letters, plotted
 
 Floats = NDArray[np.float64]
 
@@ -186,7 +186,8 @@ def draw(data: xr.Dataset) -> Figure:
         lines = lines_of(data, k, data.attrs["alpha"])
         for colour, one in zip(COLOURS, p, strict=True):
             x, y = lines.frequency_ratio * one / (2 * np.pi), lines.amplitude * uplift
-            draw_lines(top, x, y, lines, color=colour, linewidth=1.0)
+            once = np.isfinite(lines.at_level(detail=False).amplitude)
+            top.plot(np.where(once, x, np.nan), np.where(once, y, np.nan), color=colour, linewidth=1.0)
         _in_groups(bottom, data, k, lines)
         _markers(top, bottom, data, k, detail=False)
         top.set_title(f"{pulse} pulse")
@@ -195,12 +196,12 @@ def draw(data: xr.Dataset) -> Figure:
         bottom.set_xlim(FEWEST, WIDEST[pulse])
         top.set_xlim(FEWEST * p.min() / (2 * np.pi), WIDEST[pulse] * p.max() / (2 * np.pi))
         if pulse == "cosine":
-            inset = bottom.inset_axes((0.66, 0.09, 0.33, 0.40))
-            _in_groups(inset, data, k, lines)
+            inset = bottom.inset_axes((0.64, 0.06, 0.35, 0.42))
+            _in_groups(inset, data, k, lines, detail=True)
             _markers(None, inset, data, k, detail=True)
             inset.set(xlim=DETAIL[0], ylim=DETAIL[1])
             inset.tick_params(labelsize=6, length=2, pad=1.5)
-            bottom.indicate_inset_zoom(inset, edgecolor=GREY, linewidth=0.6)
+            frame_detail(bottom, inset)
     for (ax, _), scale in zip(axes, (uplift, 1.0), strict=True):
         ax.set_yscale("log")
         ax.set_ylim(scale, HIGHEST * scale)
@@ -215,9 +216,14 @@ def draw(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _in_groups(ax: Axes, data: xr.Dataset, pulse: int, lines: Lines) -> None:
-    """The one curve of both blocks, and the region in which they pass alpha and survive."""
-    draw_lines(ax, lines.frequency_ratio, lines.amplitude, lines, color=BLACK, linewidth=1.0)
+def _in_groups(ax: Axes, data: xr.Dataset, pulse: int, lines: Lines, *, detail: bool = False) -> None:
+    """The one curve of both blocks, and the region in which they pass alpha and survive.
+
+    `detail`: draw the curves of overturning after two and more impacts too.
+    """
+    for level in (False, True) if detail else (False,):
+        one = lines.at_level(detail=level)
+        ax.plot(one.frequency_ratio, one.amplitude, color=BLACK, linewidth=0.6 if level else 1.0)
     ax.fill_between(
         data.frequency_ratio, data.survives_from[pulse], data.survives_to[pulse], color=SURVIVES, linewidth=0, zorder=0
     )

@@ -9,10 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rocking.paper.overturning import overturning_amplitudes
-from rocking.plot.boundary_lines import draw_lines
-from rocking.plot.style import BLACK, GREY, WIDTH, shades
+from rocking.plot.style import BLACK, WIDTH, shades
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
-from workflow.figures.style import panel_letters, plotted
+from workflow.figures.style import frame_detail, panel_letters, plotted
 
 WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 5.6)}
 """Frequency ratios shown [-]; beyond them almost no block overturns at the amplitudes shown."""
@@ -20,13 +19,11 @@ WINDOWS = {"sine": (0.2, 8.5), "cosine": (0.2, 5.6)}
 AMPLITUDES = (1.0, 12.0)  # amplitudes a shown [-], as in figure 4
 
 DETAILS = {
-    "sine": [((0.10, 0.70, 0.31, 0.27), ((0.3, 1.2), (1.03, 1.13)))],
-    "cosine": [
-        ((0.11, 0.70, 0.19, 0.27), ((1.2, 1.55), (2.3, 3.3))),
-        ((0.76, 0.09, 0.23, 0.37), ((0.3, 2.0), (1.02, 1.32))),
-    ],
+    "(c)": ("sine", (0.3, 1.2), (1.03, 1.13)),
+    "(d)": ("cosine", (1.2, 1.55), (2.3, 3.3)),
+    "(e)": ("cosine", (0.3, 2.0), (1.02, 1.32)),
 }
-"""Inset windows of each pulse: place in the panel, and limits of omega and of a."""
+"""Windows that have a panel of their own: pulse, limits of omega and of a."""
 
 SLENDER = "#BDBDBD"
 
@@ -67,47 +64,46 @@ def data(*, sine: Path, cosine: Path, restitution: float, alpha_deg: Sequence[fl
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """One panel for each pulse: a line for each angle, the slender limit as a band, its closed forms dashed on top."""
-    figure = Figure(figsize=(WIDTH, 4.3))
-    axes = figure.subplots(1, 2, sharey=True)
-    for k, (ax, pulse) in enumerate(zip(axes, data.attrs["pulse_names"].split(), strict=True)):
-        _curves(ax, data, k, linewidth=0.9)
-        ax.set_xlim(WINDOWS[pulse])
-        ax.set_title(f"{pulse} pulse")
-        ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
-    axes[0].set_yscale("log")
-    axes[0].set_ylim(AMPLITUDES)
+    """Above a panel for each pulse, below the windows in which blocks overturn after two and more impacts."""
+    figure = Figure(figsize=(WIDTH, 6.6))
+    axes = figure.subplot_mosaic([["sine"] * 3 + ["cosine"] * 3, ["(c)"] * 2 + ["(d)"] * 2 + ["(e)"] * 2],
+                                 height_ratios=[2, 1])  # fmt: skip
+    pulses = data.attrs["pulse_names"].split()
     ticks = [1, 2, 3, 4, 5, 6, 8, 10, 12]
-    axes[0].set_yticks(ticks, labels=[str(tick) for tick in ticks])
-    for ax in axes:
+    for k, pulse in enumerate(pulses):
+        ax = axes[pulse]
+        _curves(ax, data, k, linewidth=0.9, detail=False)
+        ax.set(xlim=WINDOWS[pulse], yscale="log", ylim=AMPLITUDES, title=f"{pulse} pulse")
+        ax.set_yticks(ticks, labels=[str(tick) for tick in ticks])
         ax.minorticks_off()
-    for k, (ax, windows) in enumerate(zip(axes, DETAILS.values(), strict=True)):
-        for place, (x, y) in windows:
-            inset = ax.inset_axes(place)
-            _curves(inset, data, k, linewidth=0.8)
-            inset.set(xlim=x, ylim=y)
-            inset.tick_params(labelsize=6, length=2, pad=1.5)
-            ax.indicate_inset_zoom(inset, edgecolor=GREY, linewidth=0.6)
+    for name, (pulse, x, y) in DETAILS.items():
+        _curves(axes[name], data, pulses.index(pulse), linewidth=0.9, detail=True)
+        axes[name].set(xlim=x, ylim=y, title=pulse)
+        frame_detail(axes[pulse], axes[name], name)
+    for name in ("sine", "(c)"):
+        axes[name].set_ylabel(r"amplitude $a=a_g/(g\tan\alpha)$ [-]")
+    for ax in axes.values():
+        ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
     pointer = {"fontsize": 7, "va": "center", "arrowprops": {"arrowstyle": "-", "linewidth": 0.5}}
-    axes[0].annotate("upper surviving\nregion", (4.2, 5.2), (1.5, 4.2), **pointer)
-    axes[0].set_ylabel(r"amplitude $a=a_g/(g\tan\alpha)$ [-]")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
-    panel_letters(axes)
+    axes["sine"].annotate("upper surviving\nregion", (4.2, 5.2), (1.2, 6.2), **pointer)
+    figure.legend(*axes["sine"].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    panel_letters(list(axes.values()))
     return figure
 
 
-def _curves(ax: Axes, data: xr.Dataset, pulse: int, *, linewidth: float) -> None:
+def _curves(ax: Axes, data: xr.Dataset, pulse: int, *, linewidth: float, detail: bool) -> None:
+    """The curves of all angles; `detail`: those of overturning after two and more impacts too."""
     angles = data.alpha.values
     for colour, alpha in zip([SLENDER, *shades(angles.size - 1)], angles, strict=True):
-        lines = lines_of(data, pulse, float(alpha))
-        slender = alpha == 0.0
+        lines, slender = lines_of(data, pulse, float(alpha)), alpha == 0.0
         style = {
             "color": colour,
             "linewidth": 3 * linewidth if slender else linewidth,
             "label": "slender limit" if slender else rf"$\alpha={np.degrees(alpha):.0f}$°",
             "zorder": 2 if slender else 3,
         }
-        draw_lines(ax, lines.frequency_ratio, lines.amplitude, lines, **style)
+        one = lines if detail else lines.at_level(detail=False)
+        ax.plot(one.frequency_ratio, one.amplitude, **style)
     if data.attrs["pulse_names"].split()[pulse] == "sine":
         style = {"color": BLACK, "linewidth": 0.7 * linewidth, "linestyle": (0, (1, 2)), "zorder": 4}
         for name in ("overturns_from", "survives_again", "direct"):

@@ -13,7 +13,7 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-LARGEST_DIFFERENCE = 10.0  # largest difference to the slender block that the lower panels show [%]
+LINEAR = 1.0  # difference to the slender block up to which the scale of the lower panels is linear [%]
 
 
 def data(
@@ -65,17 +65,21 @@ def scale_of(alpha: np.ndarray) -> np.ndarray:
 def draw(data: xr.Dataset) -> Figure:
     """Rows: slenderness; columns: pulses; a line for each angle, and below it its difference to the slender block."""
     rows = np.unique(data.curve_slenderness)
-    figure = Figure(figsize=(WIDTH, 0.8 + 1.95 * rows.size))
-    axes = figure.subplots(2 * rows.size, 2, sharex=True, sharey="row", squeeze=False, height_ratios=[2, 1] * rows.size)
+    largest = 1.3 * 100 * float(np.abs(data.spectrum / data.slender_spectrum - 1).max())
+    figure = Figure(figsize=(WIDTH, 0.8 + 2.1 * rows.size))
+    axes = figure.subplots(
+        2 * rows.size, 2, sharex=True, sharey="row", squeeze=False, height_ratios=[1.6, 1] * rows.size
+    )
     for (row, below), s in zip(axes.reshape(-1, 2, 2), rows, strict=True):
         for i, (ax, difference) in enumerate(zip(row, below, strict=True)):
             _panel(ax, difference, data, i, s)
             ax.set_title(rf"{data.attrs['pulse_names'].split()[i]}, $g\tan\alpha/a_g={s:.2f}$", loc="right")
-        row[0].set_ylabel("$g\\,\\theta_{\\max}/(a_g\\cos\\alpha)$")
-        below[0].set_ylabel("differ-\nence [%]")
+        row[0].set_ylabel("$g\\,\\theta_{\\max}/(a_g\\cos\\alpha)$ [-]", fontsize=7)
+        below[0].set_ylabel("difference [%]", fontsize=7)
         shown = np.isin(np.repeat(data.curve_slenderness.values, data.row_size.values), s)
         row[0].set_ylim(0, 1.08 * float(data.spectrum.values[shown].max()))
-        below[0].set_ylim(-LARGEST_DIFFERENCE, LARGEST_DIFFERENCE)
+        below[0].set_yscale("symlog", linthresh=LINEAR, linscale=0.7)
+        below[0].set(ylim=(-largest, largest), yticks=[-10, -1, 0, 1, 10], yticklabels=["-10", "-1", "0", "1", "10"])
     for ax in axes[-1]:
         ax.set_xlabel(r"frequency ratio $\omega=\omega_g/p$ [-]")
         ax.set_xlim(data.attrs["window"])

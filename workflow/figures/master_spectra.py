@@ -21,7 +21,10 @@ from workflow.figures.style import panel_letters, plotted
 
 PULSES = ("sine", "cosine")
 
-PEAKS, SPREADS = (0.003, 1.0), (0.1, 100.0)  # ranges of the colours of the peaks [-] and of the spread [%]
+PEAKS = (0.003, 1.0)  # range of the colours of the peaks [-]
+SPREADS = {"one": (0.1, 100.0), "each": (10.0, 300.0)}
+"""Range of the colours of the spread [%], for one restitution and for that of each angle."""
+
 NODES = 81  # nodes in each direction of the grid from which boundaries are traced where no file holds them
 
 OVERTURNS = "#E3E3E3"
@@ -121,7 +124,8 @@ def draw(data: xr.Dataset) -> Figure:
             lines = lines_of(data, i, alpha)
             draw_lines(ax, lines.frequency_ratio, 1 / lines.amplitude, lines, color=BLACK, linewidth=0.7)
             ax.set_title(f"{pulse}, {_named(data, alpha)}", loc="right", fontsize=7)
-        spread = _map(panels[count - 2], data, 100 * data.spread[i], SPREADS, "magma_r")
+        range_ = SPREADS["each" if np.ptp(data.restitution.values) > 0 else "one"]
+        spread = _map(panels[count - 2], data, 100 * data.spread[i], range_, "magma_r")
         panels[count - 2].set_title(f"{pulse}, spread", loc="right", fontsize=7)
         _contours(panels[count - 1], data, i)
         panels[count - 1].set_title(f"{pulse}, all boundaries", loc="right", fontsize=7)

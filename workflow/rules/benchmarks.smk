@@ -15,6 +15,8 @@ rule work_precision:
         "logs/bench/work-precision-{diagram}.tsv"
     wildcard_constraints:
         diagram="|".join(DIAGRAMS),
+    conda:
+        "../envs/rocking.yaml"
     threads: CORES
     params:
         code=benchmark_code("cost/work_precision"),
@@ -35,6 +37,8 @@ rule tolerance:
         "logs/bench/tolerance.log",
     benchmark:
         "logs/bench/tolerance.tsv"
+    conda:
+        "../envs/rocking.yaml"
     threads: CORES
     params:
         code=benchmark_code("accuracy/tolerance"),
@@ -51,6 +55,8 @@ rule solver:
         "logs/bench/solver.log",
     benchmark:
         "logs/bench/solver.tsv"
+    conda:
+        "../envs/rocking.yaml"
     threads: CORES
     params:
         code=benchmark_code("cost/solver"),
@@ -67,6 +73,8 @@ rule first_call:
         "logs/bench/first-call.log",
     benchmark:
         "logs/bench/first-call.tsv"
+    conda:
+        "../envs/rocking.yaml"
     threads: CORES
     params:
         code=benchmark_code("cost/first_call"),
@@ -83,6 +91,8 @@ rule recorded_motions:
         "logs/bench/records.log",
     benchmark:
         "logs/bench/records.tsv"
+    conda:
+        "../envs/rocking.yaml"
     threads: CORES
     params:
         code=benchmark_code("cost/records"),
@@ -101,6 +111,8 @@ rule service:
         "logs/bench/service.log",
     benchmark:
         "logs/bench/service.tsv"
+    conda:
+        "../envs/rocking.yaml"
     threads: CORES
     params:
         code=benchmark_code("cost/service"),
@@ -116,11 +128,17 @@ rule bench:
         records=expand("results/benchmarks/{name}.json", name=TIMED),
     output:
         summary="results/benchmarks/summary.md",
-        figures=expand("results/benchmarks/work-precision-{measure}.png", measure=["median_error", "error_99"]),
+        figures=report(
+            expand("results/benchmarks/work-precision-{measure}.png", measure=["median_error", "error_99"]),
+            caption="../report/work-precision.rst",
+            category="Run time",
+        ),
     log:
         "logs/bench/summary.log",
     benchmark:
         "logs/bench/summary.tsv"
+    conda:
+        "../envs/rocking.yaml"
     params:
         code=benchmark_code("summary"),
         folder=lambda wildcards, output: os.path.dirname(output.summary),

@@ -1,5 +1,5 @@
 # The claims of the paper against the results.
-CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md"}
+CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md", "page": "results/claims.html"}
 CLAIMS_PROVENANCE = provenance("claims", ["scripts/claims.py"], config["claims"], CLAIM_FILES.values())
 
 
@@ -12,14 +12,19 @@ rule claims:
         histories=["results/figures/figure-11.nc", "results/figures/figure-12.nc"],
         master="results/figures/figure-master-spectra.nc",
         momentum="results/figures/figure-master-housner.nc",
+        excitations="results/figures/figure-scale-law-excitations.nc",
     output:
-        **CLAIM_FILES,
+        table=CLAIM_FILES["table"],
+        text=CLAIM_FILES["text"],
+        page=report(CLAIM_FILES["page"], caption="../report/claims.rst", category="Claims"),
         record=record_of("claims", CLAIMS_PROVENANCE),
     log:
         "logs/claims.log",
     benchmark:
         "logs/benchmarks/claims.tsv"
     priority: 1
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(1000),
         runtime=60,

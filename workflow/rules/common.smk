@@ -10,19 +10,18 @@ PROJECT = Path(str(workflow.basedir))
 sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
-from rocking._datasets.provenance import settings_digest
+from rocking._base.version import __version__
+from rocking._datasets.provenance import settings_digest, settings_text
 from rocking._base.source_tree import SourceTree
 from rocking._interpolation.slices import windows_of
 from rocking.suites.configuration import DEFAULTS, suite_configuration
-from workflow import parts, records
+from workflow import records
 from workflow.configuration import (
     BYTES,
     ConfigurationError,
     check,
     nodes_of_cube,
-    nodes_of_part,
     restitutions,
-    tenths,
 )
 from workflow.pulses import configured_pulse, different, samples_file
 from workflow.run_lock import RUN_ID, RunningError, acquire
@@ -52,11 +51,6 @@ def record_of(job, provenance):
     return f"{records.FOLDER}/{records.record_name(job, provenance)}"
 
 
-def part_of(job, provenance):
-    """Path of a part of a product."""
-    return f"{parts.FOLDER}/{parts.part_name(job, provenance)}"
-
-
 def memory(megabytes):
     """Memory of a job [MB], more with each attempt, for engines that end jobs which need more than they state."""
     return lambda wildcards, attempt: math.ceil(attempt * megabytes)
@@ -77,26 +71,24 @@ def overturning_files(pulse, etas):
     return [f"results/overturning/{pulse}/eta-{named(eta)}.nc" for eta in etas]
 
 
+def part_files(pulse, etas):
+    """Solved nodes of the cubes of a pulse, kept for the cubes of other restitutions."""
+    return [f"{records.PARTS}/spectra/{pulse}-{named(eta)}.nc" for eta in etas]
+
+
 def window_of(eta, etas):
     """The restitutions, of those by name, from which the interval above one is interpolated."""
     place = [*etas].index(eta)
     return [*etas.values()][slice(*windows_of(len(etas), place, place + 1))]
 
 
-def parts_of(etas, tenths, code):
-    """Paths of the parts with the cubes of some restitutions, made by some code, with the pulse as a wildcard."""
-    return [
-        part_of(f"spectra/{{pulse}}-{tenth}", code | {"restitution": some})
-        for tenth, some in tenths.items()
-        if {*some} & {*etas}
-    ]
-
-
 def provenance(rule_name, scripts, settings, products):
     """Digests of the code and the settings behind a rule's products, which are listed in the manifest.
 
     Snakemake detects a changed script, but not a changed module that the script imports. The digest of the scripts and
-    of all files that they import is therefore a parameter of the rule.
+    of all files that they import is therefore a parameter of the rule. The settings and the version of the package
+    are too: they become attributes of the products. The commit does not: another one with the same code would make
+    other bytes. The manifest states it.
     """
     digests = {
         "code_sha256": SOURCES.digest(*(PROJECT / "workflow" / script for script in scripts)),
@@ -104,7 +96,7 @@ def provenance(rule_name, scripts, settings, products):
     }
     for path in products:
         PRODUCTS[path] = {"rule": rule_name, **digests}
-    return digests
+    return {**digests, "configuration": settings_text(settings), "product_version": __version__}
 
 
 def benchmark_code(*names):

@@ -1,8 +1,7 @@
-# Overturning boundaries, traced by pulse and restitution, then spectrum cubes: solved by pulse and tenth of the restitution,
-# whose blocks share the starts of their motions, and completed by pulse and restitution with the errors up to the next one.
-# Another restitution so repeats what depends on it. These jobs have priority, as figures and claims depend on them.
+# Each pulse and restitution: the overturning boundaries, the solved nodes (a part, which is kept), and the cube, completed
+# from the parts of its neighbours with the errors up to the next restitution. Another restitution so repeats only what
+# depends on it. These jobs have priority, as figures and claims depend on them.
 ETAS = {f"{eta:.2f}": eta for eta in config["restitution"]}
-TENTHS = tenths(config)
 ENTRIES = [(configured_pulse(entry, CONFIG_FOLDER), entry) for entry in config["pulses"]]
 PULSES = list(different(pulse for pulse, _ in ENTRIES))
 # of the pulses given by samples: the file of the samples, which names their digest, and the entry of the configuration
@@ -13,12 +12,10 @@ SAMPLED = {pulse.name: entry for pulse, entry in ENTRIES if not isinstance(pulse
 wildcard_constraints:
     pulse=r"[a-z0-9_]+(\([^/()]+\))?",
     eta="|".join(map(re.escape, ETAS)),
-    tenth="|".join(TENTHS),
-    digest="[0-9a-f]{16}",
     samples="[0-9a-f]{16}",
 
 
-PART_MB, CUBE_MB = (300 + BYTES * nodes / 1e6 for nodes in (nodes_of_part(config), nodes_of_cube(config)))
+CUBE_MB = 300 + BYTES * nodes_of_cube(config) / 1e6
 OVERTURNING_SETTINGS = {**config["boundary"], "alpha_deg": config["grid"]["alpha_deg"]}
 OVERTURNING_PROVENANCE = provenance(
     "overturning",
@@ -27,6 +24,7 @@ OVERTURNING_PROVENANCE = provenance(
     [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
 )
 WINDOWS = {eta: window_of(eta, ETAS) for eta in ETAS}
+PART_PROVENANCE = provenance("spectrum_part", ["scripts/spectrum_part.py"], config["grid"], [])
 SPECTRUM_PROVENANCE = {
     eta: provenance(
         "spectra",
@@ -37,11 +35,8 @@ SPECTRUM_PROVENANCE = {
     for eta, window in WINDOWS.items()
 }
 # the cells that are not interpolated depend on the code of the boundaries too
-CUBE_CODE = {
-    "cubes": [one["code_sha256"] for one in SPECTRUM_PROVENANCE.values()][0],
-    "boundaries": OVERTURNING_PROVENANCE,
-    "grid": config["grid"],
-}
+PART_CODE = PART_PROVENANCE | {"boundaries": OVERTURNING_PROVENANCE}
+CUBE_CODE = PART_CODE | {"cubes": SOURCES.digest(PROJECT / "workflow/scripts/spectra.py")}
 
 
 for pulse, _ in ENTRIES:
@@ -52,18 +47,20 @@ for pulse, _ in ENTRIES:
 
 rule samples:
     output:
-        samples=f"{parts.FOLDER}/pulses/{{pulse}}.{{samples}}.json",
+        samples=f"{records.PARTS}/pulses/{{pulse}}.{{samples}}.json",
     log:
         "logs/pulses/{pulse}.{samples}.log",
     benchmark:
         "logs/benchmarks/pulses-{pulse}-{samples}.tsv"
     localrule: True
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(300),
         runtime=10,
     params:
         pulse=lambda wildcards: SAMPLED[wildcards.pulse],
-        folder=str(CONFIG_FOLDER.resolve()),
+        folder=os.path.relpath(CONFIG_FOLDER),  # the checkout may be moved
     message:
         "Samples of the {wildcards.pulse} pulse"
     script:
@@ -81,6 +78,8 @@ rule overturning:
     benchmark:
         "logs/benchmarks/overturning-{pulse}-{eta}.tsv"
     priority: 3
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(400),
         runtime=240,
@@ -97,31 +96,34 @@ rule overturning:
 
 rule spectrum_part:
     input:
-        boundaries=lambda wildcards: overturning_files(wildcards.pulse, TENTHS[wildcards.tenth]),
+        boundaries=rules.overturning.output.boundaries,
         samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
-        part=temp(f"{parts.FOLDER}/spectra/{{pulse}}-{{tenth}}.{{digest}}.nc"),
+        part=part_files("{pulse}", ["{eta}"])[0],
+        record=record_of("parts/{pulse}-{eta}", PART_CODE),
     log:
-        "logs/spectra/{pulse}-{tenth}.{digest}.log",
+        "logs/parts/{pulse}-{eta}.log",
     benchmark:
-        "logs/benchmarks/spectra-{pulse}-{tenth}.{digest}.tsv"
+        "logs/benchmarks/parts-{pulse}-{eta}.tsv"
     priority: 2
+    conda:
+        "../envs/rocking.yaml"
     resources:
-        mem_mb=memory(PART_MB),
+        mem_mb=memory(CUBE_MB),
         runtime=240,
     params:
         grid=config["grid"],
-        restitution=lambda wildcards: TENTHS[wildcards.tenth],
+        restitution=lambda wildcards: ETAS[wildcards.eta],
         pulse=lambda wildcards: wildcards.pulse,
     message:
-        "Solving the spectrum cubes of the {wildcards.pulse} pulse at restitutions from {wildcards.tenth} on"
+        "Solving the spectrum cube of the {wildcards.pulse} pulse at restitution {wildcards.eta}"
     script:
         "../scripts/spectrum_part.py"
 
 
 rule spectra:
     input:
-        parts=lambda wildcards: parts_of(WINDOWS[wildcards.eta], TENTHS, CUBE_CODE),
+        parts=lambda wildcards: part_files(wildcards.pulse, WINDOWS[wildcards.eta]),
         samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
     output:
         cube=spectrum_files("{pulse}", ["{eta}"])[0],
@@ -131,13 +133,14 @@ rule spectra:
     benchmark:
         "logs/benchmarks/spectra-{pulse}-{eta}.tsv"
     priority: 3
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(CUBE_MB),
         runtime=120,
     params:
         pulse=lambda wildcards: wildcards.pulse,
         restitution=lambda wildcards: ETAS[wildcards.eta],
-        window=lambda wildcards: WINDOWS[wildcards.eta],
         provenance=lambda wildcards: SPECTRUM_PROVENANCE[wildcards.eta],
     message:
         "Spectrum cube of the {wildcards.pulse} pulse at restitution {wildcards.eta}"

@@ -17,6 +17,8 @@ rule manifest:
     benchmark:
         "logs/benchmarks/manifest.tsv"
     localrule: True
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(300),
         runtime=30,
@@ -34,7 +36,6 @@ rule check_data_sets:
     input:
         boundaries=overturning_files("{pulse}", ETAS),
         cubes=spectrum_files("{pulse}", ETAS),
-        tests=str(CHECKS / "test_data_sets.py"),
     output:
         report=f"{records.FOLDER}/checks/{{pulse}}.txt",
         record=record_of(
@@ -45,6 +46,8 @@ rule check_data_sets:
         "logs/checks/{pulse}.log",
     benchmark:
         "logs/benchmarks/checks-{pulse}.tsv"
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(1200),
         runtime=120,
@@ -60,7 +63,6 @@ rule check_results:
     input:
         manifest=rules.manifest.output.manifest,
         reports=expand(rules.check_data_sets.output.report, pulse=PULSES),
-        tests=str(CHECKS / "test_products.py"),
     output:
         report="results/checks.txt",
         record=record_of("check_results", {"code": CHECKS_CODE}),
@@ -68,6 +70,8 @@ rule check_results:
         "logs/check_results.log",
     benchmark:
         "logs/benchmarks/check_results.tsv"
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(1200),
         runtime=60,

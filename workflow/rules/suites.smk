@@ -40,7 +40,7 @@ wildcard_constraints:
 
 rule suite_record:
     input:
-        file=lambda wildcards: str(SUITE_FILES[wildcards.file]),
+        file=lambda wildcards: os.path.relpath(SUITE_FILES[wildcards.file]),  # the checkout may be moved
     output:
         **({"sensitivity": f"{SUITE_FOLDER}/sensitivity/{{file}}.nc"} if SUITE_ASKS else {}),
         outcomes=f"{SUITE_FOLDER}/records/{{file}}.nc",
@@ -49,6 +49,8 @@ rule suite_record:
         f"logs/suites/{SUITE['name']}/{{file}}.log",
     benchmark:
         f"logs/benchmarks/suite-{SUITE['name']}-{{file}}.tsv"
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(800),
         runtime=120,
@@ -75,6 +77,8 @@ rule suite_fragility:
         f"logs/suites/{SUITE['name']}/fragility.log",
     benchmark:
         f"logs/benchmarks/suite-{SUITE['name']}-fragility.tsv"
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(800),
         runtime=60,
@@ -109,6 +113,8 @@ for _figure, _source in SUITE_FIGURES.items():
         benchmark:
             f"logs/benchmarks/suite-{SUITE['name']}-{_figure}.tsv"
         localrule: True
+        conda:
+            "../envs/rocking.yaml"
         resources:
             mem_mb=memory(800),
             runtime=60,
@@ -142,6 +148,8 @@ rule suite_manifest:
     benchmark:
         f"logs/benchmarks/suite-{SUITE['name']}-manifest.tsv"
     localrule: True
+    conda:
+        "../envs/rocking.yaml"
     resources:
         mem_mb=memory(300),
         runtime=30,

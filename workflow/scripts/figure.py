@@ -7,7 +7,7 @@ from typing import Any
 
 from rocking._datasets.cube import describe, write_dataset
 from rocking.plot.output import save_figure
-from workflow.scripts.job import run
+from workflow.scripts.job import command_of, run
 
 
 def main(
@@ -30,7 +30,8 @@ def main(
     module = importlib.import_module(f"workflow.figures.{figure}")
     dataset = module.data(**inputs, **(paper or {}), **(ours or {}))
     chosen = {"values_chosen_here": ", ".join(ours)} if ours else {}
-    write_dataset(describe(dataset, id=nc.stem, history=f"workflow.figures.{figure}", **chosen, **provenance), nc)
+    about = {"id": nc.stem, "history": command_of(f"figures/{nc.stem}"), **chosen, **provenance}
+    write_dataset(describe(dataset, **about), nc)
     drawing = module.draw(dataset)
     save_figure(drawing, svg)
     save_figure(drawing, png)

@@ -33,6 +33,11 @@ def run(task: Callable[..., None], snakemake: Any) -> None:
             raise
 
 
+def command_of(product: str) -> str:
+    """The command that makes a product, by its path below the results without a suffix; of the attribute `history`."""
+    return f"python -m workflow.run results/{product}.nc"
+
+
 def _arguments(task: Callable[..., None], snakemake: Any) -> dict[str, Any]:
     """The parameters of the job; also its number of threads if the task takes it."""
     threads = {"threads": snakemake.threads} if "threads" in inspect.signature(task).parameters else {}

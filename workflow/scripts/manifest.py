@@ -1,6 +1,7 @@
 """Lists every product with its size, sha256, rule and the digests of the code and the settings behind it."""
 
 import json
+import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -28,8 +29,21 @@ def main(
         path.relative_to(manifest.parent).as_posix(): {**recorded[str(path)], **sources[str(path)]}
         for path in sorted(products)
     }
-    content = {"title": title, "manifest_code_sha256": code, "products": listed}
+    content = {"title": title, "manifest_code_sha256": code, **commit_of(Path(__file__).parents[2]), "products": listed}
     manifest.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def commit_of(project: Path) -> dict[str, str]:
+    """The commit of the project, if git knows it and no file in version control differs from it."""
+    git = ["git", "-C", str(project)]
+    try:
+        changed, commit = (
+            subprocess.run([*git, *command], capture_output=True, text=True, check=True).stdout.strip()
+            for command in (("status", "--porcelain", "--untracked-files=no"), ("rev-parse", "HEAD"))
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return {}
+    return {} if changed else {"commit": commit}
 
 
 if __name__ == "__main__":

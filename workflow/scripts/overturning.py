@@ -16,7 +16,7 @@ from rocking._excitation.pulses import as_pulse
 from rocking._excitation.sampled import SampledPulse
 from rocking._model.response import Outcome
 from workflow.pulses import pulse_of_job
-from workflow.scripts.job import run
+from workflow.scripts.job import command_of, run
 
 ACCURACY = (
     "chord_error", "uncounted_chord_error", "thinnest_region", "thinnest_uncounted_region",
@@ -75,6 +75,7 @@ def accuracy_of(traced: Sequence[xr.Dataset]) -> dict[str, Any]:
 def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float) -> xr.Dataset:
     """The curves of all angles with our attributes."""
     name = as_pulse(pulse).name
+    product = f"overturning/{name}/eta-{restitution:.2f}"
     for key, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
         curves[key].attrs |= VARIABLES["outcome"][1] | {"long_name": f"outcome on the {side} side"}
     curves["alpha"].attrs |= AXES["alpha"]
@@ -90,8 +91,8 @@ def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float)
         "blocks overturn after many impacts; distance in log omega within which the ends of the latter are known: "
         "end_distance; largest distance of the nodes in 1/a, below which a region can be missed: node_distance; ends "
         "of regions that are known to a step of the grid only: open_ends.",
-        history="rocking._boundary.tracing.overturning_boundary",
-        id=f"overturning/{name}/eta-{restitution:.2f}",
+        history=command_of(product),
+        id=product,
     )
 
 

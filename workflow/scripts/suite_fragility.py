@@ -14,7 +14,7 @@ from rocking.suites.hazard import annual_rate
 from rocking.suites.outcomes import join_outcomes
 from rocking.suites.sensitivity import sensitivity_of_outcomes
 from rocking.suites.table import fragility_table, sensitivity_table
-from workflow.scripts.job import run
+from workflow.scripts.job import command_of, run
 
 
 def main(
@@ -41,7 +41,7 @@ def main(
     if chosen.hazard is not None:
         found = found.assign(annual_rate(found, chosen.hazard).data_vars)
     about = {
-        "history": "workflow.scripts.suite_fragility",
+        "history": command_of(f"suites/{chosen.name}/fragility"),
         "suite": chosen.name,
         "measure": chosen.measure,
         **provenance,

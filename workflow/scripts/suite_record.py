@@ -14,7 +14,7 @@ from rocking.suites.configuration import BlockMap, SuiteConfiguration, suite_con
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.sensitivity import sensitivity_outcomes
-from workflow.scripts.job import run
+from workflow.scripts.job import command_of, run
 
 
 def main(
@@ -30,18 +30,20 @@ def main(
     `sensitivity`, if the suite asks for it: friction demand, and outcomes with other restitution and sampling.
     """
     chosen = suite_configuration(suite, Path())
+    assert isinstance(chosen.blocks, tuple)  # by `workflow.configuration`
     motion = chosen.records.read(file)
     checked = check_suite(motion, chosen.blocks, chosen.intensity, chosen.measure, chosen.restitution)
     found = with_margins(suite_outcomes(checked, threads=1), checked, threads=1)
     if chosen.map is not None:
         found = found.assign(map_overturned=_map_of(chosen, chosen.map, motion))
-    about = {"history": "workflow.scripts.suite_record", "source": motion.source, **provenance}
+    product = f"suites/{chosen.name}/records/{file.name}"
+    about = {"history": command_of(product), "source": motion.source, **provenance}
     described = describe(
         found,
         title=f"Rocking under {motion.name}",
         summary="Response of rigid blocks (2.2) to a recorded ground motion at several levels of intensity, "
         "solved event by event.",
-        id=f"suites/{chosen.name}/records/{file.name}",
+        id=product,
         **about,
     )
     write_dataset(described, outcomes)

@@ -7,19 +7,21 @@ these arrays are the memory that a response keeps until its client has read it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from rocking._base.errors import OutsideCubeError
+from rocking._excitation.pulses import as_pulse
 from rocking._lookup.collection import CubeCollection
 from rocking._lookup.cube import Points
 from rocking._model.fields import BOUNDED_FIELDS, DERIVED_FIELDS, FROM_CUBE
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
-from rocking._solver.bounded_response import BoundedResponse
+from rocking._solver.bounded_response import BoundedResponse, solve_checked
 from rocking_api.models.params import GROUPS, LookupOptions
 
 CHUNK_SIZE = 50_000
@@ -46,14 +48,26 @@ class BatchResult:
 def evaluate(
     cubes: CubeCollection,
     options: LookupOptions,
-    points: Points,
+    groups: Iterable[NDArray[np.float64]],
     stop: StopFlag | None = None,
     *,
     may_read: bool = True,
 ) -> tuple[BoundedResponse, tuple[str, ...]]:
-    """Responses of checked points (points,), and the sha256 of each data set that gave some of them."""
+    """Responses of checked points, and the sha256 of each data set that gave some of them.
+
+    The groups are slenderness, frequency ratio, restitution and alpha, arrays (points,).
+    """
+    points = Points(*groups)
+    if options.method == "solver":
+        known = points.slenderness, points.frequency_ratio, points.restitution, points.alpha
+        return solve_checked(as_pulse(options.pulse), *known, stop=stop), ()
     cube = cubes.cube(options.pulse, options.method, may_read)
-    found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
+    try:
+        found, used = cube.evaluate(points, options.absolute_tolerance, options.method, None, stop)
+    except OutsideCubeError as error:
+        if error.parameter != "alpha":
+            raise
+        raise OutsideCubeError("alpha_deg", options.alpha_deg, error.allowed) from None
     return found, tuple([one.sha256 for one in used])
 
 
@@ -70,7 +84,7 @@ def evaluate_many(
         stop.check()
         here = slice(start, start + CHUNK_SIZE)
         s, w, eta = (contiguous_array(groups[name][here]) for name in GROUPS)
-        part, met = evaluate(cubes, options, Points(s, w, eta, np.full(s.size, alpha)), stop)
+        part, met = evaluate(cubes, options, (s, w, eta, np.full(s.size, alpha)), stop)
         for name, values in fields.items():
             values[here] = getattr(part, name)
         from_cube[here] = part.from_cube

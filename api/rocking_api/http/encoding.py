@@ -91,7 +91,7 @@ def _accepted(header: str) -> dict[str, float]:
     return found
 
 
-def json_response(answer: Answer, request: Request, headers: Mapping[str, str] | None = None) -> Response:
+def json_response(answer: Answer[Any], request: Request, headers: Mapping[str, str] | None = None) -> Response:
     """An answer to a request as JSON, without validation."""
     answer.url = url_of(request)
     return Response(answer.model_dump_json(), headers=headers, media_type=MEDIA_TYPES["json"])
@@ -124,7 +124,7 @@ def csv_stream(columns: Mapping[str, Column], points: int, name: str) -> Respons
     return _streamed(parts(), points, MEDIA_TYPES["csv"], _file(f"{name}.csv"))
 
 
-def json_stream(answer: Answer, request: Request, columns: Mapping[str, Column], points: int) -> Response:
+def json_stream(answer: Answer[Any], request: Request, columns: Mapping[str, Column], points: int) -> Response:
     """As `json_response`, after columns that the answer lacks; written while it is sent."""
     answer.url = url_of(request)
 

@@ -72,7 +72,7 @@ KINDS: dict[type[Exception], Kind] = {
         "invalid-parameter", S.UNPROCESSABLE_ENTITY,
         "A parameter is missing, unknown, given twice, not of its type or out of range; `errors` lists all of them.",
     ),
-    MalformedBodyError: Kind("malformed-json", S.BAD_REQUEST, "The body is not JSON; `value` says what and where."),
+    MalformedBodyError: Kind("malformed-json", S.BAD_REQUEST, "The body is not JSON; `value` says why and where."),
     TooLargeError: Kind(
         "too-large", S.REQUEST_ENTITY_TOO_LARGE, "The request exceeds a limit of the service: divide it."
     ),
@@ -196,7 +196,7 @@ async def error_response(_: Request, error: Exception) -> Response:
 
 
 def _named(error: Exception) -> list[InvalidArgumentError]:
-    """What an error names, each once, in its order; empty if it names nothing."""
+    """The parameters that an error names, each once, in order; empty if it names none."""
     found: list[InvalidArgumentError] = []
     if isinstance(error, SeveralArgumentsError):
         found = error.errors

@@ -6,9 +6,10 @@ with every request, by which a request for one block takes 1.4 times the process
 
 from __future__ import annotations
 
+import math
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 from urllib.parse import parse_qsl
@@ -18,7 +19,7 @@ from fastapi.routing import APIRoute
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, from_json
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import json_response
@@ -81,16 +82,7 @@ def read_query(kind: type[P], query: Mapping[str, str]) -> P:
     try:
         return kind.model_validate_strings(query)
     except ValidationError as error:
-        wrong = {str(part["loc"][0]) for part in error.errors(include_url=False) if part["loc"]}
-        rest = ((name, _number(text)) for name, text in query.items() if name not in wrong)
-        raise SeveralArgumentsError([*_named(error, "query", kind), *kind.out_of_range(rest)]) from None
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+        raise SeveralArgumentsError(_named(error, "query", kind)) from None
 
 
 def check_json(body: bytes, stop: StopFlag) -> None:
@@ -147,11 +139,12 @@ def read_json(kind: type[P], body: bytes, query: Mapping[str, str], options: typ
 
 def _named(error: ValidationError, source: str, kind: type[Params]) -> list[InvalidArgumentError]:
     """The parameters of a model that pydantic found missing or wrong in `source`: the query, or the body."""
-    return [_of_validation(one, source, kind.model_fields) for one in error.errors(include_url=False)]
+    return [_of_validation(one, source, kind) for one in error.errors(include_url=False)]
 
 
-def _of_validation(error: ErrorDetails, source: str, names: Collection[str]) -> InvalidArgumentError:
-    """An error of pydantic; `names` are the parameters that are expected in `source`."""
+def _of_validation(error: ErrorDetails, source: str, model: type[Params]) -> InvalidArgumentError:
+    """An error of pydantic; the fields of the model are the parameters that are expected in `source`."""
+    names = model.model_fields
     kind, context = str(error["type"]), error.get("ctx", {})
     place = error["loc"]
     where = [str(part) for part in place]
@@ -164,8 +157,13 @@ def _of_validation(error: ErrorDetails, source: str, names: Collection[str]) -> 
         if isinstance(own, InvalidArgumentError):
             name += f".{own.parameter}" + "".join(f"[{index}]" for index in own.index)
             return InvalidArgumentError(name, own.value, own.allowed)
+    if isinstance(own, InvalidArgumentError) and name == "pulse":  # or one of its parameters
+        return own
     if isinstance(own, InvalidArgumentError):  # of a quantity
         return InvalidArgumentError(name, own.value, own.allowed)
+    if kind in _RANGES and name in names:
+        index = tuple(part for part in place[1:] if isinstance(part, int))
+        return _out_of_range(model, name, float(error["input"]), index)
     if kind == "missing":
         return refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
     if kind == "extra_forbidden":
@@ -181,6 +179,22 @@ def _of_validation(error: ErrorDetails, source: str, names: Collection[str]) -> 
     elif kind.startswith("int"):
         allowed = "an integer"
     return InvalidArgumentError(name, plain(error["input"]), allowed)
+
+
+_RANGES = {"greater_than", "greater_than_equal", "less_than", "less_than_equal", "finite_number"}
+
+
+def _out_of_range(model: type[Params], name: str, value: float, index: tuple[int, ...]) -> InvalidArgumentError:
+    """The error of `in_range` for the range that the schema of a field states."""
+    schema = model.model_json_schema()["properties"][name]
+    ends = next(one for one in (schema, *schema.get("anyOf", ())) if "minimum" in one or "exclusiveMinimum" in one)
+    low, high = ends.get("minimum", ends.get("exclusiveMinimum")), ends.get("maximum", math.inf)
+    unit = re.search(r"\[([^]]+)\]", schema["description"])
+    try:
+        in_range(name, value, low, high, closed="both" if "minimum" in ends else "right", unit=unit[1] if unit else "-")
+    except InvalidArgumentError as error:
+        return InvalidArgumentError(name, error.value, error.allowed, index)
+    raise ValueError(f"{value} is in the range of {name}")
 
 
 @cache

@@ -1,4 +1,4 @@
-"""What every JSON answer holds beside its own fields: the question, units, warnings, version, and how to ask again."""
+"""Fields that every JSON answer has: the question, units, warnings, version, and the address that repeats it."""
 
 from __future__ import annotations
 
@@ -6,18 +6,24 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import version
-from typing import Any, get_args
+from typing import Annotated, Any, Generic, TypeVar, get_args
 
 from fastapi import Request
-from pydantic import BaseModel, Field, GetJsonSchemaHandler, computed_field
+from pydantic import BaseModel, Field, GetJsonSchemaHandler, SerializeAsAny, computed_field
 from pydantic_core import core_schema
 
+from rocking_api.models.metadata import METADATA, Metadata
 from rocking_api.models.params import ListParams, Params
 from rocking_api.models.quantity import said
+
+Q = TypeVar("Q", bound=Params)
+L = TypeVar("L", bound=ListParams)
 
 VERSION = version("rocking")
 
 QUERY = said("parameters of the request, defaults included; empty without any")
+
+BY_SOLVER = said("what answered: always the solver", "solver")
 
 _UNIT = re.compile(r"(\w*) \[([^]]+)\]")
 
@@ -38,16 +44,13 @@ class Echo:
         return found
 
 
-ECHO = Echo()
+class Answer(BaseModel, Generic[Q]):
+    """Base of the models of all routes that answer in JSON, with the kind of the parameters."""
 
-
-class Answer(BaseModel):
-    """Base of the models of all routes that answer in JSON; a route with parameters declares its own `query`."""
-
-    query: Params = said(QUERY.description, Params())
+    query: SerializeAsAny[Q] = QUERY
     warnings: list[str] = Field(default_factory=list, description="where the answer is in doubt")
     version: str = said("version of the package", VERSION)
-    url: str = said("path and query string that repeat the question; POST and a blank before them: with the body", "")
+    url: str = said("path and query string that repeat the question; after POST: with the same body", "")
 
     @computed_field(  # type: ignore[prop-decorator]
         description="unit of each number by its field, 1 for a plain number; names of nested fields are joined by dots"
@@ -57,11 +60,40 @@ class Answer(BaseModel):
         return units_of(type(self))
 
 
-class ListAnswer(Answer):
+class Bare(Answer[Params]):
+    """Base of the models of routes without parameters."""
+
+    query: Params = said(QUERY.description, Params())
+
+
+class Echoed(BaseModel, Generic[Q]):
+    """What answers to a query whose pulse may be given by samples repeat of it."""
+
+    query: Annotated[SerializeAsAny[Q], Echo()] = QUERY
+
+
+class ListAnswer(Answer[L]):
     """Base of the models of lists."""
 
-    query: ListParams = QUERY
     next_cursor: str | None = said("`cursor` of the request for the next entries; null: there are no more", None)
+
+
+class InGroups(Answer[Q]):
+    """Base of the models in dimensionless groups."""
+
+    metadata_url: str = said("path of model, assumptions and limits of use", "/v1/metadata")
+
+
+class Solved(InGroups[Q]):
+    """The same, always by the solver."""
+
+    source: str = BY_SOLVER
+
+
+class InUnits(Answer[Q]):
+    """Base of the models in SI units."""
+
+    metadata: Metadata = said("model, assumptions and limits of use", METADATA)
 
 
 @cache

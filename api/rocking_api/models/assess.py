@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, SerializeAsAny, create_model
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
@@ -15,32 +15,17 @@ from rocking._base.quantity import Quantity
 from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
-from rocking_api.models.answer import ECHO, QUERY, Answer
-from rocking_api.models.metadata import METADATA_URL_FIELD
+from rocking_api.models.answer import Echoed, Solved
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import BaselineOrder, TableFormat, between, said
-from rocking_api.models.responses import BY_SOLVER
 
-MAX_OBJECTS = 2000
-"""Most rows of a table [-]."""
-
-MAX_RECORDS = 100
-"""Most records of a site [-]."""
-
-MAX_SAMPLES = 20_000
-"""Most variants of an object [-]."""
-
-MAX_MODES = 20
-"""Most modes of a building [-]."""
-
-MAX_SHAPES = 50
-"""Most pulse shapes of a site [-]."""
-
-MAX_LEVELS = 1000
-"""Most levels of a hazard curve [-]."""
-
-MAX_RECORD = 1_000_000
-"""Most samples of a component of a record [-]."""
+MAX_OBJECTS = 2000  # most rows of a table [-]
+MAX_RECORDS = 100  # most records of a site [-]
+MAX_SAMPLES = 20_000  # most variants of an object [-]
+MAX_MODES = 20  # most modes of a building [-]
+MAX_SHAPES = 50  # most pulse shapes of a site [-]
+MAX_LEVELS = 1000  # most levels of a hazard curve [-]
+MAX_RECORD = 1_000_000  # most samples of a component of a record [-]
 
 Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
 Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
@@ -54,7 +39,7 @@ class AssessParams(Params):
     )
     pgv: float | None = between(
         *STRENGTHS,
-        "peak ground velocity, from which each pulse has its period [m/s]; either this or periods",
+        "peak ground velocity [m/s], which sets the period of each pulse; either this or periods",
         default=None,
         examples=[0.3],
     )
@@ -64,40 +49,40 @@ class AssessParams(Params):
         "pulses, separated by commas; absent: all that leave the ground at rest", None, examples=["sine,ricker"]
     )
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
-    floor_periods: str | None = said(
-        "periods of a building of which the objects are on a floor [s], separated by commas", None
-    )
-    floor_damping: str = said("damping ratios of these modes [-], one or one for each", "0.05")
+    floor_periods: str | None = said("periods of the building [s], for objects on a floor, separated by commas", None)
+    floor_damping: str = said("damping ratios of these modes [-], one for all or one for each", "0.05")
     floor_participation: str = said(
-        "participation factors times mode shapes at the floor [-], one or one for each", "1"
+        "participation factors times mode shapes at the floor [-], one for all or one for each", "1"
     )
     baseline_order: BaselineOrder = None
     samples: int = between(
         0,
         MAX_SAMPLES,
-        "variants of each object within its tolerance and 0.05 of the restitution that are tried [-]",
+        "number of variants of each object to try, within its tolerance and 0.05 of the restitution [-]",
         default=0,
     )
     seed: int = between(0, 2**53, "seed of these variants [-]", default=0)
     resolution: float = between(
-        *RESOLUTIONS, "largest relative distance of the factors on a record that are tried [-]", default=RESOLUTION
+        *RESOLUTIONS, "largest relative distance between the factors tried on a record [-]", default=RESOLUTION
     )
-    sensitivity: bool = said("find the factors of changed objects, and sizes not overturned", True)
+    sensitivity: bool = said("find the factors of changed objects, and the sizes that survive", True)
     standards: str = said(
         "checks by standards to state beside the outcome, separated by commas, or all", "", examples=["static,asce43"]
     )
     format: TableFormat = None
 
+    @field_validator("standards", "shapes", "floor_periods", "floor_damping", "floor_participation")
     @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        super().check_field(name, value)
+    def _check(cls, value: str | None, info: ValidationInfo) -> str | None:
+        name = str(info.field_name)
         if name == "standards":
-            checked_clauses(value)
-        elif name.startswith("floor_") and value is not None:
-            modes_of(name, str(value))  # a query with an error elsewhere has its numbers read
+            checked_clauses(value or "")
         elif name == "shapes" and value is not None:
             for shape in _parts(name, value, MAX_SHAPES, "shapes"):
                 as_pulse(shape)
+        elif value is not None:
+            modes_of(name, value)
+        return value
 
     def site(self, given: AssessBody | None) -> Site:
         """The site, with the records and the hazard curve of a body."""
@@ -139,7 +124,7 @@ class SuiteRecordBody(BaseModel):
 
     acceleration: Samples = said("horizontal acceleration at uniform steps, in `unit`")
     second: Samples | None = said(
-        "other horizontal component: the pair is assessed at all angles and counts as one record", None
+        "other horizontal component; the pair is assessed at all angles and counts as one record", None
     )
     vertical: Samples | None = said("vertical acceleration, upwards", None)
     time_step: float = said("time between samples [s]")
@@ -202,21 +187,14 @@ class UnreadRow(BaseModel):
     reason: str = said("what was found and what is allowed")
 
 
-class AssessResponse(Answer):
+class AssessResponse(Echoed[AssessParams], Solved[AssessParams]):
     """Objects at a site, the worst first."""
 
-    query: Annotated[SerializeAsAny[AssessParams], ECHO] = QUERY
     rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]
-    motions: list[str] = said("motions of the site; from both sides each")
-    highest_factor: float = said("highest factor on the motions that was searched [-]")
-    resolution: float = said(
-        "largest relative distance of the factors on records that were tried, 0 without records [-]"
-    )
+    motions: list[str] = said("motions of the site; each acts from both sides")
+    highest_factor: float = said("highest factor searched [-]")
+    resolution: float = said("largest relative distance between the factors tried on records, 0 without records [-]")
     bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
-    details: dict[str, list[str]] = said(
-        "cells of the object of each row as they stand, by the headers of the table", {}
-    )
-    columns: dict[str, str] = said("what columns of the table were read as, by their headers")
+    details: dict[str, list[str]] = said("unchanged cells of the object of each row, by the headers of the table", {})
+    columns: dict[str, str] = said("meaning of the columns that were read, by header")
     skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
-    source: str = BY_SOLVER
-    metadata_url: str = METADATA_URL_FIELD

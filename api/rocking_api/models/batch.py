@@ -16,15 +16,12 @@ from numpy.typing import NDArray
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.errors import TooLargeError
-from rocking_api.models.params import GROUPS, BatchParams, LookupOptions
+from rocking_api.models.params import GROUPS, LookupOptions
 
 Columns = Mapping[str, NDArray[np.float64]]
 
-CHUNK_LINES = 10_000
-"""Lines of CSV that are parsed at once: 5 ms, for which numpy holds the interpreter lock."""
-
-MAX_LINE = 1000
-"""Characters of a line of CSV."""
+CHUNK_LINES = 10_000  # lines of CSV that are parsed at once: 5 ms, for which numpy holds the interpreter lock
+MAX_LINE = 1000  # characters of a line of CSV
 
 
 @dataclass(frozen=True)
@@ -61,9 +58,8 @@ def batch_of(options: LookupOptions, columns: Columns, given: Mapping[str, Any],
             raise InvalidArgumentError(name, f"{size} values", f"one value, or as many as the others: {points}")
     if points > max_points:
         raise TooLargeError("points", points, f"at most {max_points}")
-    options.check()
     for name, column in groups.items():
-        BatchParams.check_field(name, column)
+        GROUPS[name].convert(column)
     return Batch(options, {name: np.broadcast_to(groups[name], (points,)) for name in GROUPS})
 
 

@@ -2,41 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, SerializeAsAny
+from pydantic import BaseModel
 
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.fields import FIELDS
 from rocking_api.models import quantity as q
-from rocking_api.models.answer import ECHO, QUERY, Answer
-from rocking_api.models.metadata import METADATA_FIELD, Metadata
+from rocking_api.models.answer import BY_SOLVER, Echoed, InUnits
+from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import BY_SOLVER, PointResponse, declared, with_fields
+from rocking_api.models.responses import PointResponse, declared, with_fields
 
-MAX_BLOCKS = 10_000
-"""Most blocks of a body [-]: each is an object, unlike the points of /v1/response."""
-
-
-class SizeParams(Params):
-    """A block in SI units."""
-
-    width: q.Width
-    height: q.Height
-    restitution: q.BodyRestitution = "momentum"
-    gravity: q.Gravity = STANDARD_GRAVITY
-
-
-class BodyParams(SizeParams):
-    """The same, and the place of its centre of mass."""
-
-    offset: q.Offset = 0.0
-    mass_height: q.MassHeight = None
+MAX_BLOCKS = 10_000  # most blocks of a body [-]: each is an object, unlike the points of /v1/response
 
 
 class BlockParams(BodyParams):
-    """A block and a pulse in SI units."""
+    """A body and a pulse in SI units."""
 
     pulse: q.PulseName
     peak_acceleration: q.PeakAcceleration
@@ -46,7 +29,7 @@ class BlockParams(BodyParams):
 
 
 class BlocksParams(Params):
-    """What many blocks in a body have in common."""
+    """Values that many blocks of a body share."""
 
     pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
     restitution: q.BodyRestitution = q.said(
@@ -55,28 +38,29 @@ class BlocksParams(Params):
     format: q.TableFormat = None
 
 
-class BlockRow(Params):
-    """One of many blocks in a JSON body, in SI units."""
+class BlockRow(BodyShape):
+    """One of many bodies in JSON, in SI units."""
 
+    body: JsonBody  # type: ignore[assignment]  # a text once it is read
     name: str = q.said("label", "", max_length=200)
-    width: q.Width
-    height: q.Height
     peak_acceleration: q.PeakAcceleration
     period: q.Period
-    restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: that of all", None)
+    restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: the one for all blocks", None)
 
 
 class BlockRows(BlocksParams):
-    """Many blocks in a JSON body, and what they have in common."""
+    """Many blocks in a JSON body, and the values that they share."""
 
     blocks: list[BlockRow] = q.said("blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS})
     pulse: GivenPulse | None = q.said(  # type: ignore[assignment]
-        "a pulse by its name, or by samples; absent: that of the query", None
+        "a pulse by its name, or by samples; absent: the pulse of the query", None
     )
 
 
 _OF_TABLE = [
     one
+    if one.missing or one.kinds >= {"edges"}
+    else replace(one, missing="the edges of the body differ from those of a block")
     for one in FIELDS
     if {"pulse", "block"} <= one.kinds and one.name not in ("half_diagonal", "frequency_parameter")
 ]
@@ -84,12 +68,11 @@ _OF_TABLE = [
 
 
 @declared(_OF_TABLE, many=True)
-class BlocksResponse(Answer):
-    """Many blocks: one value for each, in the order of the body; SI units, degrees and groups."""
+class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
+    """Many bodies: one value for each, in the order of the body; SI units, degrees and groups."""
 
-    query: Annotated[SerializeAsAny[BlocksParams], ECHO] = QUERY
     name: list[str] | None = q.said("labels; null without any", None)
-    metadata: Metadata = METADATA_FIELD
+    body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
     source: str = BY_SOLVER
 
 
@@ -113,7 +96,7 @@ class Threshold(_Change):
 
 
 class PeriodThreshold(_Change):
-    """A period at which the outcome changes, the amplitude being what it is."""
+    """A period at which the outcome changes, at this amplitude."""
 
     period: float = q.said("T_p [s]")
 
@@ -132,45 +115,42 @@ class ScaleThreshold(_Change):
 
 
 class Margins(BaseModel):
-    """How far the block is from another outcome, by the rigid equation itself."""
+    """Distances of the block from another outcome, by the rigid equation."""
 
     nearest_acceleration: float | None = q.said(
-        "amplitude nearest in its logarithm at which the outcome changes [m/s2]; null: none found"
+        "nearest amplitude, by ratio, at which the outcome changes [m/s2]; null: none found"
     )
-    acceleration_factor: float | None = q.said("that over the peak acceleration of the request [-]")
+    acceleration_factor: float | None = q.said("nearest amplitude over the peak acceleration of the request [-]")
     nearest_period: float | None = q.said(
-        "period nearest in its logarithm at which the outcome changes, this amplitude [s]; null: none found"
+        "nearest period, by ratio, at which the outcome changes at this amplitude [s]; null: none found"
     )
-    period_factor: float | None = q.said("that over the period of the request [-]")
+    period_factor: float | None = q.said("nearest period over the period of the request [-]")
     periods: list[PeriodThreshold] = q.said("all periods at which the outcome changes, ascending")
     periods_searched: tuple[float, float] = q.said("smallest and largest period searched [s]")
     smallest_surviving_half_diagonal: float | None = q.said(
         "smallest R of this shape searched that survives this pulse [m]; a larger one may overturn"
     )
     surviving_from_half_diagonal: float | None = q.said(
-        "R from which every larger size searched survives [m]; null: the largest overturns"
+        "R above which every size searched survives [m]; null: the largest overturns"
     )
     sizes: list[SizeThreshold] = q.said("all sizes of this shape at which the outcome changes, ascending")
     sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched [m]")
 
 
 @with_fields("pulse", "edges")
-class BodyResponse(Answer):
+class BodyResponse(InUnits[BlockParams]):
     """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
-    query: BlockParams = QUERY
     edge: Edge
     thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
     notes: list[str] = NOTES
     source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
 @with_fields("pulse", "block")
-class BlockResponse(Answer):
+class BlockResponse(InUnits[BlockParams]):
     """What happens to the block."""
 
-    query: BlockParams = QUERY
     response: PointResponse = q.said("the same request and response in dimensionless groups")
     thresholds: list[Threshold] | None = q.said(
         f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
@@ -178,4 +158,3 @@ class BlockResponse(Answer):
     margins: Margins | None = q.said("null if they were not found in time, see `warnings`")
     notes: list[str] = NOTES
     data_version: str | None = q.said("sha256 of the data set that gave the response; null: the solver did")
-    metadata: Metadata = METADATA_FIELD

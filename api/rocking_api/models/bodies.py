@@ -8,8 +8,7 @@ from typing import Any
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import with_samples
 
-BODIES: set[type[Params]] = set()
-"""The models of bodies to which the descriptions of routes refer."""
+BODIES: set[type[Params]] = set()  # the models of bodies to which the descriptions of routes refer
 
 _TRIANGLE = {"acceleration": [0.0, 1.0, 0.0], "name": "triangle"}
 

@@ -1,10 +1,9 @@
-"""What every response in SI units says about its model: equations, assumptions, limits of use."""
+"""Model of every response in SI units: equations, assumptions, limits of use."""
 
 from __future__ import annotations
 
 from pydantic import BaseModel
 
-from rocking_api.models.answer import Answer
 from rocking_api.models.quantity import said
 
 ASSUMPTIONS = (
@@ -61,10 +60,6 @@ class Metadata(BaseModel):
     reference: str = said("publication whose equation numbers are used")
 
 
-class MetadataResponse(Metadata, Answer):
-    """The same as an answer."""
-
-
 METADATA = Metadata(
     model="free-standing rigid block on rigid ground that rocks about its corners, equation (2.2)",
     equations=list(EQUATIONS),
@@ -89,9 +84,3 @@ GROUPS_METADATA = METADATA.model_copy(
     }
 )
 """That of every response in groups, under `/v1/metadata`: it is longer than most of these responses."""
-
-METADATA_URL = "/v1/metadata"
-
-METADATA_URL_FIELD = said("path of model, assumptions and limits of use", METADATA_URL)
-
-METADATA_FIELD = said("model, assumptions and limits of use", METADATA)

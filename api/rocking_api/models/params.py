@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Iterable, Sequence
-from functools import cache, partial
+from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, in_range, one_of
 from rocking._base.quantities import RESTITUTION
-from rocking._excitation.pulses import PULSE_NAMES, as_pulse
-from rocking._model.checks import impact_share
 from rocking_api.models import quantity as q
 
-GROUPS = ("slenderness", "frequency_ratio", "restitution")
+GROUPS = {one.name: one for one in (q.SLENDERNESS, q.FREQUENCY_RATIO, RESTITUTION)}
 
 MAX_NUMBERS = 1_000_000
 """Most numbers of a list in JSON [-]; the points of a batch have a limit of their own, see `Settings`."""
 
 _FAIL_FAST = Field(fail_fast=True, max_length=MAX_NUMBERS)  # one error for an array, not one for each entry
 
-_KNOWN = frozenset([*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)])
-"""Names that need no look at the registered pulses."""
-
-MAX_DURATION = 1e9
-"""Duration of a history, tau = p t [-]."""
+MAX_DURATION = 1e9  # duration of a history, tau = p t [-]
 
 
 class Params(BaseModel):
@@ -38,30 +29,6 @@ class Params(BaseModel):
     takes_lists: ClassVar[bool] = False
     """Whether a JSON body may be a list as well: content without parameters."""
 
-    @classmethod
-    def check_field(cls, name: str, value: Any) -> None:
-        """Refuse a value that is out of the range that the schema of its field states, whatever the others are."""
-        check = _checks_of(cls).get(name)
-        if check is not None and value is not None:
-            check(value)
-
-    @classmethod
-    def out_of_range(cls, values: Iterable[tuple[str, Any]]) -> list[InvalidArgumentError]:
-        """The errors of `check_field` for names and values."""
-        found = []
-        for name, value in values:
-            try:
-                cls.check_field(name, value)
-            except InvalidArgumentError as error:
-                found.append(error)
-        return found
-
-    def check(self) -> None:
-        """Refuse values out of range, before any work is queued."""
-        errors = self.out_of_range(self)
-        if errors:
-            raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
-
 
 class ListParams(Params):
     """A part of a list."""
@@ -71,7 +38,6 @@ class ListParams(Params):
 
     def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
         """The names of this part, of ascending names, and the cursor of the next one; None at the end."""
-        self.check()
         rest = [name for name in names if self.cursor is None or name > self.cursor]
         part = rest[: self.limit]
         return part, part[-1] if len(part) < len(rest) else None
@@ -129,6 +95,12 @@ class BlockInGroups(ShapeParams):
 
     frequency_ratio: q.FrequencyRatio
 
+    @property
+    def groups(self) -> dict[str, Any]:
+        """Keyword arguments of the solver."""
+        alpha = alpha_of(self.alpha_deg)
+        return {"frequency_ratio": self.frequency_ratio, "restitution": self.restitution, "alpha": alpha}
+
 
 class SpectrumParams(LookupOptions):
     """Blocks of one slenderness over a window of the frequency ratio, spaced evenly in its logarithm."""
@@ -152,9 +124,7 @@ class HistoryParams(BlockInGroups):
 
     slenderness: q.Slenderness
     duration: float | None = q.said(
-        "length tau = p t [-]; absent: the pulse and some free rocking",
-        None,
-        json_schema_extra={"exclusiveMinimum": 0, "maximum": MAX_DURATION},
+        "length tau = p t [-]; absent: the pulse and some free rocking", None, gt=0, le=MAX_DURATION
     )
     samples: int = q.between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)
     contact: q.Contact = False
@@ -164,47 +134,3 @@ class HistoryParams(BlockInGroups):
 def alpha_of(alpha_deg: float | None) -> float | None:
     """Slenderness angle [rad], None for the slender limit."""
     return math.radians(float(q.ALPHA_DEG.convert(alpha_deg))) if alpha_deg else None
-
-
-_CHECKS: dict[str, Callable[[Any], object]] = {
-    "pulse": as_pulse,
-    "slenderness": q.SLENDERNESS.convert,
-    "frequency_ratio": q.FREQUENCY_RATIO.convert,
-    "restitution": lambda value: impact_share(value) is not None or RESTITUTION.convert(value),
-    "alpha_deg": alpha_of,
-}
-"""Checks of parameters whose range is not all of what is allowed, or which may be arrays."""
-
-
-@cache
-def _checks_of(kind: type[Params]) -> dict[str, Callable[[Any], object]]:
-    """Checks of the fields of a model: of `_CHECKS`, or of the range or the values that their schema states."""
-    found = {name: check for name, check in _CHECKS.items() if name in kind.model_fields}
-    for name, field in kind.model_fields.items():
-        schema: Any = field.json_schema_extra
-        if name in found or not isinstance(schema, dict):
-            continue
-        if "enum" in schema:
-            found[name] = partial(one_of, name, choices=[one for one in schema["enum"] if one is not None])
-        else:
-            ends = {
-                "low": schema.get("minimum", schema.get("exclusiveMinimum")),
-                "high": schema.get("maximum", math.inf),
-            }
-            closed = "both" if "minimum" in schema else "right"
-            unit = re.search(r"\[([^]]+)\]", field.description or "")
-            found[name] = partial(in_range, name, **ends, closed=closed, unit=unit[1] if unit else "-")
-    return found
-
-
-def check_point(params: ResponseParams) -> None:
-    """Refuse an unknown pulse and a block outside the ranges of the service; takes a microsecond."""
-    if not (
-        params.pulse in _KNOWN
-        and q.SLENDERNESS.lower <= params.slenderness < q.SLENDERNESS.upper
-        and q.FREQUENCY_RATIO.lower <= params.frequency_ratio <= q.FREQUENCY_RATIO.upper
-        and RESTITUTION.lower <= params.restitution <= RESTITUTION.upper
-        and (not params.alpha_deg or q.ALPHA_DEG.lower <= params.alpha_deg <= q.ALPHA_DEG.upper)
-        and 0.0 <= params.absolute_tolerance < math.inf
-    ):
-        params.check()

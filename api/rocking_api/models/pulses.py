@@ -23,11 +23,8 @@ from rocking_api.models.quantity import PulseName, said
 
 P = TypeVar("P", bound=Params)
 
-MAX_SAMPLES = 10_000
-"""Most samples of a pulse over HTTP [-]: some milliseconds for the parser, and for each block."""
-
-MAX_BODY = 500_000
-"""Largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits."""
+MAX_SAMPLES = 10_000  # most samples of a pulse over HTTP [-]: some milliseconds for the parser, and for each block
+MAX_BODY = 500_000  # largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits
 
 Samples = Annotated[list[float], Field(min_length=2, max_length=MAX_SAMPLES, fail_fast=True)]
 
@@ -40,7 +37,7 @@ class PulseSamples(BaseModel):
     acceleration: Samples = said("ground acceleration at the samples, in any unit")
     time: Samples | None = said("their times, ascending, in any unit; absent: equidistant", None)
     period: float | None = said(
-        "T_p in the unit of the times, of frequency_ratio and period; absent: from the first sample to the last",
+        "period T_p in the unit of the times; absent: the time from the first sample to the last",
         None,
     )
     name: str = said("name that the response repeats", "sampled", min_length=1, max_length=200)

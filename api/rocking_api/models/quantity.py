@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     Field,
@@ -23,10 +24,11 @@ from pydantic_core import PydanticCustomError
 
 import rocking._base.quantities as q
 from rocking._base.quantity import Quantity
-from rocking._excitation.pulses import pulse_names, pulse_parameters
+from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP
 from rocking._excitation.records.record import TIME_STEP, UNITS
+from rocking._model.checks import impact_share
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -34,14 +36,23 @@ SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
 ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
 
-SCALES = 1e-6, q.HIGHEST_SCALE
-"""Smallest and largest factor of a record [-]."""
+SCALES = 1e-6, q.HIGHEST_SCALE  # smallest and largest factor of a record [-]
+
+
+_ENDS_OF_FIELDS = {"minimum": "ge", "exclusiveMinimum": "gt", "maximum": "le", "exclusiveMaximum": "lt"}
 
 
 def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:
-    """What the declaration says of a field: its meaning, unit and range in the schema; `more` are those of `Field`."""
+    """What the declaration says of a field: meaning, unit and range in the schema; `more` are those of `Field`."""
     text = f"{text} [{unit or quantity.unit}]" if text else quantity.help
     return Field(description=text, json_schema_extra=dict(quantity.limits), **more)
+
+
+def plain(quantity: Quantity, text: str = "", **more: Any) -> Any:
+    """A field that is a number in the unit of the quantity, within its range."""
+    ends: dict[str, Any] = {_ENDS_OF_FIELDS[name]: end for name, end in quantity.limits.items()}
+    text = f"{text} [{quantity.unit}]" if text else quantity.help
+    return Field(description=text, allow_inf_nan=False, **ends, **more)
 
 
 def said(text: str, default: Any = ..., **more: Any) -> Any:
@@ -58,9 +69,31 @@ def with_intervals(**estimates: tuple[Any, str, str]) -> Callable[[type[Model]],
     return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
 
 
-def _in_range(quantity: Quantity, low: float, high: float, text: str = "", kind: Any = float, **more: Any) -> Any:
+_ENDS = {
+    "m": (1e-4, 1e4),
+    "m/s2": (1e-6, 1e6),
+    "s": (1e-4, 1e4),
+    "-": (1e-6, 1e6),
+    "kg": (1e-6, 1e12),
+    "kg m2": (1e-9, 1e15),
+}
+_OWN_ENDS = {"gravity": (1e-3, 1e3)}
+"""Smallest and largest values that the service takes, by unit or by name, where a quantity has an open end there."""
+
+
+def served(quantity: Quantity) -> Quantity:
+    """The quantity on the range of the service."""
+    ends = _OWN_ENDS.get(quantity.name) or _ENDS.get(quantity.unit)
+    if ends is None:
+        return quantity
+    low = -ends[1] if quantity.lower == -math.inf else max(quantity.lower, ends[0])
+    low = quantity.lower if quantity.closed in ("both", "left") and math.isfinite(quantity.lower) else low
+    return quantity.restricted(low, min(quantity.upper, ends[1]))
+
+
+def si(quantity: Quantity, text: str = "", kind: Any = float, **more: Any) -> Any:
     """A field in SI units within the range of the service; a text may state another unit, as "40 cm"."""
-    own = quantity.restricted(low, high)
+    own = served(quantity)
 
     def read(value: Any) -> Any:
         return value if value is None else own.read(value, si=True)
@@ -70,8 +103,7 @@ def _in_range(quantity: Quantity, low: float, high: float, text: str = "", kind:
 
 def between(low: float, high: float, text: str, **more: Any) -> Any:
     """A field with a range that includes its finite ends."""
-    ends: dict[str, Any] = {"minimum": low} | ({"maximum": high} if math.isfinite(high) else {})
-    return Field(description=text, json_schema_extra=ends, **more)
+    return Field(description=text, ge=low, le=high if math.isfinite(high) else None, **more)
 
 
 def _list_pulses(schema: dict[str, Any]) -> None:
@@ -84,10 +116,18 @@ def _list_pulses(schema: dict[str, Any]) -> None:
     ]
 
 
+def _known_pulse(text: str) -> str:
+    if text.removeprefix("-") not in PULSE_NAMES:
+        as_pulse(text)
+    return text
+
+
 def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
     """One error message for both alternatives."""
     try:
-        return read(value)
+        found = read(value)
+        impact_share(found)
+        return found
     except ValidationError:
         raise PydanticCustomError("restitution", "momentum, kalliontzis(k=0.8), or a number in [0, 1] [-]") from None
 
@@ -104,54 +144,50 @@ Pulse = Field(
     examples=["sine", "mavroeidis_papageorgiou(cycles=3, phase=90deg)"],
     json_schema_extra=_list_pulses,
 )
-PulseName = Annotated[str, Pulse]
+PulseName = Annotated[str, AfterValidator(_known_pulse), Pulse]
 Slenderness = Annotated[
-    float, described(SLENDERNESS, f"{SLENDERNESS.help[:-4]}; from 1 on the block does not uplift", examples=[0.4])
+    float, plain(SLENDERNESS, f"{SLENDERNESS.help[:-4]}; from 1 on the block does not uplift", examples=[0.4])
 ]
-FrequencyRatio = Annotated[float, described(FREQUENCY_RATIO, examples=[5.0])]
-Restitution = Annotated[float, described(q.RESTITUTION, examples=[0.85])]
+FrequencyRatio = Annotated[float, plain(FREQUENCY_RATIO, examples=[5.0])]
+Restitution = Annotated[float, plain(q.RESTITUTION, examples=[0.85])]
 AlphaDeg = Annotated[
     float | None,
+    AfterValidator(lambda given: given and float(ALPHA_DEG.convert(given))),
     Field(description="slenderness angle alpha [deg]; absent or 0: the slender limit", examples=[0.0]),
 ]
 
 # blocks and motions in SI units
 
-Width = _in_range(q.WIDTH, 1e-4, 1e4, examples=[0.4])
-Height = _in_range(q.HEIGHT, 1e-4, 1e4, examples=[1.6])
-Offset = _in_range(q.OFFSET, -1e4, 1e4, q.OFFSET.meaning + ", less than half of it")
-MassHeight = _in_range(q.MASS_HEIGHT, 1e-4, 1e4, kind=float | None)
-Gravity = _in_range(q.GRAVITY, 1e-3, 1e3)
-PeakAcceleration = _in_range(q.PEAK_ACCELERATION, 1e-6, 1e6, examples=[4.0])
-Period = _in_range(q.PERIOD, 1e-4, 1e4, examples=[0.5])
-Scale = Annotated[float, described(q.SCALE.restricted(*SCALES))]
+Width = si(q.WIDTH, examples=[0.4])
+Height = si(q.HEIGHT, examples=[1.6])
+Gravity = si(q.GRAVITY)
+PeakAcceleration = si(q.PEAK_ACCELERATION, examples=[4.0])
+Period = si(q.PERIOD, examples=[0.5])
+Scale = Annotated[float, plain(q.SCALE.restricted(*SCALES))]
 Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
 """An impact at a share k of the half base."""
 BodyRestitution = Annotated[
-    Literal["momentum"] | Spread | float,
+    Literal["momentum"] | Spread | Annotated[float, Field(ge=0.0, le=1.0)],
     WrapValidator(_momentum_or_number),
     said("eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b"),
 ]
 
 # files of records
 
-Unit = Annotated[
-    str | None,
-    Field(
-        description="unit of the samples, required if the file states none", json_schema_extra={"enum": [*UNITS, None]}
-    ),
+Unit: Any = Annotated[
+    Literal[tuple(UNITS)] | None, Field(description="unit of the samples, required if the file states none")
 ]
 TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], required if the file states none")]
 Skip = Annotated[
     int | None,
-    between(0, MAX_SKIP, "rows of numbers above the samples of a file of columns, such as a count or a factor [-]"),
+    between(0, MAX_SKIP, "rows of numbers to skip above the samples, such as a count or a factor [-]"),
 ]
 BaselineOrder = Annotated[
     int | None,
     between(
         0,
         MAX_BASELINE_ORDER,
-        "degree of the baseline that is removed from the acceleration [-]; absent: the mean of K-NET counts only",
+        "degree of the baseline to remove from the acceleration [-]; absent: only the mean of K-NET counts",
     ),
 ]
 Contact = Annotated[bool, Field(description="add the reactions of the ground and the friction that they need")]
@@ -160,11 +196,11 @@ Contact = Annotated[bool, Field(description="add the reactions of the ground and
 
 Method = Annotated[
     Literal["auto", "cube", "solver"],
-    Field(description="auto: the data set where it keeps the tolerance, else the solver; cube, solver: only that"),
+    Field(description="auto: the data set where it meets the tolerance, else the solver; cube, solver: only this one"),
 ]
 AbsoluteTolerance = Annotated[
     float,
-    Field(description="largest absolute error of an interpolated peak_rotation [-]", json_schema_extra={"minimum": 0}),
+    Field(description="largest absolute error of an interpolated peak_rotation [-]", ge=0, allow_inf_nan=False),
 ]
 Format = _format("json", "csv", "nc", default="JSON")
 BodyFormat = _format("json", "csv", "nc", default="that of the body")

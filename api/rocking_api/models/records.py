@@ -8,9 +8,9 @@ from typing import Any
 
 from pydantic import BaseModel, create_model
 
-from rocking_api.models.answer import QUERY, Answer
-from rocking_api.models.blocks import NOTES, BodyParams, Edge, ScaleThreshold, SizeParams
-from rocking_api.models.metadata import METADATA_FIELD, Metadata
+from rocking_api.models.answer import BY_SOLVER, InUnits, Q
+from rocking_api.models.blocks import NOTES, Edge, ScaleThreshold
+from rocking_api.models.body_params import BodyParams, JsonBody
 from rocking_api.models.quantity import (
     SCALES,
     BaselineOrder,
@@ -23,13 +23,10 @@ from rocking_api.models.quantity import (
     between,
     said,
 )
-from rocking_api.models.responses import BY_SOLVER, OF_SOLVER, Motion, declared, with_fields
+from rocking_api.models.responses import OF_SOLVER, ContactResponse, Motion, declared, with_fields
 
-MAX_SCALES = 2000
-"""Most factors of a curve over the scale [-]."""
-
-MAX_DRAWN = 100_000
-"""Most samples of a drawing [-]."""
+MAX_SCALES = 2000  # most factors of a curve over the scale [-]
+MAX_DRAWN = 100_000  # most samples of a drawing [-]
 
 CAUTION = (
     "A fitted pulse describes a record and does not replace it: what it leaves out moves blocks as well, so that the "
@@ -37,8 +34,8 @@ CAUTION = (
 )
 
 
-class RecordFileParams(SizeParams):
-    """A block in SI units, and what the file of the record does not state."""
+class RecordFileParams(BodyParams):
+    """A body in SI units, and what the file of the record does not state."""
 
     name: str = said("name of the file, for messages", "record", max_length=200)
     unit: Unit = None
@@ -57,11 +54,11 @@ class RecordParams(RecordFileParams):
     scale: Scale = 1.0
 
 
-class RecordResponseParams(BodyParams, RecordParams):
-    """The same, the place of the centre of mass, and whether to search thresholds and to fit a pulse."""
+class RecordResponseParams(RecordParams):
+    """The same, and whether to search thresholds and to fit a pulse."""
 
-    thresholds: bool = said("find all scales at which the outcome changes, which takes most of the time", True)
-    fit: bool = said("fit a pulse, and compare how both overturn the block", False)
+    thresholds: bool = said("find all factors at which the outcome changes; this takes most of the time", True)
+    fit: bool = said("fit a pulse and compare when both overturn the block", False)
 
 
 class RecordHistoryParams(RecordParams):
@@ -93,6 +90,7 @@ class RecordBody(RecordFileParams):
     """A record in a JSON body, with the parameters of its route."""
 
     record: str = said("text of the file")
+    body: JsonBody  # type: ignore[assignment]  # a text once it is read
 
 
 @cache
@@ -109,7 +107,7 @@ class RecordDescription(BaseModel):
 
     name: str = said("name of the file, without its ending, and the component")
     source: str = said("file, format, and what was done to the record")
-    remarks: list[str] = said("what the reader of the file found in doubt")
+    remarks: list[str] = said("warnings of the reader of the file")
     samples: int = said("number of samples [-]")
     time_step: float = said("time step [s]")
     peak_acceleration: float = said("PGA [m/s2]")
@@ -121,16 +119,15 @@ class RecordDescription(BaseModel):
     arias_intensity: float = said("Arias intensity [m/s]")
     significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
     mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
-    final_velocity: float = said("velocity at the last sample, which an offset leaves [m/s]")
+    final_velocity: float = said("velocity at the last sample [m/s]; large if the acceleration has an offset")
     digest: str = said("sha256 of the time step and the samples of all components")
 
 
-class RecordAnswer(Answer):
+class RecordAnswer(InUnits[Q]):
     """Base of the models of what is found under a record."""
 
     record: RecordDescription = said("the record, as read")
     source: str = BY_SOLVER
-    metadata: Metadata = METADATA_FIELD
 
 
 class FittedPulse(BaseModel):
@@ -142,7 +139,7 @@ class FittedPulse(BaseModel):
     centre: float = said("time of its centre from the first sample [s]")
     cycles: float | None = said("gamma of Mavroeidis & Papageorgiou [-]; null for others")
     phase: float | None = said("nu of Mavroeidis & Papageorgiou [rad]; null for others")
-    explained: float = said("share of the sum of squares of the velocity that it takes away [-]")
+    explained: float = said("share of the sum of squares of the velocity that the pulse explains [-]")
     scale_ratio: float | None = said(
         "lowest scale at which the pulse overturns the block over that of the record [-]; above 1: unconservative; "
         "null: one of them does not overturn it"
@@ -153,29 +150,27 @@ _SCALES = said("all scales at which the outcome changes, ascending; null: not as
 
 
 @with_fields("record", "block")
-class RecordResponse(RecordAnswer):
-    """What happens to the block; the fields of /v1/blocks/response have the same meaning."""
+class RecordResponse(RecordAnswer[RecordResponseParams]):
+    """Response of the block; the fields mean the same as those of /v1/blocks/response."""
 
-    query: RecordResponseParams = QUERY
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
     pulse: FittedPulse | None = said("null unless requested", None)
 
 
 @with_fields("record", "edges")
-class RecordBodyResponse(RecordAnswer):
+class RecordBodyResponse(RecordAnswer[RecordResponseParams]):
     """What happens to a body whose centre of mass is not that of the block."""
 
-    query: RecordResponseParams = QUERY
     edge: Edge
     thresholds: list[ScaleThreshold] | None = _SCALES
     notes: list[str] = NOTES
 
 
-class RecordHistoryResponse(RecordAnswer, Motion):
+@declared(OF_SOLVER[:-1])
+class RecordHistoryResponse(Motion, RecordAnswer[RecordHistoryParams]):
     """A motion under a record."""
 
-    query: RecordHistoryParams = QUERY
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")
     vertical_acceleration: list[float] | None = said(
@@ -183,11 +178,25 @@ class RecordHistoryResponse(RecordAnswer, Motion):
     )
 
 
+@declared(OF_SOLVER[1:-1])
+class RecordBodyHistoryResponse(RecordAnswer[RecordHistoryParams]):
+    """Motion under a record of a body whose edges differ from those of a block, in SI units."""
+
+    time: list[float] = said("from the first sample [s]")
+    impact_time: list[float] = said("times of the impacts [s]")
+    rotation: list[float] = said("theta, positive about the right edge [rad]")
+    angular_velocity: list[float] = said("theta' [rad/s]")
+    edge: list[int] = said("edge in contact: 1 right, -1 left, 0 both [-]")
+    ground_acceleration: list[float] = said("horizontal [m/s2]")
+    vertical_acceleration: list[float] = said("upwards [m/s2]")
+    top_displacement: list[float] = said("horizontal displacement of the top [m]")
+    contact: ContactResponse | None = said("null unless requested", None)
+
+
 @declared(OF_SOLVER, many=True)
-class RecordScalesResponse(RecordAnswer):
+class RecordScalesResponse(RecordAnswer[RecordScalesParams]):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
-    query: RecordScalesParams = QUERY
     scale: list[float] = said("factors of the record [-]")
     peak_acceleration: list[float] = said("PGA of the scaled record [m/s2]")
     thresholds: list[ScaleThreshold] = said(
@@ -196,10 +205,9 @@ class RecordScalesResponse(RecordAnswer):
     )
 
 
-class RecordPulseResponse(RecordAnswer):
+class RecordPulseResponse(RecordAnswer[RecordPulseParams]):
     """The pulse fitted to the velocity of a record, and both motions for a drawing."""
 
-    query: RecordPulseParams = QUERY
     pulse: FittedPulse = said("parameters of the pulse")
     time: list[float] = said("from the first sample [s]; every few samples of a long record")
     record_acceleration: list[float] = said("of the record, factor included [m/s2]")

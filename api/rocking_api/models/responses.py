@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import Annotated, Any, TypeVar
+from typing import Any, TypeVar
 
-from pydantic import BaseModel, SerializeAsAny, create_model
+from pydantic import BaseModel, create_model
 
 from rocking._dimensional.fields import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
@@ -17,9 +17,15 @@ from rocking._model.outcome import Outcome
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.encoding import Column, columns_as_they_are
-from rocking_api.models.answer import ECHO, QUERY, Answer, ListAnswer
-from rocking_api.models.metadata import METADATA_URL_FIELD
-from rocking_api.models.params import HistoryParams, LookupOptions, OverturningParams, ResponseParams, SpectrumParams
+from rocking_api.models.answer import Bare, Echoed, InGroups, ListAnswer, Q, Solved
+from rocking_api.models.params import (
+    HistoryParams,
+    ListParams,
+    LookupOptions,
+    OverturningParams,
+    ResponseParams,
+    SpectrumParams,
+)
 from rocking_api.models.quantity import said
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -28,8 +34,7 @@ OUTCOMES = [outcome.name for outcome in Outcome]
 
 _WORDS = {int(outcome): (outcome.name, outcome.sentence) for outcome in Outcome}
 
-SOURCES = ("solver", "cube")
-"""By whether a response is from a data set."""
+SOURCES = ("solver", "cube")  # by whether a response is from a data set
 
 _OF_POINT = [field for field in own.BOUNDED_FIELDS if field is not own.FROM_CUBE]
 
@@ -37,7 +42,7 @@ OF_SOLVER = (own.PEAK_ROTATION, own.OVERTURNED, own.OUTCOME, own.IMPACTS, own.EX
 """Fields of each response of the solver."""
 
 _LOOKED_UP = [
-    replace(one, missing="a data set leaves it open: method=solver counts") if one is own.IMPACTS else one
+    replace(one, missing="where a data set leaves it open, method=solver counts") if one is own.IMPACTS else one
     for one in COLUMN_FIELDS
 ]
 
@@ -46,9 +51,8 @@ _DETAILS = {
     own.EXCEEDED_ALPHA.name: "the ground can bring a block back from there",
 }
 
-BY_SOLVER = said("what answered: always the solver", "solver")
 _DATA = said(
-    "sha256 of the data set that answered, of that next below the restitution if several did; null if the solver did"
+    "sha256 of the data set that answered, of several the one next below the restitution; null: the solver answered"
 )
 
 
@@ -74,22 +78,18 @@ def with_fields(*kinds: str) -> Callable[[type[Model]], type[Model]]:
 
 
 @declared(_LOOKED_UP)
-class PointResponse(Answer):
+class PointResponse(InGroups[ResponseParams]):
     """One block."""
 
-    query: ResponseParams = QUERY
     meaning: str = said("the outcome in words")
     note: str | None = said("why peak_rotation, error_bound or impacts is null", None)
     data_version: str | None = _DATA
-    metadata_url: str = METADATA_URL_FIELD
 
 
-@declared(_LOOKED_UP, many=True)
-class Columns(Answer):
+class Columns(InGroups[Q]):
     """Many blocks, in the order of the request."""
 
     data_versions: list[str] = said("sha256 of each data set used")
-    metadata_url: str = METADATA_URL_FIELD
 
 
 class BatchQuery(LookupOptions):
@@ -98,16 +98,15 @@ class BatchQuery(LookupOptions):
     points: int = said("number of points [-]")
 
 
-class BatchResponse(Columns):
+@declared(_LOOKED_UP, many=True)
+class BatchResponse(Echoed[BatchQuery], Columns[BatchQuery]):
     """A batch."""
 
-    query: Annotated[SerializeAsAny[BatchQuery], ECHO] = said("options of the request, and its number of points")
 
-
-class SpectrumResponse(Columns):
+@declared(_LOOKED_UP, many=True)
+class SpectrumResponse(Echoed[SpectrumParams], Columns[SpectrumParams]):
     """A spectrum."""
 
-    query: Annotated[SerializeAsAny[SpectrumParams], ECHO] = QUERY
     frequency_ratio: list[float] = said("omega_g/p [-]")
 
 
@@ -120,14 +119,12 @@ class Curve(BaseModel):
     frequency_ratio: list[float] = said("omega_g/p [-]")
 
 
-class OverturningResponse(Answer):
+class OverturningResponse(Echoed[OverturningParams], InGroups[OverturningParams]):
     """The boundary curves of a pulse and a restitution."""
 
-    query: Annotated[SerializeAsAny[OverturningParams], ECHO] = QUERY
     curves: list[Curve] = said("boundary curves")
     source: str = said("dataset (read) or solver (traced for this request)")
     data_version: str | None = _DATA
-    metadata_url: str = METADATA_URL_FIELD
 
 
 class ContactResponse(BaseModel):
@@ -136,10 +133,12 @@ class ContactResponse(BaseModel):
     horizontal_reaction: list[float] = said("H/(m g) at the pivot [-]; 0 in the slender limit")
     normal_reaction: list[float] = said("N/(m g) [-]; 0 and below: the block lifts off")
     friction_demand: list[float | None] = said("|H|/N [-]; null where N <= 0; 0 in the slender limit")
-    friction_demand_over_slope: list[float | None] = said("|H|/(N tan alpha) [-]; null where N <= 0")
-    largest_friction_demand: float | None = said("also between the samples [-]; null if it lifts off")
-    largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]")
-    smallest_normal_reaction: float = said("over the weight [-]; 0 and below: it lifts off")
+    friction_demand_over_slope: list[float | None] | None = said(
+        "|H|/(N tan alpha) [-]; null where N <= 0, and without one alpha", None
+    )
+    largest_friction_demand: float | None = said("largest |H|/N, also between the samples [-]; null if it lifts off")
+    largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]", None)
+    smallest_normal_reaction: float = said("smallest N/(m g), also between the samples [-]; 0 and below: it lifts off")
     impulse_ratio: float | None = said(
         "horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
     )
@@ -147,24 +146,21 @@ class ContactResponse(BaseModel):
     warnings: str = said("where the assumption of pure rocking is doubtful, in words")
 
 
-@declared(OF_SOLVER[:-1])
-class Motion(Answer):
-    """A motion: outcome and samples, whatever its variable of time is."""
+class Motion(BaseModel):
+    """A motion: outcome and samples, over time in seconds or in p t."""
 
     rotation: list[float] = said("theta/alpha [-]")
     angular_velocity: list[float] = said("d(theta/alpha)/d tau, tau = p t [-]")
     ground_acceleration: list[float] = said("u_g/(g tan alpha) [-]; under a pulse a f")
     contact: ContactResponse | None = said("null unless requested", None)
-    source: str = BY_SOLVER
 
 
-class HistoryResponse(Motion):
+@declared(OF_SOLVER[:-1])
+class HistoryResponse(Echoed[HistoryParams], Motion, Solved[HistoryParams]):
     """A motion under a pulse."""
 
-    query: Annotated[SerializeAsAny[HistoryParams], ECHO] = QUERY
     tau: list[float] = said("time p t from the start of the pulse [-]")
     impact_time: list[float] = said("times p t of the impacts [-]")
-    metadata_url: str = METADATA_URL_FIELD
 
 
 class Link(BaseModel):
@@ -202,7 +198,7 @@ class PulseCubes(BaseModel):
     zarr: str = said("path for xarray.open_zarr(...), over the dimension restitution too")
 
 
-class DatasetCatalogue(ListAnswer):
+class DatasetCatalogue(ListAnswer[ListParams]):
     """Data sets."""
 
     datasets: list[DatasetSummary] = said("in the order of their names")
@@ -218,7 +214,7 @@ class VariableDescription(BaseModel):
     attributes: dict[str, Any] = said("CF attributes: units, long_name, equation and others")
 
 
-class DatasetDescription(DatasetSummary, Answer):
+class DatasetDescription(DatasetSummary, Bare):
     """Contents of a data set."""
 
     dimensions: dict[str, int] = said("size of each dimension [-]")
@@ -227,12 +223,12 @@ class DatasetDescription(DatasetSummary, Answer):
     attributes: dict[str, Any] = said("CF and ACDD attributes, digests of code and settings")
 
 
-class Health(Answer):
+class Health(Bare):
     """State of the service."""
 
     status: str = said("ok, or degraded: data sets are missing or damaged, and the solver replaces them")
     datasets: int = said("data sets found [-]")
-    unchecked: int = said("of these, not yet checked; retry in a moment [-]", 0)
+    unchecked: int = said("number of data sets not yet checked; retry in a moment [-]", 0)
     problems: dict[str, str] = said("what is missing or damaged, by name")
 
 
@@ -257,7 +253,7 @@ def point_response(params: ResponseParams, found: BoundedResponse, versions: tup
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
         note = "the block overturns: there is no peak"
     elif math.isinf(fields["error_bound"]):
-        note = "the outcome changes within the rounding of the question: there is no bound"
+        note = "the outcome changes within the rounding of the inputs: there is no bound"
         warnings = [note]
     elif fields["impacts"] == UNKNOWN_IMPACTS:
         note = "the data set does not determine the number of impacts: method=solver counts them"

@@ -6,17 +6,15 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from rocking_api.models.answer import QUERY, Answer, ListAnswer
-from rocking_api.models.metadata import METADATA_FIELD, Metadata
-from rocking_api.models.params import Params
+from rocking_api.models.answer import InUnits, ListAnswer
+from rocking_api.models.params import ListParams, Params
 from rocking_api.models.quantity import said, with_intervals
 from rocking_api.models.responses import Link
 
 _NAME = said("name of the suite")
 _TITLE = said("title of its fragility")
 _MEASURE = said("measure of intensity, such as pga")
-OF_MEASURE = "unit of the measure"
-"""What descriptions state as the unit of an intensity, which depends on the suite."""
+OF_MEASURE = "unit of the measure"  # what descriptions state as the unit of an intensity, which depends on the suite
 
 _UNIT = said("unit of the measure, as CF writes it")
 
@@ -45,7 +43,7 @@ class SuiteSummary(BaseModel):
     links: list[Link] = said("the suite, and its data sets")
 
 
-class SuiteCatalogue(ListAnswer):
+class SuiteCatalogue(ListAnswer[ListParams]):
     """Suites of the results folder."""
 
     suites: list[SuiteSummary] = said("the suites that can be read")
@@ -175,10 +173,9 @@ class SuiteBlock(BaseModel):
     )
 
 
-class SuiteResponse(Answer):
+class SuiteResponse(InUnits[SuiteParams]):
     """Blocks under a suite of records."""
 
-    query: SuiteParams = QUERY
     name: str = _NAME
     title: str = _TITLE
     measure: str = _MEASURE
@@ -189,7 +186,6 @@ class SuiteResponse(Answer):
     records: list[SuiteRecord] = said("the records")
     blocks: list[SuiteBlock] = said("the blocks")
     links: list[Link] = said("the data sets of the suite, for download")
-    metadata: Metadata = METADATA_FIELD
 
     @property
     def units(self) -> dict[str, str]:

@@ -21,11 +21,8 @@ from rocking_api.service import ServiceDep
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-MAX_BODY = 8 * 1024 * 1024
-"""Largest table with records [bytes]."""
-
-MAX_PAIRS = 500_000
-"""Most objects times motions, a pair of components being twelve [-]."""
+MAX_BODY = 8 * 1024 * 1024  # largest table with records [bytes]
+MAX_PAIRS = 500_000  # most objects times motions, a pair of components being twelve [-]
 
 _FORMS: tuple[Form, ...] = ("json", "csv")
 
@@ -61,7 +58,7 @@ async def post_assess(request: Request, service: ServiceDep) -> Response:
     params, body = await service.read(request, AssessParams, given, AssessBody, MAX_BODY)
     table, site = await service.run_parser(lambda stop: _read(body, given, params, stop), request, large=True)
     form = negotiated_form(request, params.format, _FORMS, default=given)
-    return await service.run_heavy(params, lambda stop: _assess(params, request, site, table, form, stop), request)
+    return await service.run_heavy(lambda stop: _assess(params, request, site, table, form, stop), request)
 
 
 def _read(body: AssessBody | bytes, form: Form, params: AssessParams, stop: StopFlag) -> tuple[ObjectTable, Site]:

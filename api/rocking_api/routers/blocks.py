@@ -6,17 +6,16 @@ import math
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
+import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.block import Block
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._base.quantities import GROUPS
 from rocking._dimensional.margins import Margins as FoundMargins
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import BodyResponse as Found
 from rocking._dimensional.response import respond
-from rocking._dimensional.rigid_body import body_of_size
 from rocking._dimensional.table import BlockTable, read_table, respond_table
-from rocking._lookup.cube import Points
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
@@ -27,17 +26,14 @@ from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import blocks as m
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import ResponseParams
-from rocking_api.models.quantity import FREQUENCY_RATIO
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, served
 from rocking_api.models.responses import SOURCES, PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
 
-MAX_BODY = 4 * 1024 * 1024
-"""Largest body with blocks [bytes]."""
-
-_FORMS: tuple[Form, ...] = ("json", "csv")
-"""Formats of a table of blocks, and of its response."""
+MAX_BODY = 4 * 1024 * 1024  # largest body with blocks [bytes]
+_FORMS: tuple[Form, ...] = ("json", "csv")  # formats of a table of blocks, and of its response
 
 _EXAMPLE = {
     "blocks": [
@@ -55,9 +51,9 @@ async def get_block(
 ) -> m.BlockResponse | m.BodyResponse:
     """Outcome, rotation in degrees, displacement in metres, distance to another outcome, friction, by (2.2).
 
-    With `offset` or `mass_height` of a body with two different edges, by the solver.
+    A body with other edges than those of a block is solved by them, and has no response in groups.
     """
-    return await service.run_heavy(params, lambda stop: _block(service, params, stop), request)
+    return await service.run_heavy(lambda stop: _block(service, params, stop), request)
 
 
 @router.post(
@@ -78,14 +74,14 @@ async def get_block(
 async def post_blocks(request: Request, service: ServiceDep) -> Response:
     """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
 
-    Columns of CSV: width, height, peak_acceleration, period, each with its unit in
-    brackets or in its cells, and optionally name and restitution; others are not used.
+    Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
+    optionally name and restitution; or the parameters of another kind of body. Others are not used.
     """
     given = body_form(request, _FORMS)
     params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
     form = negotiated_form(request, params.format, _FORMS, default=given)
     table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
-    return await service.run_heavy(params, lambda stop: _blocks(service, params, request, table, form, stop), request)
+    return await service.run_heavy(lambda stop: _blocks(service, params, request, table, form, stop), request)
 
 
 def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams, stop: StopFlag) -> BlockTable:
@@ -94,34 +90,25 @@ def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams, stop: StopFla
         raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
-        table = read_table(text, params.pulse, params.restitution, most=m.MAX_BLOCKS, stop=stop)
+        table = read_table(text, params.pulse, params.restitution, most=m.MAX_BLOCKS, stop=stop, limited=served)
         table.check()
     else:
         if len(body.blocks) > m.MAX_BLOCKS:
             raise TooLargeError("blocks", len(body.blocks), f"at most {m.MAX_BLOCKS}")
-        problems = [
-            Problem.of(
-                Block(row.width, row.height),
-                params.pulse,
-                row.peak_acceleration,
-                row.period,
-                params.restitution if row.restitution is None else row.restitution,
-            )
-            for row in body.blocks
-        ]
+        errors, problems = [], []
+        for k, row in enumerate(body.blocks):
+            try:
+                eta = params.restitution if row.restitution is None else row.restitution
+                made = row.made(restitution=eta)
+                problems.append(Problem.of(made, params.pulse, row.peak_acceleration, row.period, eta))
+            except InvalidArgumentError as error:
+                errors.append(InvalidArgumentError(f"blocks[{k}].{error.parameter}", error.value, error.allowed))
+        if errors:
+            raise SeveralArgumentsError(errors)
         names = [row.name for row in body.blocks]
         table = BlockTable(problems, names if any(names) else [])
     if not table.problems:
         raise InvalidArgumentError("blocks", "none", "at least one block")
-    for problem in table.problems:
-        block = problem.block
-        for name, value in (
-            ("width", block.width),
-            ("height", block.height),
-            ("peak_acceleration", problem.peak_acceleration),
-            ("period", problem.period),
-        ):
-            m.BlockRow.check_field(name, value)
     return table
 
 
@@ -136,8 +123,7 @@ def _blocks(
 
 
 def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:
-    body = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
-    problem = Problem.of(body, params.pulse, params.peak_acceleration, params.period, params.restitution)
+    problem = Problem.of(params.rocking_body, params.pulse, params.peak_acceleration, params.period, params.restitution)
     if not problem.is_block:
         if params.method == "cube":
             raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")
@@ -160,7 +146,9 @@ def _point(
 ) -> tuple[PointResponse, BoundedResponse]:
     """The response in groups, by a data set or by the solver, as a model too."""
     groups = problem.groups
-    dimensionless = ResponseParams(
+    for one in (SLENDERNESS, FREQUENCY_RATIO):
+        one.convert(groups[one.name])
+    dimensionless = ResponseParams.model_construct(
         pulse=params.pulse,
         method=params.method,
         absolute_tolerance=params.absolute_tolerance,
@@ -169,8 +157,7 @@ def _point(
         frequency_ratio=groups["frequency_ratio"],
         restitution=groups["restitution"],
     )
-    dimensionless.check()
-    points = Points.of_one(*(groups[name] for name in ("slenderness", "frequency_ratio", "restitution", "alpha")))
+    points = np.array([groups[one.name] for one in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:
         found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres

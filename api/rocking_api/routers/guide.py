@@ -32,7 +32,8 @@ class GuideFiles(PageFiles):
         if not Path(str(self.directory), "index.html").is_file():
             raise HTTPException(
                 HTTPStatus.NOT_FOUND,
-                f"no guide in {self.directory}: make docs in a checkout builds it, ROCKING_GUIDE names its folder",
+                "the guide is not built: `make docs` in a checkout of the sources builds it, and `ROCKING_GUIDE` names "
+                f"the folder of one, which is `{self.directory}` here; its text is the folder `docs` of the sources",
             )
         return await super().get_response(path, scope)
 

@@ -26,6 +26,7 @@ from rocking_api.mesh_reader import ENDINGS, MAX_MESH, can_read_meshes, read_mes
 from rocking_api.models.assess import modes_of
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
+from rocking_api.settings import Settings
 
 PATH = "/object"
 
@@ -78,17 +79,18 @@ router = APIRouter(prefix=PATH, include_in_schema=False)
 
 @router.get("")
 async def get_object_page(request: Request, service: ServiceDep) -> Response:
-    """The page, empty or with the object of its address."""
+    """The page with the object of its address, or an example."""
     asked = query_parameters(request)
     given = fields_of(asked)
-    if given["shape"] == "mesh" or not _is_asked(asked):
-        return revalidated(request, page_of(given))
+    if given["shape"] == "mesh" or not (_is_asked(asked) or service.kernels.is_loaded):
+        return revalidated(request, page_of(given, settings=service.settings))
     try:
         site, one = await service.run_io(lambda: (site_of(given), _object(given)))
         found = await _assessed(one.planes_around, one.restitution, site, request, service)
     except InvalidArgumentError as error:
-        return page_of(given, error=error)
-    return revalidated(request, page_of(given, found=found, footprint=one.footprint))
+        return page_of(given, error=error, settings=service.settings)
+    page = page_of(given, found=found, footprint=one.footprint, settings=service.settings)
+    return revalidated(request, page)
 
 
 @router.post("")
@@ -100,7 +102,8 @@ async def post_mesh(request: Request, service: ServiceDep, file: str = "") -> Re
     mesh = await service.run_parser(lambda stop: read_mesh(raw, file, given["unit"], stop), request, in_process=True)
     found = await _assessed(mesh.planes, restitution, site, request, service)
     notes = [f"The mesh {remark}." for remark in mesh.remarks]
-    return page_of(given | {"name": file}, found=found, footprint=np.array(mesh.footprint), notes=notes)
+    given |= {"name": file}
+    return page_of(given, found=found, footprint=np.array(mesh.footprint), notes=notes, settings=service.settings)
 
 
 async def _assessed(
@@ -200,6 +203,7 @@ def page_of(
     footprint: NDArray[np.float64] | None = None,
     notes: list[str] | None = None,
     error: InvalidArgumentError | None = None,
+    settings: Settings | None = None,
 ) -> HTMLResponse:
     """The page with the fields of its form, and what was found or is wrong."""
     worst = [] if found is None else worst_directions(found)
@@ -209,6 +213,7 @@ def page_of(
         "object.html",
         "In which direction does it overturn?",
         PATH,
+        settings,
         given=given,
         shapes=SHAPES,
         lengths=LENGTHS[given["shape"]],

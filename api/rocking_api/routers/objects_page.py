@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import re
 import shlex
@@ -19,9 +20,10 @@ from rocking._assessment.assess import assess
 from rocking._assessment.columns import VERDICTS
 from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
+from rocking._assessment.summary import lines_of, names_in_short, number_of, warnings_of
 from rocking._assessment.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError, plain_numbers
-from rocking._dimensional.table_reader import MARK, SHEETS, rows_of_csv, text_of
+from rocking._dimensional.table_reader import MARK, SHEETS, BadRow, delimiter_of, rows_of_csv, text_of
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
@@ -30,8 +32,9 @@ from rocking_api.limited_process import result_of
 from rocking_api.models.assess import MAX_OBJECTS
 from rocking_api.routers.assess import MAX_BODY, check_table
 from rocking_api.routers.object_page import SITE, address_of, quantity_of, site_of
-from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, html
+from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, TEMPLATES, html
 from rocking_api.service import Service, ServiceDep
+from rocking_api.settings import Settings
 
 MAX_SHEET = 32 * 1024 * 1024
 """Largest unpacked file of a sheet [bytes]."""
@@ -50,31 +53,37 @@ PART = 65536
 
 PATH = "/objects"
 
+WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+
 DEFAULTS = SITE | {"table": "", "title": "Objects at a site"}
+
+TEMPLATES.filters["number"] = number_of  # in the unit that people use, three digits
 
 router = APIRouter(prefix=PATH, include_in_schema=False)
 
 
 @router.get("")
-async def get_objects_page(request: Request, sample: str | None = None) -> Response:
-    """The page, empty or with the table of the guide."""
-    table = "" if sample is None else (STATIC / "collection.csv").read_text("utf-8")
-    return revalidated(request, _page(DEFAULTS | {"table": table}))
+async def get_objects_page(request: Request, service: ServiceDep) -> Response:
+    """The page with the table of the guide as an example."""
+    table = (STATIC / "collection.csv").read_text("utf-8")
+    return revalidated(request, _page(DEFAULTS | {"table": table}, service.settings))
 
 
 @router.post("")
 async def post_objects_page(request: Request, service: ServiceDep) -> Response:
-    """The page with the assessment of the table in its form."""
+    """The page with the assessment of the table in its form, and fields for what was not read."""
     given = await _form(request, service)
-    table, found = await _assessed(given, request, service)
-    return await service.run_io(lambda: _page(given, table=table, found=found))
+    table = await _read(given, request, service)
+    found = await _assessed(table, given, request, service) if table.objects or not table.bad_rows else None
+    return await service.run_io(lambda: _page(given, service.settings, table, found))
 
 
 @router.post("/report")
 async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
     given = await _form(request, service)
-    table, found = await _assessed(given, request, service)
+    table = await _read(given, request, service)
+    found = await _assessed(table, given, request, service)
     words = ["rocking", "assess", "TABLE"]
     for name in ("pga", "pgv"):
         words += [f"--{name}", quantity_of(given, name).replace(" ", "")]
@@ -88,10 +97,17 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
 
 
 @router.post("/assessment.csv")
-async def post_csv(request: Request, service: ServiceDep) -> Response:
-    """The assessment as CSV."""
-    table, found = await _assessed(await _form(request, service), request, service)
-    return text_response(await service.run_io(lambda: found.to_csv(bad_rows=table.bad_rows)), "assessment")
+@router.post("/assessment.xlsx")
+async def post_file(request: Request, service: ServiceDep) -> Response:
+    """The assessment as CSV or as a workbook, as its address ends."""
+    given = await _form(request, service)
+    table = await _read(given, request, service)
+    found = await _assessed(table, given, request, service)
+    if request.url.path.endswith(".csv"):
+        return text_response(await service.run_io(lambda: found.to_csv(bad_rows=table.bad_rows)), "assessment")
+    headers = {"Content-Disposition": 'attachment; filename="assessment.xlsx"'}
+    raw = await service.run_io(lambda: found.to_xlsx(bad_rows=table.bad_rows))
+    return Response(raw, headers=headers, media_type=WORKBOOK)
 
 
 @router.post("/text")
@@ -129,7 +145,7 @@ async def _form(request: Request, service: Service) -> dict[str, str]:
 
 
 def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
-    """The fields of the form; fields `line-N` take the place of rows of the table."""
+    """The fields of the form; fields `line-N` and `cell-N-K` take the place of rows of the table and of their cells."""
     count = body.count(b"&") + 1
     if count > MAX_FIELDS:
         raise TooLargeError("form", f"{count} fields", f"at most {MAX_FIELDS}")
@@ -137,15 +153,34 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
     fields = DEFAULTS | {_unescaped(name, stop): _unescaped(value, stop) for name, _, value in parts}
     if len(fields["table"]) > MAX_BODY:
         raise TooLargeError("table", f"{len(fields['table'])} characters", f"at most {MAX_BODY}")
-    lines = [int(name[5:]) for name in fields if re.fullmatch("line-[0-9]{1,9}", name)]
-    if lines:
-        rows = list(islice(rows_of_csv(fields["table"], SCHEMA, stop), max(lines)))
+    corrected: dict[int, dict[int | None, str]] = {}  # by row and place of the cell, None for the line
+    for name, value in fields.items():
+        if found := re.fullmatch("(?:line|cell)-([0-9]{1,9})(?:-([0-9]{1,4}))?", name):
+            corrected.setdefault(int(found[1]), {})[int(found[2]) if found[2] else None] = value
+    if corrected:
+        rows = list(islice(rows_of_csv(fields["table"], SCHEMA, stop), max(corrected)))
         rest = fields["table"].removeprefix(MARK)[sum(map(len, rows)) :]
-        for number in (one for one in lines if 0 < one <= len(rows)):
-            row = rows[number - 1]
-            rows[number - 1] = fields[f"line-{number}"] + row[len(row.rstrip("\r\n")) :]
+        delimiter = delimiter_of(fields["table"], SCHEMA)
+        for number in (one for one in corrected if 0 < one <= len(rows)):
+            rows[number - 1] = _with_cells(rows[number - 1], corrected[number], delimiter)
         fields["table"] = "".join([*rows, rest])
     return fields
+
+
+def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
+    """The text of a row with other cells, by their place; the whole line at the place None."""
+    line = row.rstrip("\r\n")
+    end, line = row[len(line) :], given.get(None, line)
+    cells = {place: cell for place, cell in given.items() if place is not None}
+    if cells:
+        found = next(csv.reader(io.StringIO(line, newline=""), delimiter=delimiter))
+        found += [""] * (max(cells) + 1 - len(found))
+        for place, cell in cells.items():
+            found[place] = cell
+        text = io.StringIO()
+        csv.writer(text, delimiter=delimiter).writerow(found)
+        line = text.getvalue().removesuffix("\r\n")
+    return line + end
 
 
 def _unescaped(raw: bytes, stop: StopFlag) -> str:
@@ -161,21 +196,24 @@ def _unescaped(raw: bytes, stop: StopFlag) -> str:
     return found.decode("utf-8", "replace")
 
 
-async def _assessed(given: dict[str, str], request: Request, service: Service) -> tuple[ObjectTable, Assessment]:
+async def _read(given: dict[str, str], request: Request, service: Service) -> ObjectTable:
+    return await service.run_parser(lambda stop: objects_of_csv(given["table"], MAX_OBJECTS, stop), request, large=True)
+
+
+async def _assessed(table: ObjectTable, given: dict[str, str], request: Request, service: Service) -> Assessment:
     site = site_of(given)
-    table = await service.run_parser(
-        lambda stop: objects_of_csv(given["table"], MAX_OBJECTS, stop), request, large=True
-    )
     check_table(table, "table")
 
     def run(stop: StopFlag) -> Assessment:
         return assess(table.objects, site, sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
 
     await service.kernels.wait()
-    return table, await service.executor.run(run, request)
+    return await service.executor.run(run, request)
 
 
-def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Assessment | None = None) -> HTMLResponse:
+def _page(
+    given: dict[str, str], settings: Settings, table: ObjectTable | None = None, found: Assessment | None = None
+) -> HTMLResponse:
     bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
     shown = {one.row for one in bad_rows}
     rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
@@ -183,12 +221,22 @@ def _page(given: dict[str, str], *, table: ObjectTable | None = None, found: Ass
         "objects.html",
         "Which objects overturn?",
         PATH,
+        settings,
         given=given,
-        bad_rows=bad_rows,
-        lines={number: row.rstrip("\r\n") for number, row in rows if number in shown},
+        bad_rows=[(one, _wrong_places(one, table)) for one in bad_rows if table],
+        texts={number: row.rstrip("\r\n") for number, row in rows if number in shown},
         table=table,
         found=found,
+        lines=lines_of(found) if found else [],
+        warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
+        own_of=lambda one: ", ".join(filter(None, (one.cells[label] for label in table.skipped))) if table else "",
         verdicts=VERDICTS,
         address=address_of,
     )
     return HTMLResponse(text, headers={"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"})
+
+
+def _wrong_places(bad: BadRow, table: ObjectTable) -> set[int]:
+    """The places of the cells that a row was not read for; none if it is the whole row."""
+    names = [(label.strip(), table.columns.get(label)) for label in bad.cells]
+    return {place for place, pair in enumerate(names) if bad.column and bad.column in pair}

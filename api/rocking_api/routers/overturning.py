@@ -25,7 +25,7 @@ from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
 from rocking_api.routers.twin import pair
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["curves"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", route_class=ParamsRoute)
 
 NODES = 201
 """Nodes of the grid on which curves are traced on request [-]: half as fine as the workflow, seconds for wavelets."""
@@ -37,8 +37,7 @@ Where a wavelet hardly uplifts them they strike up to 200,000 times. The curves 
 processor time with 0.98 and 50 s with 1: four fifths of the impacts are those of four blocks of a thousand.
 """
 
-MAX_KEPT = 64
-"""Requests whose traced curves are cached [-]: some tens of kB each."""
+MAX_KEPT = 64  # requests whose traced curves are cached [-]: some tens of kB each
 
 
 @pair(router, "/overturning", "Boundary curves", response_model=OverturningResponse, responses=CONTENT)
@@ -48,7 +47,7 @@ async def get_overturning(
     """The curves of the workflow; without those for this restitution they are traced, and cached."""
     form = negotiated_form(request, params.format)
     try:
-        return await service.run_heavy(params, lambda stop: _overturning(service, params, request, form, stop), request)
+        return await service.run_heavy(lambda stop: _overturning(service, params, request, form, stop), request)
     except TimeLimitError as error:
         given = params.model_dump(include={"pulse", "restitution", "alpha_deg"}, exclude_none=True)
         where = f"/v1/map?{urlencode(given)}" if sampled_pulse(params) is None else "POST /v1/map"

@@ -18,6 +18,7 @@ from starlette.types import Receive, Scope, Send
 from rocking_api.http.caching import revalidated
 from rocking_api.http.errors import KINDS, OTHERS, PROBLEMS
 from rocking_api.http.files import without_range
+from rocking_api.settings import Settings, has_data
 
 STATIC = Path(__file__).parents[1] / "static"
 
@@ -28,6 +29,21 @@ TEMPLATES = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
+
+PULSES = {
+    "sine": "One full sine",
+    "cosine": "One full cosine",
+    "half_sine": "Half a sine",
+    "rectangular": "Rectangular",
+    "c1": "Type C1, 1.5 cycles",
+    "c2": "Type C2, 2.5 cycles",
+    "ricker": "Ricker wavelet",
+    "ricker_antisymmetric": "Ricker wavelet, antisymmetric",
+    "mavroeidis_papageorgiou": "Mavroeidis and Papageorgiou",
+}
+"""What pages and scripts call the pulses."""
+
+TEMPLATES.globals["pulses"] = PULSES
 
 POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 # swagger-ui needs styles inside elements and data: images
@@ -48,6 +64,7 @@ class Page:
     title: str
     template: str
     policy: str = POLICY
+    exists: Callable[[Settings], bool] = lambda _: True  # whether it has something to show
 
 
 PAGES = (
@@ -55,9 +72,10 @@ PAGES = (
     Page("/objects", "Objects", "Which objects overturn?", ""),  # objects_page.py
     Page("/object", "One object", "In which direction does it overturn?", ""),  # object_page.py
     Page("/records", "Records", "A block under a record", "records.html"),
-    Page("/suites", "Suites", "Suites of records", "suites.html"),
-    Page("/datasets", "Data sets", "Data sets", "datasets.html"),
-    Page("/guide/", "Guide", "Guide", ""),  # the files that `make docs` built
+    Page("/suites", "Suites", "Suites of records", "suites.html", exists=lambda own: (own.results / "suites").is_dir()),
+    Page("/datasets", "Data sets", "Data sets", "datasets.html", exists=lambda own: has_data(own.results)),
+    # the files that `make docs` built
+    Page("/guide/", "Guide", "Guide", "", exists=lambda own: (own.guide / "index.html").is_file()),
     Page("/docs", "API", "Routes of the API", "docs.html", _SWAGGER_POLICY),
     Page("/state", "Status", "Service status", "state.html"),
 )
@@ -66,15 +84,24 @@ PAGES = (
 router = APIRouter(include_in_schema=False)
 
 
-def html(template: str, title: str, path: str = "", **values: Any) -> str:
-    """A page as text; `path` is its address, where the navigation has it."""
-    return TEMPLATES.get_template(template).render(title=title, path=path, pages=PAGES, **values)
+def html(template: str, title: str, path: str = "", settings: Settings | None = None, **values: Any) -> str:
+    """A page as text; `path` is its address, where the navigation has it, which leads only where something is."""
+    pages = [one for one in PAGES if settings is None or one.path == path or one.exists(settings)]
+    return TEMPLATES.get_template(template).render(title=title, path=path, pages=pages, **values)
+
+
+def settings_of(request: Request) -> Settings:
+    """The settings of the service that answers a request."""
+    found: Settings = request.app.state.service.settings
+    return found
 
 
 def _add(page: Page) -> None:
     async def get_page(request: Request) -> Response:
         headers = {"Content-Security-Policy": page.policy, **_REVALIDATE}
-        return revalidated(request, HTMLResponse(html(page.template, page.title, page.path), headers=headers))
+        return revalidated(
+            request, HTMLResponse(html(page.template, page.title, page.path, settings_of(request)), headers=headers)
+        )
 
     router.add_api_route(page.path, get_page, methods=["GET"], summary=page.title)
 
@@ -84,7 +111,8 @@ async def get_problems(request: Request) -> Response:
     """The kinds of errors, which their `type` refers to."""
     kinds = sorted((*KINDS.values(), *OTHERS), key=lambda kind: (kind.status, kind.name))
     headers = {"Content-Security-Policy": POLICY, **_REVALIDATE}
-    return revalidated(request, HTMLResponse(html("problems.html", "Kinds of errors", kinds=kinds), headers=headers))
+    text = html("problems.html", "Kinds of errors", settings=settings_of(request), kinds=kinds)
+    return revalidated(request, HTMLResponse(text, headers=headers))
 
 
 for _page in PAGES:
@@ -105,7 +133,7 @@ def _with_page(handler: Callable[..., Any]) -> Callable[[Request, Exception], Aw
         if "text/html" not in request.headers.get("accept", "") or response.status_code < 400:
             return response
         problem = json.loads(bytes(response.body))
-        text = html("error.html", problem["title"], problem=problem, address=request.url.path)
+        text = html("error.html", problem["title"], "", settings_of(request), problem=problem, address=request.url.path)
         kept = {name: value for name, value in response.headers.items() if not name.startswith("content-")}
         return HTMLResponse(text, response.status_code, kept | {"Content-Security-Policy": POLICY})
 

@@ -12,19 +12,18 @@ from pydantic import BaseModel
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation import pulses
+from rocking._excitation.impulse import impulse_of
 from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import QUERY, ListAnswer
+from rocking_api.models.answer import ListAnswer
 from rocking_api.models.params import ListParams
 from rocking_api.models.quantity import between, said
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
-MAX_DRAWN = 2000
-"""Most samples of a pulse for a drawing [-]."""
+MAX_DRAWN = 2000  # most samples of a pulse for a drawing [-]
 
 
-DIGITS = 4
-"""Decimals of the samples [-]: enough for a drawing, at a fifth of the length."""
+DIGITS = 4  # decimals of the samples [-]: enough for a drawing, at a fifth of the length
 
 
 class PulsesParams(ListParams):
@@ -53,14 +52,15 @@ class PulseDescription(BaseModel):
     phase_start: float = said("phase at the first instant [rad]")
     phase_end: float = said("phase at the last instant [rad]")
     duration: float = said("duration over the period T_p [-]")
+    peak_velocity: float = said("largest velocity of the ground, which starts at rest, over a_g T_p [-]")
+    ends_at_rest: bool = said("whether the ground has no velocity after it")
     time: list[float] = said("times from the first instant over T_p [-], to four decimals, for a drawing")
     acceleration: list[float] = said("f at these times [-], to four decimals; the largest absolute value of f is 1")
 
 
-class PulsesResponse(ListAnswer):
+class PulsesResponse(ListAnswer[PulsesParams]):
     """Excitations."""
 
-    query: PulsesParams = QUERY
     pulses: list[PulseDescription] = said("those of the package, then those registered in this process")
 
 
@@ -81,6 +81,7 @@ async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse
 def _described(name: str, samples: int) -> PulseDescription:
     pulse = pulses.pulse(name)
     phase = np.linspace(pulse.start, pulse.end, samples)
+    impulse = impulse_of(pulse)
     return PulseDescription(
         name=name,
         definition=_definition(name),
@@ -88,6 +89,8 @@ def _described(name: str, samples: int) -> PulseDescription:
         phase_start=pulse.start,
         phase_end=pulse.end,
         duration=(pulse.end - pulse.start) / (2.0 * math.pi),
+        peak_velocity=impulse.largest / (2.0 * math.pi),
+        ends_at_rest=impulse.ends_at_rest,
         time=((phase - pulse.start) / (2.0 * math.pi)).round(DIGITS).tolist(),
         acceleration=pulse.shape(phase).round(DIGITS).tolist(),
     )

@@ -10,11 +10,10 @@ import xarray as xr
 from fastapi import APIRouter, Request, Response
 
 from rocking._base.errors import InvalidArgumentError, finite
-from rocking._dimensional.block import Block
-from rocking._dimensional.problem import Problem, record_groups, restitution_of, search_range
-from rocking._dimensional.response import respond
-from rocking._dimensional.rigid_body import body_of_size
-from rocking._dimensional.thresholds import BodyThresholds, scale_thresholds
+from rocking._dimensional.curves import history
+from rocking._dimensional.problem import Problem, record_groups
+from rocking._dimensional.response import changes_of, respond
+from rocking._dimensional.thresholds import block_thresholds, scale_window, thresholds_of
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import reject_flight
@@ -22,6 +21,7 @@ from rocking._history.time_history import time_history
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
+from rocking.suites.body_arrays import as_block
 from rocking.suites.pulse_fit import PulseFit, fit_pulse
 from rocking_api.http.encoding import (
     CONTENT,
@@ -38,7 +38,7 @@ from rocking_api.models import records as m
 from rocking_api.models.blocks import ScaleThreshold
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.responses import OUTCOMES
-from rocking_api.routers.history import motion_columns, motion_fields
+from rocking_api.routers.curves import motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 P = TypeVar("P", bound=m.RecordFileParams)
@@ -65,23 +65,23 @@ def _about(kind: type[m.RecordFileParams]) -> dict[str, Any]:
 
 @router.post("/response", summary="A block in SI units under a record", openapi_extra=_about(m.RecordResponseParams))
 async def post_response(request: Request, service: ServiceDep) -> m.RecordResponse | m.RecordBodyResponse:
-    """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2).
-
-    With `offset` or `mass_height` of a body with two different edges.
-    """
+    """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2)."""
     params, record = await _read(m.RecordResponseParams, request, service)
-    return await service.run_heavy(params, lambda stop: _response(service, params, record, stop), request)
+    return await service.run_heavy(lambda stop: _response(service, params, record, stop), request)
 
 
 @router.post(
     "/history",
     summary="Motion of a block in SI units under a record",
-    response_model=m.RecordHistoryResponse,
+    response_model=m.RecordHistoryResponse | m.RecordBodyHistoryResponse,
     responses=CONTENT,
     openapi_extra=_about(m.RecordHistoryParams),
 )
 async def post_history(request: Request, service: ServiceDep) -> Response:
-    """Rotation and angular velocity from the first sample through free rocking; with `contact` also reactions."""
+    """Rotation and angular velocity from the first sample through free rocking; with `contact` also reactions.
+
+    In groups for a block; in SI units for a body with other edges.
+    """
     limit = service.settings.max_samples
     params, record = await _read(m.RecordHistoryParams, request, service)
     if params.samples is not None and params.samples > limit:
@@ -89,7 +89,7 @@ async def post_history(request: Request, service: ServiceDep) -> Response:
     if record.samples > limit and params.samples is None:
         raise TooLargeError("samples", record.samples, f"at most {limit}; state `samples`")
     form = negotiated_form(request, params.format)
-    return await service.run_heavy(params, lambda stop: _history(params, request, record, form, stop), request)
+    return await service.run_heavy(lambda stop: _history(params, request, record, form, stop), request)
 
 
 @router.post(
@@ -103,14 +103,14 @@ async def post_scales(request: Request, service: ServiceDep) -> Response:
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
     params, record = await _read(m.RecordScalesParams, request, service)
     form = negotiated_form(request, params.format)
-    return await service.run_heavy(params, lambda stop: _scales(params, request, record, form, stop), request)
+    return await service.run_heavy(lambda stop: _scales(params, request, record, form, stop), request)
 
 
 @router.post("/pulse", summary="The pulse fitted to a record", openapi_extra=_about(m.RecordPulseParams))
 async def post_pulse(request: Request, service: ServiceDep) -> m.RecordPulseResponse:
     """Parameters of the pulse, how both motions overturn the block, and their accelerations and velocities."""
     params, record = await _read(m.RecordPulseParams, request, service)
-    return await service.run_heavy(params, lambda stop: _pulse(params, record, stop), request)
+    return await service.run_heavy(lambda stop: _pulse(params, record, stop), request)
 
 
 async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, Record]:
@@ -141,8 +141,7 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
 def _response(
     service: Service, params: m.RecordResponseParams, record: Record, stop: StopFlag
 ) -> m.RecordResponse | m.RecordBodyResponse:
-    body = body_of_size(params.width, params.height, params.offset, params.mass_height, params.gravity)
-    problem = Problem.of(body, record, scale=params.scale, restitution=params.restitution)
+    problem = _problem(params, record, params.scale)
     if params.fit and not problem.is_block:
         raise InvalidArgumentError("fit", params.fit, "a block whose centre of mass is in its middle")
     seconds = SEARCH_SHARE * service.settings.max_seconds
@@ -156,42 +155,39 @@ def _response(
     )
 
 
+def _problem(params: m.RecordFileParams, record: Record, scale: Any, *, flies: bool = False) -> Problem:
+    return Problem.of(params.rocking_body, record, scale=scale, restitution=params.restitution, flies=flies)
+
+
 def _history(params: m.RecordHistoryParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
-    block = Block(params.width, params.height, params.gravity)
-    motion = time_history(
-        record,
-        **Problem.of(block, record, scale=params.scale, restitution=params.restitution).groups,
-        samples=params.samples,
-        contact=params.contact,
-        stop=stop,
-    )
+    problem = _problem(params, record, params.scale)
+    options: dict[str, Any] = {"samples": params.samples, "contact": params.contact, "stop": stop}
+    motion = time_history(record, **problem.groups, **options) if problem.is_block else history(problem, **options)
     if form == "nc":
         return netcdf_response(motion, "history")
     columns, reactions = motion_columns(motion, "time")
     if form == "csv":
         return csv_response(columns | reactions, "history")
-    return json_response(
-        m.RecordHistoryResponse.model_construct(
-            query=params,
-            record=_description(record),
-            **motion_fields(motion, reactions),
-            **columns,
-        ),
-        request,
-    )
+    kind = m.RecordHistoryResponse if problem.is_block else m.RecordBodyHistoryResponse
+    found = motion_fields(motion, reactions)
+    answer = kind.model_construct(query=params, record=_description(record), **found, **columns)
+    return json_response(answer, request)
 
 
 def _scales(params: m.RecordScalesParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
-    block = Block(params.width, params.height, params.gravity)
-    eta = restitution_of(block, params.restitution)
-    uplift, highest, _ = search_range(record, block, None)
+    one = _problem(params, record, 1.0, flies=True)
+    uplift, highest = scale_window(one)
     low = uplift if params.scale_min is None else params.scale_min
     high = highest if params.scale_max is None else params.scale_max
     if not low < high:
         raise InvalidArgumentError("scale_max", high, f"above scale_min, {low:g} [-]")
-    reject_flight("scale_max", record, high, block.gravity)
+    reject_flight("scale_max", record, high, float(one.body.gravity))
     scale = np.geomspace(low, high, params.points)
-    found = record_response(record, **record_groups(record, block, scale, eta), stop=stop)
+    if one.is_block:
+        groups = record_groups(record, one.block, scale, one.groups["restitution"])
+        found: Any = record_response(record, **groups, stop=stop)
+    else:
+        found, _ = _problem(params, record, scale).solve(stop=stop)
     columns: dict[str, Any] = {
         "scale": scale.tolist(),
         "peak_acceleration": (scale * record.peak_acceleration).tolist(),
@@ -211,17 +207,14 @@ def _scales(params: m.RecordScalesParams, request: Request, record: Record, form
         }
         attributes = {"record": record.name, "record_digest": record.digest, "outcomes": " ".join(OUTCOMES)}
         return netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
-    thresholds = scale_thresholds(record, block, restitution=eta, highest=high, stop=stop)
-    return json_response(
-        m.RecordScalesResponse.model_construct(
-            query=params, record=_description(record), thresholds=_thresholds(thresholds, record), **columns
-        ),
-        request,
-    )
+    thresholds = (block_thresholds if one.is_block else thresholds_of)(one, high, stop)
+    changes = [ScaleThreshold(**one) for one in changes_of(thresholds, record)]
+    columns |= {"record": _description(record), "thresholds": changes}
+    return json_response(m.RecordScalesResponse.model_construct(query=params, **columns), request)
 
 
 def _pulse(params: m.RecordPulseParams, record: Record, stop: StopFlag) -> m.RecordPulseResponse:
-    fit = fit_pulse(record, blocks=Block(params.width, params.height, params.gravity), stop=stop)
+    fit = fit_pulse(record, blocks=as_block(params.rocking_body), stop=stop)
     every = max(1, math.ceil(record.samples / params.samples))
     time = record.times[::every]
     drawn = {
@@ -247,15 +240,6 @@ def _description(record: Record) -> m.RecordDescription:
         mean_period=finite(record.mean_period),
         peak_vertical_acceleration=None if record.vertical is None else record.peak_vertical_acceleration,
     )
-
-
-def _thresholds(found: BodyThresholds, record: Record) -> list[ScaleThreshold]:
-    return [
-        ScaleThreshold(
-            scale=one.value, peak_acceleration=one.value * record.peak_acceleration, overturns_above=one.overturns_above
-        )
-        for one in found
-    ]
 
 
 def _fitted(fit: PulseFit) -> m.FittedPulse:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any
 
+import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._lookup.cube import Points, UnreadError
+from rocking._lookup.cube import UnreadError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate, evaluate_many
 from rocking_api.http.body import body_form
@@ -31,7 +32,6 @@ from rocking_api.models.params import (
     LookupOptions,
     ResponseParams,
     TableParams,
-    check_point,
 )
 from rocking_api.models.pulses import options_of, with_samples
 from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
@@ -51,11 +51,10 @@ half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of 
 @router.get("/response", summary="One block")
 async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep) -> PointResponse:
     """Whether it overturns, and its peak rotation."""
-    check_point(params)
     if not service.kernels.is_loaded:
         await service.kernels.wait()
     alpha = math.radians(params.alpha_deg or 0.0)
-    points = Points.of_one(params.slenderness, params.frequency_ratio, params.restitution, alpha)
+    points = np.array((params.slenderness, params.frequency_ratio, params.restitution, alpha)).reshape(4, 1)
     try:
         if params.restitution > MAX_INLINE_RESTITUTION:
             raise UnreadError
@@ -90,7 +89,7 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     """
     batch, form = await _read(request, service)
     service.reservation(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
-    return await service.run_heavy(batch.options, lambda stop: _answered(service, batch, request, form, stop), request)
+    return await service.run_heavy(lambda stop: _answered(service, batch, request, form, stop), request)
 
 
 async def _read(request: Request, service: Service) -> tuple[Batch, Form]:

@@ -43,7 +43,6 @@ async def get_suite(
     suite are under `links`. CSV has a row for each limit state, block and level. NRML is the fragility model of
     OpenQuake with the limit states rocks and overturns, for suites with the measure PGA or PGV.
     """
-    params.check()
     form = negotiated_form(request, params.format, ("json", "csv", "nrml"))
     if form == "json":
         found = await service.run_io(partial(service.suites.suite, name, params))

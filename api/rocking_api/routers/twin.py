@@ -13,7 +13,9 @@ from rocking_api.models.pulses import MAX_BODY, with_samples
 from rocking_api.service import ServiceDep
 
 
-def pair(router: APIRouter, path: str, summary: str, **about: Any) -> Callable[[Callable[..., Awaitable[Any]]], Any]:
+def pair(
+    router: APIRouter, path: str, summary: str, tag: str = "curves", **about: Any
+) -> Callable[[Callable[..., Awaitable[Any]]], Any]:
     """A decorator that adds an endpoint of parameters, request and service as GET and as POST, described by `about`."""
 
     def add(endpoint: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
@@ -25,9 +27,11 @@ def pair(router: APIRouter, path: str, summary: str, **about: Any) -> Callable[[
             params, _ = await service.read(request, kind, form, with_samples(kind), MAX_BODY)
             return await endpoint(params, request, service)
 
-        router.add_api_route(path, endpoint, methods=["GET"], summary=summary, **about)
+        router.add_api_route(path, endpoint, methods=["GET"], summary=summary, tags=[tag], **about)
         said = f"{summary}, under a pulse given by samples"
-        router.add_api_route(path, post, methods=["POST"], summary=said, openapi_extra=twin_of(kind), **about)
+        router.add_api_route(
+            path, post, methods=["POST"], summary=said, tags=[tag], openapi_extra=twin_of(kind), **about
+        )
         return endpoint
 
     return add

@@ -1,6 +1,9 @@
 """Rigid bodies: a rectangle, one with its centre of mass elsewhere, two edges, a cylinder, an outline, a mesh."""
 
+import inspect
 import math
+from collections.abc import Callable
+from functools import wraps
 from typing import TYPE_CHECKING, Annotated, Any
 
 from rocking._base.constants import STANDARD_GRAVITY
@@ -15,6 +18,7 @@ from rocking._base.quantities import (
     OFFSET,
     REBOUND,
     RIGHT,
+    SIDES,
     TOP_HEIGHT,
     WIDTH,
 )
@@ -29,7 +33,6 @@ VERTICES = Quantity(
 )
 PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, ...), z upwards", example="vase.stl")
 UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft", default="m")
-SIDES = Quantity("sides", "", "edges about which it rocks: both; left or right: a wall stops it at the other side")
 DIRECTION = Quantity(
     "direction",
     "rad",
@@ -73,23 +76,13 @@ def two_edges(
     gyration: Annotated[float | None, GYRATION] = None,
     top_height: Annotated[float | None, TOP_HEIGHT] = None,
     inclination: Annotated[float, INCLINATION] = 0.0,
-    sides: Annotated[str, SIDES] = "both",
-    rebound: Annotated[float | None, REBOUND] = None,
     gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
 ) -> "RigidBody":
     """A body from the distances of its edges from the centre of mass, and the height of that."""
     from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
 
     return RigidBody(
-        left,
-        right,
-        mass_height,
-        gyration,
-        inclination=inclination,
-        gravity=gravity,
-        top_height=top_height,
-        sides=sides,
-        rebound=rebound,
+        left, right, mass_height, gyration, inclination=inclination, gravity=gravity, top_height=top_height
     )
 
 
@@ -131,3 +124,25 @@ def mesh(
     from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
 
     return RigidBody.from_mesh(path, direction, unit=unit, gravity=gravity)
+
+
+def with_wall(make: Callable[..., "Block | RigidBody"]) -> Callable[..., "Block | RigidBody"]:
+    """The kind with two parameters more, `sides` and `rebound` of `rocking.RigidBody`."""
+
+    def wall(sides: Annotated[str, SIDES] = "both", rebound: Annotated[float | None, REBOUND] = None) -> None:
+        pass
+
+    @wraps(make)
+    def made(sides: str = "both", rebound: float | None = None, **others: Any) -> "Block | RigidBody":
+        from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
+
+        body = make(**others)
+        if sides == "both" and rebound is None:
+            return body
+        if not isinstance(body, RigidBody):
+            body = RigidBody.from_size(body.width, body.height, gravity=body.gravity)
+        return body.one_sided(sides, rebound)
+
+    parameters = [one for each in (make, wall) for one in inspect.signature(each).parameters.values()]
+    vars(made)["__signature__"] = inspect.Signature(parameters)
+    return made

@@ -41,7 +41,7 @@ def elastic_spectrum(
     component: Literal["horizontal", "vertical"] = "horizontal",
     stop: StopFlag | None = None,
 ) -> xr.Dataset:
-    """Largest responses of linear oscillators, which start at rest, under a record.
+    """Largest responses of linear oscillators to a record: displacement and pseudo-acceleration over the period.
 
     The oscillator q'' + 2 zeta omega q' + omega^2 q = -a_g is solved exactly for an acceleration that is linear between
     samples (Nigam & Jennings 1969; `floor_motion`). The largest displacement is that of all times, between the samples

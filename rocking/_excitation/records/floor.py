@@ -34,7 +34,7 @@ def floor_motion(
     tail: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> Record:
-    """Absolute acceleration of a floor of a linear structure, which starts at rest.
+    """The motion of a floor of a linear structure under a record, as a record of its absolute acceleration.
 
     Each mode n is an oscillator q'' + 2 zeta omega q' + omega^2 q = -a_g, and the floor has the acceleration
     a_g + sum of Gamma_n q_n'' (Chopra 2017, section 13.1), so that what the modes leave of the sum of Gamma_n to 1
@@ -128,7 +128,7 @@ def isolated_motion(
     vertical: Literal["pass", "filter"] = "pass",
     relative_tolerance: Scalar = 1e-3,
 ) -> Record:
-    """Absolute acceleration above a linear base isolation: `floor_motion` of one mode that takes the whole mass.
+    """The motion above a linear base isolation, as a record: `floor_motion` of one mode with the whole mass.
 
     Parameters
     ----------

@@ -38,6 +38,7 @@ def init_state(flight: Record, omega: float) -> None:
 @kernel
 def next_uplift(flight: Record) -> bool:
     """Advance from rest to the next uplift; False if there is none."""
+    # intervals end where |a f| = 1: a body at rest uplifts at the start of one with |a f| > 1, nowhere inside one
     while flight.interval < flight.interval_count and flight.interval_level[flight.interval] == 0.0:
         flight.interval += 1
     if flight.interval == flight.interval_count:
@@ -112,6 +113,7 @@ def start_flight(flight: Record) -> bool:
 @kernel
 def end_flight(flight: Record, ended: int, w: float, z: float, top: float) -> bool:
     """End a flight of duration `flight.length` with w and z and the peak `top`; False if it was the last."""
+    # stored before the impact, which is the first event that depends on eta
     if flight.first_flight_known == 0:
         (
             flight.first_flight_known,
@@ -123,7 +125,7 @@ def end_flight(flight: Record, ended: int, w: float, z: float, top: float) -> bo
         flight.first_flight_length, flight.first_flight_phase = flight.length, flight.phase
         flight.first_flight_sign, flight.first_flight_interval = flight.sign, flight.interval
     update_peak(flight, flight.side, top, flight.impacts, 0)
-    if ended != IMPACT:
+    if ended != IMPACT:  # the pulse has ended, or the body overturns: energy decides what follows
         final_outcome(flight, z, w, ended == OVERTURNS)
         return False
     on_impact(flight, w)

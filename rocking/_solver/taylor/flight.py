@@ -136,23 +136,26 @@ def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, 
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
     destabilised, impact, peak = steps.destabilised[lane] > 0.0, steps.impact[lane], steps.peak[lane]
+    # an impact is where z changes its sign over the step, or at the minimum of a destabilised step: z is convex there,
+    # so that it is back above zero at the end only if w has changed its sign as well
     if impact >= 0.0:
         h, z, w = impact, 0.0, steps.impact_w[lane]
     elif destabilised and steps.w0[lane] < 0.0 and w > 0.0:
         impact = impact_at_dip(steps, lane)
         if impact >= 0.0:
             h, z, w = impact, 0.0, evaluate_series(steps.rate, lane, steps.order - 1, impact)
-    if peak == UNDECIDED:
+    if peak == UNDECIDED:  # a peak up to the impact, on the restored part: z'' >= 0 before it
         restoring_time = (steps.restoring_phase[lane] - steps.phase[lane]) / steps.omega[lane]
         peak = highest_peak(steps, lane, restoring_time, h, z, w, steps.known[lane])
     flight.largest_z = max(flight.largest_z, peak)
     flight.elapsed += h
     if impact >= 0.0:
         return IMPACT, w, z
+    # no return from the horizontal, nor from z + w >= 1 + a under an acceleration that |a f| <= a bounds
     if flight.alpha > 0.0:
         if max(z, flight.largest_z) >= 0.5 * math.pi / flight.alpha:
             return OVERTURNS, w, z
-    elif z + w >= 1.0 + flight.a[0]:  # see `long_flight`
+    elif z + w >= 1.0 + flight.a[0]:
         return OVERTURNS, w, z
     steps.z0[lane], steps.w0[lane], steps.starts_at_uplift[lane] = z, w, 0.0
     steps.at_ground[lane], steps.known[lane] = 0.0, max(known_rotation(flight), flight.largest_z)

@@ -18,7 +18,7 @@ from rocking._model.outcome import Outcome
 from rocking.plot.style import LABELS, axes_of, label_of, plain_numbers
 
 _COLOURS = {
-    Outcome.NO_UPLIFT: ("#FFFFFF", "no uplift"),
+    Outcome.NO_UPLIFT: ("#FFFFFF", "never uplifts"),
     Outcome.OVERTURNED_AFTER_IMPACT: ("#9A9A9A", "overturns after impacts"),
     Outcome.OVERTURNED_DIRECTLY: ("#4A4A4A", "overturns without impact"),
 }

@@ -14,7 +14,7 @@ POINT = "/?frequency_ratio=4&slenderness=0.7"
 
 COMPLETE = {
     "/": "() => document.querySelector('.headline') && document.querySelectorAll('.downloads a[href]').length >= 7",
-    "/objects?sample=1": "() => document.querySelector('#ranking')",
+    "/objects": "() => document.querySelector('#ranking')",
     "/records": "() => ['#scales canvas', '#pulse-caution:not(:empty)'].every((one) => document.querySelector(one))",
     "/datasets": "() => document.querySelector('#groups h3')",
     "/suites": "() => document.querySelector('#suite-report canvas')",

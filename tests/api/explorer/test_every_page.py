@@ -21,14 +21,15 @@ SMALL = """() => {
 """Controls below 24 px in height or width; links within a sentence are as high as its lines."""
 
 
-@pytest.mark.parametrize("path", but_long([*OWN, "/objects?sample=1", "/nowhere"], "/", "/objects?sample=1"))
+@pytest.mark.parametrize("path", but_long([*OWN, "/nowhere"], "/", "/objects"))
 def test_no_message_one_navigation_and_large_targets(open_page, path):
     page = open_page(path, failing=path == "/nowhere", viewport={"width": 390, "height": 900})
     page.wait_for_function(COMPLETE.get(path, "() => true"))
     links = page.locator("nav[aria-label=Pages] a")
+    there = [one.path for one in PAGES if one.label != "Guide"]  # which is not built
     for width in (390, 1400):
         page.set_viewport_size({"width": width, "height": 900})
-        assert links.evaluate_all("all => all.map((one) => one.getAttribute('href'))") == [one.path for one in PAGES]
+        assert links.evaluate_all("all => all.map((one) => one.getAttribute('href'))") == there
         assert page.evaluate(SMALL) == []
 
 

@@ -21,6 +21,7 @@ from tests.api.explorer.reading import BLOCK, pixels, query, settle
 )
 def test_the_sentence_gives_the_verdict_of_the_package(open_page, units, typed, metres):
     page = open_page()
+    page.locator("#pulse").select_option("sine")
     page.locator("#units").select_option(units)
     for name, value in zip(("width", "height", "acceleration"), typed, strict=True):
         page.locator(f"#{name}").fill(value)

@@ -17,6 +17,9 @@ def test_data_sets_are_listed_and_filtered(open_page):
     status = page.locator("#status")
     expect(status).to_contain_text(f"{len(NAMES)} of {len(NAMES)} data sets")
     titles = page.locator("#groups h3").all_inner_texts()
+    assert page.locator("#groups tbody tr:visible").count() == 4  # a line for each pulse and suite
+    page.get_by_role("button", name="demonstration").click()
+    assert page.locator("#groups tbody tr:visible").count() == 4 + 3
     assert titles == ["Rocking spectra", "Boundaries of overturning", "Suites of records"]
     page.locator("#filter").fill("suites")
     expect(status).to_contain_text(f"3 of {len(NAMES)} data sets")
@@ -25,7 +28,7 @@ def test_data_sets_are_listed_and_filtered(open_page):
     page.locator("#pulse").select_option(label="One full cosine")
     page.locator("#eta").select_option("0.9")
     expect(status).to_contain_text(f"1 of {len(NAMES)} data sets")
-    expect(page.locator("#groups tr.folder:visible")).to_have_text("One full cosineall η as one store xarray")
+    expect(page.locator("#groups tr.folder:visible")).to_contain_text("1 file, η 0.9")
     row = page.locator("#groups tbody tr:not(.folder):visible")
     expect(row).to_contain_text("spectra/cosine/eta-0.90")
     expect(row).to_contain_text("ω 0.5 to 12")

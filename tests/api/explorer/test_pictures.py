@@ -26,7 +26,7 @@ STATES = {
     "map-dark": State(POINT, MAP, SECTION, "dark"),
     "spectrum": State(POINT, "() => document.querySelector('#spectrum-chart canvas')", "#spectrum"),
     "own-pulse": State(BLOCK + "&pulse=0+1+0", ANSWERS),
-    "objects": State("/objects?sample=1", COMPLETE["/objects?sample=1"]),
+    "objects": State("/objects", COMPLETE["/objects"]),
     "records": State("/records", COMPLETE["/records"]),
     "datasets": State("/datasets", COMPLETE["/datasets"]),
     "not-found": State("/nowhere", "() => true"),

@@ -9,7 +9,6 @@ import pytest
 from playwright.sync_api import expect
 
 import rocking
-from rocking._dimensional.thresholds import scale_thresholds
 from rocking._excitation.records.readers.read_record import parse_record
 
 NAPA = Path(__file__).parents[3] / "workflow/motions/napa_HNE.csv"
@@ -78,7 +77,7 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
     caption = page.locator("#scales-caption")
     expect(caption).to_contain_text("overturns from")
     first = float(re.search(r"overturns from ([\d.]+)", caption.inner_text())[1])
-    exact = float(scale_thresholds(motion, BLOCK).value[0])
+    exact = float(BLOCK.thresholds(motion).value[0])
     assert first == pytest.approx(exact, rel=1e-3)
     assert first < exact
 

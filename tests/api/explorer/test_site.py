@@ -17,11 +17,28 @@ SITE = rocking.Site(pga="0.3 g", pgv="30 cm/s")
 
 def test_an_example_rocks_beside_its_verdict(open_page):
     page = open_page(reduced_motion="no-preference")
-    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.4 g and 30 cm/s.")
+    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.4 g and 40 cm/s.")
     expect(page.locator("#play")).to_have_text("Pause")
-    expect(page.locator("#site-answer")).to_contain_text("It overturns with")
-    expect(page.locator("#single-title")).to_have_text("Under one pulse: One full sine, 0.5 s, 0.4 g")
+    expect(page.locator("#site-answer")).to_contain_text("It overturns with 30 % more (One full cosine).")
+    expect(page.locator("#single-title")).to_have_text("Under one pulse: One full cosine, 0.641 s, 0.4 g")
+    expect(page.locator("#answer")).to_contain_text("overturns with 30 % more")  # of the same motion
     assert query(page) == {}
+
+
+def test_the_period_is_that_of_the_sentence_until_another_is_stated_and_the_page_says_so(open_page):
+    page = open_page("/?width=40+cm&height=160+cm&acceleration=0.4+g&velocity=30+cm/s&restitution=momentum")
+    relation, period = page.locator("#single-relation"), page.locator("#period")
+    expect(period).to_have_value(f"{np.pi * 0.3 / (0.4 * STANDARD_GRAVITY):.4g}")
+    expect(relation).to_contain_text("One of the shapes above")
+    page.locator("#velocity").fill("45")
+    expect(period).to_have_value(f"{np.pi * 0.45 / (0.4 * STANDARD_GRAVITY):.4g}")
+    page.locator("#pulse").select_option("half_sine")
+    expect(relation).to_contain_text("the ground moves on")
+    period.fill("0.5")
+    expect(relation).to_contain_text("the ground reaches 62.4 cm/s, not the 45 cm/s of the sentence")
+    page.get_by_role("button", name="Take the period").click()
+    expect(relation).to_contain_text("the ground moves on")
+    assert "period" not in query(page)
 
 
 def ask_by_keyboard(page, **values):
@@ -74,7 +91,7 @@ def test_units_are_chosen_once_and_hold_everywhere(open_page):
     expect(page.locator(".headline")).to_be_visible()
     page.locator("#units").select_option("m, m/s², m/s")
     assert query(page)["acceleration"] == f"{0.4 * STANDARD_GRAVITY:.4g} m/s2"
-    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 3.92 m/s² and 0.3 m/s.")
-    expect(page.locator("#map-readout")).to_contain_text("3.92 m/s², 0.5 s (")
+    expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 3.92 m/s² and 0.4 m/s.")
+    expect(page.locator("#map-readout")).to_contain_text("3.92 m/s², 0.641 s (")
     expect(page.locator("#answer")).to_contain_text("m/s²")
     assert " g" not in page.locator("#answer dl").inner_text()

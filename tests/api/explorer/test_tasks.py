@@ -130,7 +130,7 @@ def test_the_spectrum_of_a_restitution_goes_into_xarray(open_page, address, by):
     assert line == f'xarray.open_zarr("{address}/v1/datasets/spectra/cosine/eta-0.90.zarr")'
     with xr.open_zarr(re.search(r'"(.*?)"', line)[1]) as cube:
         assert cube.peak_rotation.sizes["slenderness"] == 91
-    hand.press("tbody:not([hidden]) .folder button")
+    hand.press("tbody:not([hidden]) .folder .downloads button")
     expect(page.locator("#status")).to_have_text("Copied the line for spectra/cosine.")
     line = page.evaluate("navigator.clipboard.readText()")
     assert line == f'xarray.open_zarr("{address}/v1/datasets/spectra/cosine.zarr")'

@@ -35,7 +35,7 @@ del SHOWN["/docs"]  # by swagger-ui
 
 
 @pytest.mark.parametrize("width", but_long([390, 1400], 390))
-@pytest.mark.parametrize("path", but_long(SHOWN, "/", "/objects?sample=1"))
+@pytest.mark.parametrize("path", but_long(SHOWN, "/", "/objects"))
 def test_a_page_is_seen_early_and_stays_in_place(open_page, service, path, width):
     options = PHONE if width == 390 else {"viewport": {"width": width, "height": 900}}
     page = open_page("/state", **options)  # the data sets are checked, and the context is there

@@ -10,12 +10,6 @@ ROUNDING = 2.2e-16
 ROWS = rows()
 
 
-def test_the_table_has_slender_and_rigid_cases() -> None:
-    rigid = [row.groups["alpha"] > 0.0 for row in ROWS]
-    assert len(rigid) == 241
-    assert sum(rigid) == 91
-
-
 @pytest.mark.parametrize("row", ROWS, ids=[str(k) for k in range(len(ROWS))])
 def test_outcome_and_peak_of_each_case(row: Row) -> None:
     response = rocking.peak_response(row.motion, **row.groups)

@@ -113,21 +113,3 @@ def test_equal_edges_are_the_block_bit_by_bit() -> None:
     np.testing.assert_array_equal(body["outcome"], block.outcome)
     np.testing.assert_array_equal(body["peak_rotation"], block.peak_rotation)
     np.testing.assert_array_equal(sides[:, :2].max(axis=1), block.peak_rotation)
-
-
-def test_constant_vertical_acceleration_is_another_gravity() -> None:
-    """V = c: the frequency parameter grows by sqrt(c), the slenderness by c."""
-    f = samples("napa_HNE")[700:2500]
-    f = np.append(f / np.abs(f).max(), np.zeros(4000))  # it comes to rest before the end
-    given = bodies(60, 5)
-    given["vertical"] = 0.4
-    lifted, _ = solve_bodies(sample_rows(f, None, np.ones(f.size)), given, None, None, each_side=True)
-    other = given.copy()
-    other["vertical"], other["rate"] = 0.0, given["rate"] * math.sqrt(1.4)
-    other["slenderness"] = given["slenderness"] * 1.4
-    heavier, _ = solve_bodies(sample_rows(f), other, None, None, each_side=True)
-    np.testing.assert_array_equal(lifted["outcome"], heavier["outcome"])
-    rocks = lifted["outcome"] == rocking.Outcome.RECOVERS
-    error = np.abs(lifted["peak_rotation"][rocks] / heavier["peak_rotation"][rocks] - 1.0)
-    assert rocks.sum() > 5
-    assert np.median(error) < 1e-12

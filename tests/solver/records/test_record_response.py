@@ -1,6 +1,5 @@
 """Responses under records: order of convergence to pulses, invariances, chatter, limits, arguments."""
 
-import math
 import threading
 
 import numpy as np
@@ -10,9 +9,6 @@ import xarray as xr
 import rocking
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.samples import BLOCKS, LATER, SHAPE, motion_samples
-from rocking._solver.records.state import taylor_orders
-from rocking._solver.state import FULL_PRECISION, block_cells
 from tests.solver.records.tables import record
 
 MOTION = record("synthetic_31", 0.01)
@@ -208,23 +204,6 @@ def test_work_can_be_stopped(alpha: float | None) -> None:
     timer.cancel()
 
 
-def test_the_rows_of_a_motion_hold_its_maxima() -> None:
-    rows = motion_samples(MOTION)
-    f = MOTION.acceleration / MOTION.peak_acceleration
-    np.testing.assert_array_equal(rows[SHAPE], f)
-    for k in (0, 100, 1234, f.size - 1):
-        assert rows[LATER, k] == np.abs(f[k:]).max()
-    for block in (0, 7, (f.size - 1) // 32):
-        assert rows[BLOCKS, block] == np.abs(f[32 * block : 32 * block + 33]).max()
-
-
-def test_the_order_of_the_taylor_steps_rises_with_the_interval() -> None:
-    cells = block_cells(*np.broadcast_arrays([1e-6, 0.01, 0.05, 0.5, 50.0], 0.5, 0.9, 0.2))
-    orders = taylor_orders(motion_samples(MOTION), cells).tolist()  # the interval of a record is the unit of time
-    assert orders == [14, 14, 14, 19, 22]
-    assert 1 / math.factorial(19) < FULL_PRECISION < 1 / math.factorial(18)  # (2 x 0.5)^n/n!
-
-
 @pytest.mark.parametrize("alpha", [None, 0.2, 1.2])
 def test_a_sample_that_just_uplifts_the_block(alpha):
     """Where |u| = 1 within rounding at a sample, flights of an inelastic block followed each other without end."""
@@ -258,12 +237,3 @@ def test_the_response_of_a_block_does_not_depend_on_the_others_of_the_array() ->
         np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[k])
     apart = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given, threads=1)
     np.testing.assert_array_equal(apart.peak_rotation, together.peak_rotation)
-
-
-def test_the_factor_of_the_vertical_component_is_a_coordinate() -> None:
-    motion = rocking.Record(MOTION.acceleration, MOTION.time_step, vertical=0.1 * MOTION.acceleration, unit="m/s2")
-    found = rocking.peak_response(
-        motion, frequency_parameter=2.0, slenderness=0.3, restitution=0.9, vertical_scale=[0.0, 0.5, 1.0]
-    ).to_xarray()
-    assert found["vertical_scale"].values.tolist() == [0.0, 0.5, 1.0]
-    assert found["vertical_scale"].attrs["units"] == "1"

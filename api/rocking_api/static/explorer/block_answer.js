@@ -1,17 +1,21 @@
 // The response of a block to the single pulse, in words.
 
 import { assumptions, element, facts } from "./page.js";
-import { acceleration, length, number, pulseName, threshold, thresholds } from "./labels.js";
-import { inShown, shown, written } from "./units.js";
+import { acceleration, length, number, pulseName, threshold, thresholds, velocity } from "./labels.js";
+import { inShown, shown, toSI, written } from "./units.js";
 
 const answer = document.getElementById("answer");
 const title = document.getElementById("single-title");
+const relation = document.getElementById("single-relation");
 
 /** Show the response of a block; null clears it. */
 export function showAnswer(found) {
   answer.replaceChildren();
   answer.hidden = found === null;
-  if (found === null) return;
+  if (found === null) {
+    relation.replaceChildren();
+    return;
+  }
   const { pulse, period, peak_acceleration: peak } = found.query;
   title.textContent = `Under one pulse: ${pulseName(pulse)}, ${number(period)} s, ${acceleration(peak)}`;
   answer.append(
@@ -24,6 +28,22 @@ export function showAnswer(found) {
     answer.append(element("p", "Warnings", { class: "warnings" }), element("ul", lines));
   }
   answer.append(assumptions(found.metadata));
+}
+
+/** Say how the pulse of a response is related to those of every shape, and what to press for the one that belongs to them. */
+export function showRelation({ query }, { period, velocity: text }, pulse, match) {
+  const [asked, own] = [toSI("velocity", text), query.peak_acceleration * query.period * pulse.peak_velocity];
+  if (period === "" || Math.abs(own / asked - 1) < 0.01) {
+    relation.textContent = pulse.ends_at_rest
+      ? "One of the shapes above, at the period that gives it this peak velocity. The answer above is that of the shape that overturns the block first."
+      : "Not one of the shapes above: with this one the ground moves on when the shaking ends. So the two answers may differ.";
+    return;
+  }
+  const words = `With this period the ground reaches ${velocity(own)}, not the ${velocity(asked)} of the sentence: the answer above is for another ground motion. `;
+  if (relation.textContent.startsWith(words)) return; // the button may be being pressed
+  const button = element("button", "Take the period that belongs to the sentence", { type: "button" });
+  button.addEventListener("click", match);
+  relation.replaceChildren(words, button);
 }
 
 function survives(found) {

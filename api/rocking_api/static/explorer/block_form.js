@@ -22,6 +22,8 @@ const alpha = document.getElementById("alpha");
 const units = document.getElementById("units");
 const outputs = { eta: document.getElementById("eta-value"), alpha: document.getElementById("alpha-value") };
 
+let derived = true; // the period is that of the sentence
+
 /** Wire the form: `set(parts, keep)` changes the state, `edit()` says that it cannot be read; `look()` gives state and scenario. */
 export function wireForm(look, set, edit) {
   for (const [name, words] of Object.entries(PULSES)) pulse.append(element("option", words, { value: name }));
@@ -29,12 +31,16 @@ export function wireForm(look, set, edit) {
   units.append(element("option", "as given", { value: "", hidden: "" }), ...Object.keys(SYSTEMS).map((name) => element("option", name)));
   for (const name of QUANTITIES) {
     const field = form.elements[name];
-    field.addEventListener("input", () => (problems(form, QUANTITIES).length ? edit() : set(block(), false)));
-    field.addEventListener("change", () => showErrors(form, QUANTITIES) && set(block(), true));
+    const read = () => (name === "period" ? { ...block(), period: stated("period") } : block());
+    field.addEventListener("input", () => (problems(form, needed(name)).length ? edit() : set(read(), false)));
+    field.addEventListener("change", () => {
+      if (name === "period" && !field.value.trim()) set({ ...block(), period: "" }, true);
+      else if (showErrors(form, needed(name))) set(read(), true);
+    });
   }
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    if (showErrors(form, QUANTITIES)) set(block(), true);
+    if (showErrors(form, needed())) set(block(), true);
   });
   pulse.addEventListener("change", () => set({ pulse: pulse.value === OWN ? samplesOf(samples.value || TRIANGLE) : pulse.value }, true));
   samples.addEventListener("change", () => set({ pulse: samplesOf(samples.value) || TRIANGLE }, true));
@@ -49,11 +55,20 @@ export function wireForm(look, set, edit) {
 
 const EMPTY = { width: "", height: "", acceleration: "", period: "" };
 
-/** The block of the form as parts of a state, in the units that are shown, or converted to others. */
+/** The fields that must have a number when one is edited: not the period if it is derived. */
+function needed(edited) {
+  return QUANTITIES.filter((name) => name !== "period" || edited === name || !derived);
+}
+
+function stated(name) {
+  return `${form.elements[name].value.trim() || MISSING} ${shown[name]}`;
+}
+
+/** The block of the form as parts of a state, in the units that are shown, or converted to others; a derived period is left out. */
 function block(others = shown) {
   const found = { frequency_ratio: "", slenderness: "", alpha_deg: "0" };
-  for (const name of QUANTITIES) {
-    const text = `${form.elements[name].value.trim() || MISSING} ${shown[name]}`;
+  for (const name of needed()) {
+    const text = stated(name);
     found[name] = others[name] === shown[name] ? text : inUnit(name, toSI(name, text), others[name]);
   }
   Object.assign(shown, others);
@@ -72,9 +87,11 @@ export function fillForm(state, scenario) {
   pulse.value = own ? OWN : state.pulse;
   samples.parentElement.hidden = !own;
   if (own && document.activeElement !== samples) samples.value = state.pulse; // not while it is typed
+  derived = state.period === "";
+  const given = { ...state, ...(derived && scenario?.answer && { period: inUnit("period", scenario.answer.query.period) }) };
   for (const name of QUANTITIES) {
-    if (state[name] === "") continue;
-    const { value, unit } = split(state[name]);
+    if (given[name] === "") continue;
+    const { value, unit } = split(given[name]);
     const field = form.elements[name];
     if (unit in UNITS[name]) shown[name] = unit;
     if (field.value.trim() !== value) field.value = value === MISSING ? "" : value; // not while it is typed

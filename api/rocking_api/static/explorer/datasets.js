@@ -38,15 +38,14 @@ async function show() {
   }
 }
 
-/** The table of one kind, by pulse and restitution. */
+/** The table of one kind: a line for each folder, a pulse or a suite, which opens its data sets. */
 function group(kind) {
   const own = datasets.filter((one) => one.kind === kind);
   if (!own.length) return null;
   const heads = ["Title", "η", "Extent", "Get it"].map((text) => element("th", text, { scope: "col" }));
-  const folders = [...new Set(own.map(folderOf))];
-  const bodies = folders.map((folder) => element("tbody", [...folderRow(folder), ...own.filter((one) => folderOf(one) === folder).map((one) => one.row)]));
-  const table = element("table", [element("thead", [element("tr", heads)]), ...bodies]);
   const title = GROUPS[kind] ?? kind;
+  const bodies = [...new Set(own.map(folderOf))].map((folder) => folderBody(folder, own.filter((one) => folderOf(one) === folder), title));
+  const table = element("table", [element("thead", [element("tr", heads)]), ...bodies]);
   return element("section", [element("h3", title), element("div", [table], { class: "table", tabindex: "0", role: "group", "aria-label": title })]);
 }
 
@@ -54,13 +53,21 @@ function folderOf({ name }) {
   return name.slice(0, name.lastIndexOf("/"));
 }
 
-/** The heading of the data sets of one folder, with the store of all restitutions of a pulse; none for a kind of one folder. */
-function folderRow(folder) {
+/** The data sets of one folder below the line that opens them, with the store of all restitutions of a pulse. */
+function folderBody(folder, own, title) {
   const [, inner] = folder.split("/");
-  if (!inner) return [];
-  const store = stores[folder];
-  const copy = store ? [element("span", ["all η as one store ", xarrayButton(store)], { class: "downloads" })] : [];
-  return [element("tr", [element("th", [PULSES[inner] ?? inner, ...copy], { scope: "rowgroup", colspan: "4" })], { class: "folder" })];
+  const open = element("button", PULSES[inner] ?? inner ?? title, { type: "button", class: "open" });
+  const copy = stores[folder] ? [element("span", ["all η as one store ", xarrayButton(stores[folder])], { class: "downloads" })] : [];
+  const eta = own.map(({ restitution }) => restitution).filter((one) => one !== null);
+  const range = [...new Set([Math.min(...eta), Math.max(...eta)])].map((one) => number(one)).join(" to ");
+  const facts = [`${own.length} file${own.length > 1 ? "s" : ""}`, ...(eta.length ? [`η ${range}`] : []), sizeOf(own)];
+  const head = element("tr", [element("th", [open, element("span", facts.join(", "), { class: "small" }), ...copy], { scope: "rowgroup", colspan: "4" })], { class: "folder" });
+  const body = element("tbody", [head, ...own.map((one) => one.row)]);
+  open.addEventListener("click", () => {
+    body.classList.toggle("opened");
+    select();
+  });
+  return body;
 }
 
 function xarrayButton(one) {
@@ -140,9 +147,19 @@ function filtered() {
 
 function select() {
   const left = chosen();
-  for (const one of datasets) one.row.hidden = !left.includes(one);
-  for (const part of groups.querySelectorAll("section, tbody")) part.hidden = !part.querySelector("tr:not([hidden]) > td");
-  setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${sizeOf(left)}` : "There is no data set yet: make reproduce makes them.");
+  const filtered = filters.some(({ value }) => value);
+  for (const body of groups.querySelectorAll("tbody")) {
+    const open = filtered || body.classList.contains("opened");
+    const own = left.filter(({ row }) => row.parentElement === body);
+    body.hidden = !own.length;
+    body.querySelector(".open").setAttribute("aria-expanded", String(open));
+    for (const row of [...body.rows].slice(1)) row.hidden = !open || !own.some((one) => one.row === row);
+  }
+  for (const part of groups.querySelectorAll("section")) {
+    part.hidden = !part.querySelector("tbody:not([hidden])");
+    part.querySelector("thead").hidden = !part.querySelector("tbody tr:not([hidden]) > td");
+  }
+  setStatus(status, datasets.length ? `${left.length} of ${datasets.length} data sets, ${sizeOf(left)}` : "There is no data set here: in a checkout of the sources make reproduce makes them.");
   if (datasets.length && !left.length) status.append(" ", showAll);
 }
 

@@ -9,17 +9,7 @@ export const OUTCOMES = {
   OVERTURNED_AFTER_IMPACT: "overturns after one or more impacts",
 };
 
-export const PULSES = {
-  sine: "One full sine",
-  cosine: "One full cosine",
-  half_sine: "Half a sine",
-  rectangular: "Rectangular",
-  c1: "Type C1, 1.5 cycles",
-  c2: "Type C2, 2.5 cycles",
-  ricker: "Ricker wavelet",
-  ricker_antisymmetric: "Ricker wavelet, antisymmetric",
-  mavroeidis_papageorgiou: "Mavroeidis and Papageorgiou",
-};
+export const PULSES = JSON.parse(document.documentElement.dataset.pulses); // by their names
 
 /** The name of a pulse in words. */
 export function pulseName(pulse) {
@@ -104,6 +94,6 @@ export function responseLabel(found) {
   if (found.overturned) return found.impacts > 0 ? `overturns after ${impacts(found.impacts)}` : outcome;
   if (found.outcome === "NO_UPLIFT") return outcome;
   const error = found.error_bound === null ? "" : ` ± ${bound(found.error_bound)}`;
-  const beyond = found.exceeded_alpha ? "; it exceeds α" : "";
+  const beyond = found.exceeded_alpha ? "; beyond α" : "";
   return `${outcome}; peak rotation ${found.peak_rotation.toFixed(4)} α${error}; ${impacts(found.impacts)}${found.impacts === null ? "" : " during the pulse"}${beyond}`;
 }

@@ -3,10 +3,10 @@
 import { BROUGHT_BACK, colourOfPeak, hatch, onTheme, scaleGradient, themed } from "./colours.js";
 
 const ENTRIES = [
-  ["BROUGHT_BACK", "exceeds α but recovers"],
+  ["BROUGHT_BACK", "rocks beyond α, comes to rest"],
   ["OVERTURNED_AFTER_IMPACT", "overturns after impacts"],
   ["OVERTURNED_DIRECTLY", "overturns without impact"],
-  ["NO_UPLIFT", "no uplift"],
+  ["NO_UPLIFT", "never uplifts"],
 ];
 
 const legend = document.getElementById("legend");

@@ -1,7 +1,7 @@
 // The page: from the state (the address) to the scenario, and from there to every view.
 
-import { isSampled, urlOf } from "./api.js";
-import { showAnswer } from "./block_answer.js";
+import { ask, isSampled, urlOf } from "./api.js";
+import { showAnswer, showRelation } from "./block_answer.js";
 import { fillForm, wireForm } from "./block_form.js";
 import { setLinks, wireDownloads } from "./downloads.js";
 import { curvesUrl, mapParams, showMap } from "./map.js";
@@ -10,14 +10,16 @@ import { showReadout, wireMap } from "./map_pointer.js";
 import { showMotion } from "./motion.js";
 import { blockUnderSamples } from "./own_pulse.js";
 import { clearErrors } from "./page.js";
-import { once, pane } from "./pane.js";
+import { pane } from "./pane.js";
 import { showPreview } from "./pulse_preview.js";
+import { described, matchingPeriod } from "./pulses.js";
 import { blockParams, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
 import { showSite } from "./site.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state, stepsBack } from "./state.js";
 import { whole, windowOf } from "./view.js";
 import { number, pulseName } from "./labels.js";
+import { toSI } from "./units.js";
 
 const EDITED = "A number of the sentence cannot be read.";
 const GROUPS = "The map shows a block without a size, by the groups of the paper. Change a number of the sentence to ask about one in metres.";
@@ -40,8 +42,14 @@ let turn = 0; // number of changes of the scenario, by which a late response is 
 function show() {
   undo.disabled = !stepsBack();
   clearErrors();
-  showPreview(state().pulse);
+  preview();
   resolve();
+}
+
+async function preview() {
+  const { pulse } = state();
+  const description = await described(pulse).catch(() => null); // the form works without a preview
+  if (pulse === state().pulse) showPreview(pulse, description);
 }
 
 async function resolve() {
@@ -52,9 +60,9 @@ async function resolve() {
   showSite(wanted);
   if (isBlock(wanted)) {
     showScenario(null);
-    const params = blockParams(wanted);
-    const answer = await block.show(JSON.stringify(params), responseOf(params));
+    const answer = await block.show(keyOf(wanted), responseOf(wanted));
     if (mine !== turn) return;
+    if (answer) showRelation(answer, wanted, await described(wanted.pulse), () => set({ period: "" }));
     scenario = answer ? scenarioOfBlock(answer) : scenarioWithoutResponse(wanted);
   } else {
     block.nothing(GROUPS);
@@ -63,10 +71,16 @@ async function resolve() {
   showScenario(scenario);
 }
 
-function responseOf(params) {
-  if (!isSampled(params.pulse)) return once("/v1/blocks/response", params);
+/** What the response to a state depends on: a period that is not stated is that of its PGV. */
+function keyOf(wanted) {
+  return JSON.stringify([blockParams(wanted), wanted.period === "" && toSI("velocity", wanted.velocity)]);
+}
+
+function responseOf(wanted) {
   return async function* load(signal) {
-    yield await blockUnderSamples(params, signal);
+    const params = blockParams(wanted);
+    if (wanted.period === "") params.period = matchingPeriod(wanted, await described(wanted.pulse)) ?? "";
+    yield await (isSampled(params.pulse) ? blockUnderSamples(params, signal) : ask("/v1/blocks/response", params, signal));
   };
 }
 
@@ -99,7 +113,8 @@ function link(found) {
   const map = (format) => urlOf("/v1/map", { ...mapParams(), format });
   const spectrum = (format) => spectrumUrl(found, view, format);
   setLinks("map", found ? { csv: map("csv"), nc: map("nc"), curves: `${curvesUrl()}&format=csv` } : {});
-  setLinks("block", found?.answer ? { json: urlOf("/v1/blocks/response", blockParams(state())) } : {});
+  const params = found?.answer && { ...blockParams(state()), period: found.answer.query.period };
+  setLinks("block", params ? { json: urlOf("/v1/blocks/response", params) } : {});
   document.getElementById("open-report").disabled = !found?.answer;
   setLinks("spectrum", found?.point ? { csv: spectrum("csv"), nc: spectrum("nc") } : {});
 }

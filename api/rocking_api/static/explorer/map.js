@@ -7,7 +7,7 @@ import { factorLabel } from "./labels.js";
 import { drawFrame, marginOf } from "./map_frame.js";
 import { drawPicture } from "./map_picture.js";
 import { once, pane } from "./pane.js";
-import { fontOf, onTextSize } from "./text.js";
+import { drawLabel, onTextSize } from "./text.js";
 import { shown } from "./units.js";
 
 const COARSE = { columns: 120, rows: 90 };
@@ -190,16 +190,8 @@ function drawDiamond(context, frame, scales, { frequency_ratio, slenderness }, c
   context.closePath();
   for (const [colour, width] of [["#ffffff", 5], ["#111111", 2]]) strokeIn(context, colour, width * ratio);
   const onRight = x < frame.left + frame.width / 2;
-  context.font = fontOf(12, ratio);
-  context.textAlign = onRight ? "left" : "right";
-  context.textBaseline = "middle";
-  context.lineWidth = 4 * ratio;
-  context.lineJoin = "round";
-  context.strokeStyle = "#ffffff";
-  context.fillStyle = "#111111";
-  const text = [factorLabel(slenderness / change), x + (onRight ? 2 : -2) * half, y];
-  context.strokeText(...text);
-  context.fillText(...text);
+  const side = onRight ? 1 : -1;
+  drawLabel(context, factorLabel(slenderness / change), x + 2 * side * half, y, side, ratio);
 }
 
 /** White under black is visible on every colour of the map. */

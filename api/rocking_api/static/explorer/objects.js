@@ -4,7 +4,7 @@ import { page } from "./api.js";
 import { onDrop } from "./drop.js";
 import { clearErrors, setStatus } from "./page.js";
 
-const STEP = 100; // rows that are shown at first, and more with each press of the button
+const STEP = 100; // objects that are shown at first, and more with each press of the button
 
 const form = document.getElementById("objects");
 const file = document.getElementById("file");
@@ -57,7 +57,7 @@ function wireResult() {
   const table = document.getElementById("ranking");
   if (!table) return;
   const body = table.tBodies[0];
-  const rows = [...body.rows].map((row) => ({ row, text: row.textContent.toLowerCase(), verdict: row.cells[3].textContent }));
+  const rows = [...body.rows].map((row) => ({ row, text: row.textContent.toLowerCase(), verdict: row.dataset.verdict }));
   const filter = document.getElementById("filter");
   const verdict = document.getElementById("verdict");
   const more = document.getElementById("more");
@@ -67,7 +67,7 @@ function wireResult() {
     const kept = rows.filter((one) => one.text.includes(words) && (!verdict.value || one.verdict === verdict.value));
     body.replaceChildren(...kept.slice(0, shown).map(({ row }) => row));
     more.hidden = kept.length <= shown;
-    document.getElementById("count").textContent = `${Math.min(kept.length, shown)} of ${rows.length} rows`;
+    document.getElementById("count").textContent = `${Math.min(kept.length, shown)} of ${rows.length} objects`;
   };
   const restart = () => {
     shown = STEP;

@@ -1,11 +1,11 @@
 // The chosen ground motion in the form: its acceleration against time, and what its period T is. Own samples can be drawn.
 
-import { ask, isSampled } from "./api.js";
+import { isSampled } from "./api.js";
 import { onTheme, themed } from "./colours.js";
 import { number } from "./labels.js";
+import { samplesOver } from "./pulses.js";
 import { fontOf, onTextSize, textScale } from "./text.js";
 
-const SAMPLES = 65;
 const ROOM = 14; // [px] of text that is usually 16 px: around the curve, and for the mark of the period
 
 const DRAWN = 17; // samples of a pulse that is drawn; their values are rounded to 1/20 of the peak
@@ -13,24 +13,15 @@ const DRAWN = 17; // samples of a pulse that is drawn; their values are rounded 
 const canvas = document.getElementById("pulse-preview");
 const note = document.getElementById("pulse-note");
 
-let known = null; // descriptions of the pulses by name
-let chosen = null;
+let chosen = null; // name or samples
+let known = null; // their description
 let drawn = null; // the samples while they are drawn
 
-/** Show a pulse by its name; an unknown one clears the preview. */
-export async function showPreview(name) {
-  chosen = name;
-  try {
-    known ??= await load();
-  } catch {
-    return; // the form works without a preview
-  }
+/** Show a pulse, with its description; without one the preview is cleared. */
+export function showPreview(pulse, description) {
+  chosen = pulse;
+  known = description;
   draw();
-}
-
-async function load() {
-  const { pulses } = await ask("/v1/pulses", { samples: SAMPLES }, new AbortController().signal);
-  return new Map(pulses.map((one) => [one.name, one]));
 }
 
 /** Let a drag over the picture of own samples change them; `take` is given them as text when it ends. */
@@ -53,7 +44,7 @@ export function wireDrawing(take) {
   };
   canvas.addEventListener("pointerdown", (event) => {
     if (!isSampled(chosen)) return;
-    const { time, acceleration } = ownOf(chosen);
+    const { time, acceleration } = known;
     drawn = Array.from({ length: DRAWN }, (_, k) => Number(linear(time, acceleration, k / (DRAWN - 1)).toFixed(3)));
     canvas.setPointerCapture(event.pointerId);
     move(event);
@@ -84,7 +75,7 @@ function frame(width, height) {
 
 function draw() {
   canvas.classList.toggle("own", isSampled(chosen));
-  const pulse = drawn ? samplesOver(drawn) : isSampled(chosen) ? ownOf(chosen) : known?.get(chosen.replace(/^-/, ""));
+  const pulse = drawn ? samplesOver(drawn) : known;
   canvas.hidden = !pulse;
   note.textContent = pulse ? `It lasts ${number(pulse.duration)} T. ${pulse.definition}` : "";
   if (!pulse || !canvas.clientWidth) return;
@@ -105,18 +96,6 @@ function draw() {
   line(context, [[0, middle], ends[0], ...points, ends[1], [width, middle]], themed("accent"), 2);
   const start = Math.max((pulse.duration - 1) / 2, 0); // the period is marked in the middle of a long pulse
   drawPeriod(context, x(start), x(start + 1), height - 6 * textScale());
-}
-
-/** The description of samples over one period, scaled to the peak 1. */
-function ownOf(samples) {
-  const values = samples.split(" ").map(Number);
-  const peak = Math.max(...values.map(Math.abs)) || 1;
-  return samplesOver(values.map((value) => value / peak));
-}
-
-function samplesOver(acceleration) {
-  const time = acceleration.map((_, at) => at / Math.max(acceleration.length - 1, 1));
-  return { time, acceleration, duration: 1, definition: "Linear between the samples. Drag over the picture to draw it." };
 }
 
 function drawPeriod(context, from, to, y) {

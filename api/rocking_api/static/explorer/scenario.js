@@ -48,7 +48,7 @@ export function blockParams(state) {
     width: toSI("width", state.width),
     height: toSI("height", state.height),
     peak_acceleration: toSI("acceleration", state.acceleration),
-    period: toSI("period", state.period),
+    period: state.period === "" ? "" : toSI("period", state.period),
     restitution: readable(state.restitution) ? state.restitution : "nan", // the service then refuses it and names the range
   };
 }

@@ -6,7 +6,7 @@ import { hatch, themed } from "./colours.js";
 import { acceleration, factorLabel, length, number, percentMore, pulseName, threshold, velocity } from "./labels.js";
 import { element } from "./page.js";
 import { pane } from "./pane.js";
-import { fontOf } from "./text.js";
+import { drawLabel } from "./text.js";
 import { inShown, shown, toSI, written } from "./units.js";
 
 const NODES = 25;
@@ -178,13 +178,7 @@ function drawMarks(u, here, change) {
     ctx.stroke();
     trace(ctx, [[cx - 6 * ratio, cy], [cx, cy - 6 * ratio], [cx + 6 * ratio, cy], [cx, cy + 6 * ratio]]);
     ctx.fill();
-    const text = factorLabel(verdict.factor);
-    ctx.font = fontOf(12, ratio);
-    ctx.strokeStyle = themed("paper");
-    ctx.lineWidth = 4 * ratio;
-    ctx.textAlign = "right";
-    ctx.strokeText(text, cx - 10 * ratio, cy - 10 * ratio);
-    ctx.fillText(text, cx - 10 * ratio, cy - 10 * ratio);
+    drawLabel(ctx, factorLabel(verdict.factor), cx - 12 * ratio, cy, -1, ratio);
   }
   ctx.beginPath();
   ctx.arc(x, y, 7 * ratio, 0, 2 * Math.PI);

@@ -5,9 +5,9 @@ import { axis, chart, chartsReady, logAxis, markValue } from "./chart.js";
 import { hatch, themed } from "./colours.js";
 import { pane } from "./pane.js";
 import { number } from "./labels.js";
-import { fontOf, textScale } from "./text.js";
 
 const OTHERS = [0.8, 0.88, 0.96];
+const DASHES = [["dotted", [1.5, 3]], ["dashed", [6, 4]], ["dashes and dots", [8, 3, 1.5, 3]]]; // of these, and what the caption calls them
 const POINTS = 400;
 
 const section = document.getElementById("spectrum");
@@ -52,7 +52,7 @@ function spectrumParams({ pulse, restitution, alpha_deg, point }, view) {
 }
 
 function draw(scenario, [chosen, ...others]) {
-  const shades = others.map(() => ({ stroke: () => themed("muted"), width: 1, spanGaps: false, pxAlign: 0 }));
+  const shades = DASHES.map(([, dash]) => ({ stroke: () => themed("ink"), width: 1.2, dash, spanGaps: false, pxAlign: 0 }));
   const series = [{}, ...shades, { stroke: () => themed("accent"), width: 2.5, spanGaps: false, pxAlign: 0 }];
   const tell = ({ cursor }) => {
     caption.textContent = readoutText(scenario, chosen, cursor.idx);
@@ -66,10 +66,10 @@ function draw(scenario, [chosen, ...others]) {
         logAxis("frequency ratio ω", { size: 30 }),
         axis("peak rotation θ/α"),
       ],
-      scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, Math.max(1.2, high * 1.2)] } },
+      scales: { x: { time: false, distr: 3, range: (_, low, high) => [low, high] }, y: { range: (_, low, high) => [0, 1.08 * (high || 1)] } },
       hooks: {
         drawClear: [(u) => shadeOverturning(u, chosen)],
-        draw: [(u) => markValue(u, scenario.point.frequency_ratio), (u) => labelOthers(u, others)],
+        draw: [(u) => markValue(u, scenario.point.frequency_ratio)],
         setCursor: [tell],
       },
     },
@@ -83,10 +83,10 @@ function readoutText({ restitution, point }, chosen, at) {
     const omega = `ω ${number(chosen.frequency_ratio[at])}`;
     return chosen.overturned[at] ? `${omega}: overturns` : `${omega}: peak ${chosen.peak_rotation[at].toFixed(4)} α`;
   }
-  const others = OTHERS.map((eta) => number(eta, 2)).join(", ");
+  const others = OTHERS.map((eta, at) => `${DASHES[at][0]} η = ${number(eta, 2)}`).join(", ");
   return (
-    `1/a = ${number(point.slenderness)}, η = ${number(restitution)}; thin: η = ${others}. ` +
-    "Hatched: the block overturns; dashed: the chosen frequency ratio."
+    `1/a = ${number(point.slenderness)}; thick η = ${number(restitution)}, ${others}. ` +
+    "Hatched: the block overturns; vertical: the chosen frequency ratio."
   );
 }
 
@@ -104,32 +104,5 @@ function shadeOverturning(u, chosen) {
       ctx.fillRect(left, bbox.top, right - left + 1, bbox.height);
     });
   }
-  ctx.restore();
-}
-
-/** Write each restitution above the highest place of its curve's last stretch, and above the names that are there. */
-function labelOthers(u, others) {
-  const { ctx } = u;
-  ctx.save();
-  ctx.fillStyle = themed("ink");
-  ctx.strokeStyle = themed("paper");
-  ctx.lineWidth = 3 * devicePixelRatio;
-  ctx.lineJoin = "round";
-  ctx.font = fontOf(11, devicePixelRatio);
-  ctx.textAlign = "center";
-  const [wide, high] = [44, 14].map((px) => px * textScale() * devicePixelRatio);
-  const taken = [];
-  others.forEach(({ frequency_ratio, peak_rotation }, n) => {
-    const from = peak_rotation.lastIndexOf(null) + 1;
-    const stretch = peak_rotation.slice(from);
-    const top = Math.max(...stretch);
-    if (!stretch.length || top > u.scales.y.max) return;
-    const x = u.valToPos(frequency_ratio[from + stretch.indexOf(top)], "x", true);
-    let y = u.valToPos(top, "y", true) - 5 * devicePixelRatio;
-    for (const other of taken) if (Math.abs(x - other.x) < wide && Math.abs(y - other.y) < high) y = other.y - high;
-    taken.push({ x, y });
-    ctx.strokeText(`η ${number(OTHERS[n], 2)}`, x, y);
-    ctx.fillText(`η ${number(OTHERS[n], 2)}`, x, y);
-  });
   ctx.restore();
 }

@@ -14,12 +14,15 @@ export const DEFAULTS = {
   width: "",
   height: "",
   acceleration: "",
-  period: "",
+  period: "", // at which the pulse has this acceleration and velocity, unless it is stated
   velocity: "30 cm/s", // of the ground at its peak, for pulses of every shape
 };
 
 /** What is shown at first: a block that rocks and comes to rest. */
-const EXAMPLE = { width: "40 cm", height: "160 cm", acceleration: "0.4 g", period: "0.5 s", restitution: "momentum" };
+const EXAMPLE = {
+  ...{ width: "40 cm", height: "160 cm", acceleration: "0.4 g", velocity: "40 cm/s", restitution: "momentum" },
+  pulse: "cosine", // the first one that overturns it: both answers are the same
+};
 
 const listeners = [];
 let current = read();

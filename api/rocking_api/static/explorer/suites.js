@@ -23,7 +23,7 @@ async function start() {
     const { suites } = await ask("/v1/suites", {}, new AbortController().signal);
     form.hidden = !suites.length;
     if (!suites.length) {
-      setStatus(status, "There is no suite yet: make reproduce CONFIG=workflow/config/suite.yaml makes one.");
+      setStatus(status, "There is no suite here: in a checkout of the sources make reproduce CONFIG=workflow/config/suite.yaml makes one.");
       return;
     }
     const given = new URLSearchParams(location.search);
@@ -85,13 +85,13 @@ function filesOf({ name, links }) {
   return [...shown, element("a", "all", { href: "/datasets", "aria-label": "all data sets" })];
 }
 
-function about({ name, records: all, quantity, intensity, confidence, demand }) {
+function about({ name, records: all, quantity, unit, intensity, confidence, demand }) {
   return [
     ["Suite", name],
     ["Records, equally likely and independent", String(all.length)],
     ["Limit state", `the block ${limit(demand)}`],
     ["Measure of intensity", quantity],
-    ["Levels", `${intensity.length} from ${number(intensity[0])} to ${number(intensity.at(-1))}`],
+    ["Levels", `${intensity.length} from ${number(intensity[0])} to ${number(intensity.at(-1))} ${unit}`.trim()],
     ["Confidence of the intervals", `${number(100 * confidence)} %`],
     ["Address", location.href],
   ];

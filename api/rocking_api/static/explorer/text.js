@@ -1,5 +1,7 @@
 // Text on drawings: its size follows that of the page, which the reader sets.
 
+import { themed } from "./colours.js";
+
 const probe = document.body.appendChild(document.createElement("div"));
 probe.className = "text-probe"; // as wide as the text of the page is large
 
@@ -21,4 +23,23 @@ export function onTextSize(redraw) {
     drawn = textScale();
     redraw();
   }).observe(probe);
+}
+
+/** Write a label on a plate of its own, which is read on every colour; `side` -1 left of x, 1 right of it. */
+export function drawLabel(context, text, x, y, side, pixels) {
+  const [pad, high] = [4 * pixels, 18 * textScale() * pixels];
+  context.font = fontOf(12, pixels);
+  const wide = context.measureText(text).width + 2 * pad;
+  const left = side < 0 ? x - wide : x;
+  context.fillStyle = themed("paper");
+  context.strokeStyle = themed("ink");
+  context.lineWidth = pixels;
+  context.beginPath();
+  context.roundRect(left, y - high / 2, wide, high, 3 * pixels);
+  context.fill();
+  context.stroke();
+  context.fillStyle = themed("ink");
+  context.textAlign = "left";
+  context.textBaseline = "middle";
+  context.fillText(text, left + pad, y);
 }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, RecordFileError, integer, number, one_of
+from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError, integer, number, one_of
 from rocking._base.units import Scalar
 from rocking._excitation.records.readers import columns, esm, knet, peer_at2, seismic, volumes
 from rocking._excitation.records.readers.lines import MAX_LINE, TextFile
@@ -35,7 +35,7 @@ def read_record(
     vertical: str | PathLike[str] | None = None,
     skip: int | None = None,
 ) -> Record:
-    """Read a recorded ground acceleration from a file, or from two where the vertical component has its own.
+    """A record of ground acceleration from a file, or from two files if the vertical component has its own.
 
     The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, COSMOS, CSMIP, GeoNet, SMC, columns of times
     and accelerations or of accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is
@@ -95,7 +95,7 @@ def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
         with Path(path).open("rb") as stream:
             return stream.read(MAX_BYTES + 1)
     except OSError as error:
-        raise InvalidArgumentError(parameter, str(path), f"a file that can be read ({error.strerror})") from None
+        raise UnreadableFileError(parameter, str(path), error) from None
 
 
 def _with_vertical(found: Record, upwards: Record) -> Record:

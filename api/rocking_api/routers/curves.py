@@ -1,0 +1,331 @@
+"""Blocks in groups along a curve, over a window or against time: spectrum, history, thresholds, map."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+from fastapi import APIRouter, Query, Request, Response
+from numpy.typing import NDArray
+from pydantic import BaseModel, Field
+
+from rocking._base.errors import finite
+from rocking._boundary.amplitude import thresholds
+from rocking._datasets.cube import AXES
+from rocking._history.contact import ATTRIBUTES, COLUMNS
+from rocking._history.time_history import time_history
+from rocking._model.checks import check_window
+from rocking._model.outcome import Outcome
+from rocking._model.response import Response as Found
+from rocking._numba.cancellation import StopFlag
+from rocking._solver.peak_response import peak_response
+from rocking_api.execution.evaluation import evaluate_many
+from rocking_api.http.encoding import (
+    CONTENT,
+    columns_as_they_are,
+    csv_response,
+    csv_stream,
+    dataset_of,
+    json_response,
+    negotiated_form,
+    netcdf_response,
+    solved_variable,
+)
+from rocking_api.http.errors import TooLargeError
+from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.answer import Echoed, Solved
+from rocking_api.models.params import BlockInGroups, HistoryParams, ShapeParams, SpectrumParams, alpha_of
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between, said
+from rocking_api.models.responses import OUTCOMES, ContactResponse, HistoryResponse, SpectrumResponse, columns_of
+from rocking_api.routers.twin import pair
+from rocking_api.service import Service, ServiceDep
+
+router = APIRouter(prefix="/v1", route_class=ParamsRoute)
+
+
+@pair(router, "/spectrum", "Peak rotation against frequency ratio", response_model=SpectrumResponse, responses=CONTENT)
+async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Blocks of one slenderness over a window of the frequency ratio."""
+    form = negotiated_form(request, params.format)
+    ratio = _axis(service, params)
+    return await service.run_heavy(lambda stop: _spectrum(service, params, request, ratio, form, stop), request)
+
+
+def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
+    """The frequency ratios of the curve, within the range of the service."""
+    low, high = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
+    if params.points > service.settings.max_samples:
+        raise TooLargeError("points", params.points, f"at most {service.settings.max_samples}")
+    return np.geomspace(low, high, params.points)
+
+
+def _spectrum(
+    service: Service,
+    params: SpectrumParams,
+    request: Request,
+    frequency_ratio: NDArray[np.float64],
+    form: str,
+    stop: StopFlag,
+) -> Response:
+    shape = frequency_ratio.shape
+    groups = {
+        "slenderness": np.broadcast_to(np.float64(params.slenderness), shape),
+        "frequency_ratio": frequency_ratio,
+        "restitution": np.broadcast_to(np.float64(params.restitution), shape),
+    }
+    result = evaluate_many(service.cubes, params, groups, stop)
+    if form == "nc":
+        attributes = params.model_dump(exclude={"format"}, exclude_none=True)
+        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum")
+    curve = columns_as_they_are({"frequency_ratio": frequency_ratio}) | columns_of(result)
+    if form == "csv":
+        return csv_stream(curve, frequency_ratio.size, "spectrum")
+    lists: dict[str, Any] = {name: column(slice(None)) for name, column in curve.items()}
+    return json_response(
+        SpectrumResponse.model_construct(query=params, data_versions=list(result.versions), **lists), request
+    )
+
+
+SAMPLED = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "top_displacement")
+"""Variables of motions that are sent where they are known."""
+
+
+@pair(router, "/history", "Motion of one block", response_model=HistoryResponse, responses=CONTENT)
+async def get_history(params: Annotated[HistoryParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Rotation and angular velocity from the start of the pulse through free rocking, always computed by the solver.
+
+    With `contact`, also the reactions of the ground and the friction demand.
+    """
+    if params.samples > service.settings.max_samples:
+        raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
+    form = negotiated_form(request, params.format)
+    return await service.run_heavy(lambda stop: _history(params, request, form, stop), request)
+
+
+def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag) -> Response:
+    motion = time_history(
+        params.pulse,
+        slenderness=params.slenderness,
+        **params.groups,
+        duration=params.duration,
+        samples=params.samples,
+        contact=params.contact,
+        stop=stop,
+    )
+    if form == "nc":
+        return netcdf_response(motion, "history")
+    columns, reactions = motion_columns(motion, "tau")
+    if form == "csv":
+        return csv_response(columns | reactions, "history")
+    return json_response(
+        HistoryResponse.model_construct(query=params, **motion_fields(motion, reactions), **columns), request
+    )
+
+
+def motion_columns(motion: xr.Dataset, time: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The samples of a motion against its variable of time, and of the reactions, if it has any."""
+    columns = {name: motion[name].values.tolist() for name in (time, *SAMPLED) if name in motion}
+    return columns, {name: motion[name].values.tolist() for name in COLUMNS if name in motion}
+
+
+def motion_fields(motion: xr.Dataset, reactions: dict[str, Any]) -> dict[str, Any]:
+    """The fields of `Motion` beside the samples; of another body without a peak."""
+    about = motion.attrs
+    peak = {"peak_rotation": finite(float(about["peak_rotation"]))} if "peak_rotation" in about else {}
+    return peak | {
+        "overturned": Outcome[about["outcome"]] >= Outcome.OVERTURNED_DIRECTLY,
+        "outcome": about["outcome"],
+        "impacts": int(about["impacts"]),
+        "warnings": [about["warnings"]] if reactions and about["warnings"] else [],
+        "impact_time": motion["impact_time"].values.tolist(),
+        "contact": _contact(motion, reactions) if reactions else None,
+    }
+
+
+def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
+    """Reactions of a motion, by sample, and their extremes."""
+    fields: dict[str, Any] = {name: [finite(value) for value in column] for name, column in reactions.items()}
+    fields |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES if name in motion.attrs}
+    return ContactResponse.model_construct(
+        **fields, lifts_off=bool(motion.attrs["lifts_off"]), warnings=motion.attrs["warnings"]
+    )
+
+
+class AmplitudeParams(BlockInGroups):
+    """A block and a pulse without amplitude."""
+
+    highest: float = said("largest a = a_g/(g tan alpha) searched [-]", 100.0, gt=1, le=1e6)
+
+
+class AmplitudeThreshold(BaseModel):
+    """An amplitude at which the outcome changes."""
+
+    amplitude: float = said("a = a_g/(g tan alpha) [-]")
+    slenderness: float = said("1/a [-]")
+    overturns_above: bool = said("true: overturns just above and survives just below it; false: the reverse")
+    outcome: str = said("outcome on the side where it overturns")
+    meaning: str = said("that outcome in words")
+    impacts: int = said("impacts before it overturns there [-]")
+
+
+class AmplitudeResponse(Echoed[AmplitudeParams], Solved[AmplitudeParams]):
+    """All amplitudes at which the outcome changes."""
+
+    thresholds: list[AmplitudeThreshold] = said("ascending in amplitude")
+    largest_surviving_amplitude: float | None = said(
+        "amplitude below which the block does not overturn [-]; null: no overturning was found"
+    )
+
+
+@pair(
+    router,
+    "/thresholds",
+    "Amplitudes at which the outcome of a block changes",
+    tag="response",
+    response_model=AmplitudeResponse,
+)
+async def get_thresholds(
+    params: Annotated[AmplitudeParams, Query()], request: Request, service: ServiceDep
+) -> AmplitudeResponse:
+    """Every threshold between survival and overturning, by the solver, each accurate to 1e-12 in 1/a.
+
+    Where a block of restitution 1 overturns after more than 200 impacts, they are accurate to 1e-6.
+    """
+    return await service.run_heavy(lambda stop: _answer(params, stop), request)
+
+
+def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
+    found = thresholds(
+        params.pulse,
+        **params.groups,
+        highest=params.highest,
+        stop=stop,
+    )
+    listed = [
+        AmplitudeThreshold(
+            amplitude=amplitude,
+            slenderness=1.0 / amplitude,
+            overturns_above=above,
+            outcome=Outcome(code).name,
+            meaning=Outcome(code).sentence,
+            impacts=impacts,
+        )
+        for amplitude, above, code, impacts in zip(
+            *(one.tolist() for one in (found.amplitude, found.overturns_above, found.outcome, found.impacts)),
+            strict=True,
+        )
+    ]
+    lowest = listed[0].amplitude if listed else None
+    return AmplitudeResponse(query=params, thresholds=listed, largest_surviving_amplitude=lowest)
+
+
+DIGITS = 4  # decimals of the peaks in JSON [-]: enough for a picture, at a third of the length
+MAX_AGE = 600  # how long a client may store a map without revalidation [s]
+
+
+class MapParams(ShapeParams):
+    """A window of the control space: columns uniform in log frequency ratio, rows uniform in slenderness."""
+
+    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
+    slenderness_min: Slenderness = Field(0.01, examples=[0.01])
+    slenderness_max: Slenderness = Field(1.05, examples=[1.05])
+    columns: int = between(2, math.inf, "frequency ratios [-]", default=120)
+    rows: int = between(2, math.inf, "slendernesses [-]", default=90)
+    format: Format = None
+
+
+class MapResponse(Echoed[MapParams], Solved[MapParams]):
+    """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
+
+    frequency_ratio: list[float] = said("omega_g/p of the columns [-]")
+    slenderness: list[float] = said("1/a of the rows [-]")
+    peak_rotation: list[float | None] = said(
+        f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
+    )
+    outcome: list[int] = said("final outcome as an index into `outcomes` [-]")
+    outcomes: list[str] = said("names of the outcomes")
+
+
+@pair(
+    router,
+    "/map",
+    "Outcome and peak rotation over a window of frequency ratio and slenderness",
+    response_model=MapResponse,
+    responses=CONTENT,
+)
+async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
+    """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
+    form = negotiated_form(request, params.format)
+    axes = _axes(service, params)
+    response = await service.run_heavy(lambda stop: _map(params, request, *axes, form, stop), request)
+    if request.method == "GET":
+        response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
+    return response
+
+
+def _map(
+    params: MapParams,
+    request: Request,
+    frequency_ratio: NDArray[np.float64],
+    slenderness: NDArray[np.float64],
+    form: str,
+    stop: StopFlag,
+) -> Response:
+    found = peak_response(
+        params.pulse,
+        slenderness=slenderness[:, None],
+        frequency_ratio=frequency_ratio,
+        restitution=params.restitution,
+        alpha=alpha_of(params.alpha_deg),
+        stop=stop,
+    )
+    if form == "nc":
+        return netcdf_response(_dataset(params, frequency_ratio, slenderness, found), "map")
+    if form == "csv":
+        s, w = np.meshgrid(slenderness, frequency_ratio, indexing="ij")
+        columns: dict[str, NDArray[Any]] = {"slenderness": s, "frequency_ratio": w}
+        columns |= {"peak_rotation": found.peak_rotation, "overturned": found.overturned}
+        columns |= {"outcome": np.array(OUTCOMES)[found.outcome], "impacts": found.impacts}
+        columns |= {"exceeded_alpha": found.exceeded_alpha}
+        return csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
+    return json_response(
+        MapResponse.model_construct(
+            query=params,
+            frequency_ratio=frequency_ratio.tolist(),
+            slenderness=slenderness.tolist(),
+            peak_rotation=found.peak_rotation.ravel().round(DIGITS).tolist(),
+            outcome=found.outcome.ravel().tolist(),
+            outcomes=OUTCOMES,
+        ),
+        request,
+    )
+
+
+def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The columns and the rows, within the ranges of the service."""
+    left, right = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
+    low, high = check_window(SLENDERNESS, params.slenderness_min, params.slenderness_max)
+    if params.columns * params.rows > service.settings.max_samples:
+        larger = "columns" if params.columns >= params.rows else "rows"
+        allowed = f"columns times rows at most {service.settings.max_samples}"
+        raise TooLargeError(larger, getattr(params, larger), allowed)
+    return np.geomspace(left, right, params.columns), np.linspace(low, high, params.rows)
+
+
+def _dataset(
+    params: MapParams, frequency_ratio: NDArray[np.float64], slenderness: NDArray[np.float64], found: Found
+) -> xr.Dataset:
+    """The map with the names, types and attributes of the data sets."""
+    axes = ("slenderness", "frequency_ratio")
+    names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")
+    variables: dict[str, Any] = {name: solved_variable(name, axes, getattr(found, name)) for name in names}
+    coordinates = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
+    attributes = params.model_dump(exclude={"format"}, exclude_none=True)
+    return xr.Dataset(
+        variables,
+        coords={name: (name, values, AXES[name]) for name, values in coordinates.items()},
+        attrs={"Conventions": "CF-1.11", **attributes},
+    )

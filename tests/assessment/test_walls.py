@@ -1,0 +1,133 @@
+"""Objects against a wall: an assessment beside responses and thresholds of the bodies themselves."""
+
+import io
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+import rocking
+from rocking import InvalidArgumentError, Object, RigidBody
+from rocking._assessment.tables import objects_of_csv, objects_of_json
+from rocking._cli.app import app
+from tests.suites.motions import noise
+
+WALLS = {
+    "facade": RigidBody.from_size(0.6, 6.0, offset=0.05).one_sided("right", 0.4),
+    "shelf": RigidBody.from_size(0.3, 2.0).one_sided("left"),
+    "quiet": RigidBody(0.5, 0.4, 0.6, 0.5).one_sided("left", 0.7),
+}
+OBJECTS = [*(Object.from_body(body, name=name) for name, body in WALLS.items()), Object("vase", 0.3, 1.2, 0.4)]
+
+
+def mirrored(body: RigidBody) -> RigidBody:
+    given = body.parameters
+    other = {"left": "right", "right": "left"}[body.sides]
+    return RigidBody(**{**given, "left": given["right"], "right": given["left"]}, sides=other)
+
+
+def test_under_pulses_they_are_as_the_bodies_themselves() -> None:
+    site = rocking.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker", "c1"])
+    found = rocking.assess(OBJECTS, site, sensitivity=False).to_pandas().set_index("object")
+    for name, body in WALLS.items():
+        ways, factors = [], []
+        for motion in site.motions:
+            for one in (body, mirrored(body)):
+                strength = {"peak_acceleration": 4.0, "period": motion.period}
+                ways.append(one.response(motion.motion, **strength, thresholds=False))
+                lowest = one.thresholds(motion.motion, period=motion.period, highest=40.0)
+                factors.append(min((each.value for each in lowest), default=math.inf) / 4.0)
+        row = found.loc[name]
+        assert row.uplift_acceleration == pytest.approx(float(body.uplift_acceleration), rel=1e-12)
+        assert row.factor == pytest.approx(min(factors), rel=2e-3) or (math.isnan(row.factor) and min(factors) > 10.0)
+        survived = [
+            np.maximum(a.rotation, b.rotation)
+            for a, b in zip(ways[::2], ways[1::2], strict=True)
+            if not (a.overturned or b.overturned)
+        ]
+        assert row.share == pytest.approx(np.mean([min(factors[k : k + 2]) <= 1.0 for k in (0, 2, 4)]))
+        if row.share == 1.0 - len(survived) / 3.0 and survived:
+            assert row.rotation == pytest.approx(max(survived), rel=1e-6)
+        assert "against a wall" in row.warnings
+    alone = rocking.assess(OBJECTS[-1], site, sensitivity=False).to_pandas().iloc[0]
+    pd.testing.assert_series_equal(found.loc["vase"].iloc[0], alone.drop("object"), check_names=False)
+
+
+def test_under_a_record_with_a_vertical_component() -> None:
+    random = np.random.default_rng(3)
+    shape = np.convolve(random.standard_normal(600), np.ones(5), "same")
+    record = rocking.Record(shape, 0.02, "m/s2", "one", vertical=0.3 * shape[::-1])
+    site = rocking.Site(records=[record], pga=3.0)
+    found = rocking.assess(OBJECTS[:3], site, sensitivity=False).to_pandas().set_index("object")
+    unit = 3.0 / record.peak_acceleration
+    for name, body in WALLS.items():
+        both = [one.thresholds(record, highest=10.0 * unit) for one in (body, mirrored(body))]
+        lowest = min((each.value for one in both for each in one), default=math.nan) / unit
+        assert found.factor[name] == pytest.approx(lowest, rel=2e-6, nan_ok=True)
+    assert found.factor.notna().any()
+    size = float(rocking.assess(OBJECTS[1], site).to_pandas().smallest_width[0])
+    assert size < 0.3
+    wider = RigidBody.from_size(1.001 * size, 2.0).one_sided("left")
+    assert not any(one.response(record, scale=unit).overturned for one in (wider, mirrored(wider)))
+    history = rocking.assess(OBJECTS[1], site, sensitivity=False).history()
+    assert history["rotation"].min() == 0.0 or history["rotation"].max() == 0.0
+
+
+def test_fragility_of_the_object_is_that_of_the_body() -> None:
+    motions, levels = [noise(k, 300, 0.02) for k in range(2)], np.geomspace(1.0, 10.0, 6)
+    found, body = (rocking.fragility(motions, one, intensity=levels) for one in (OBJECTS[0], WALLS["facade"]))
+    np.testing.assert_array_equal(found["outcome"].values.ravel(), body["outcome"].values.ravel())
+
+
+def test_rows_of_tables_and_of_json() -> None:
+    text = "name,width [cm],height [cm],depth [cm],sides,rebound\nfacade,60,600,,right,0.4\nvase,30,120,40,,\n"
+    text += "free,30,120,40,both,\ndeep,30,120,40,left,\nwrong,30,120,,up,\nnone,30,120,,both,0.4\n"
+    table = objects_of_csv(text)
+    (facade,), rest = [table.objects[:1], table.objects[1:]]
+    assert facade.body.sides == "right"
+    assert float(facade.body.parameters["rebound"].item()) == 0.4
+    assert [len(one.planes) for one in rest] == [2, 2]
+    assert [one.column for one in table.bad_rows] == ["depth", "sides", "rebound"]
+    (read,) = objects_of_json('[{"name": "a", "width": 0.6, "height": 6.0, "sides": "right", "rebound": 0.4}]').objects
+    assert read.planes == facade.planes
+    with pytest.raises(InvalidArgumentError, match="against a wall"):
+        Object.from_body(WALLS["facade"], restitution="kalliontzis(k=0.5)")
+
+
+def test_the_command_takes_them(tmp_path: Path) -> None:
+    run = CliRunner()
+    options = ["--pulse", "cosine", "--peak-acceleration", "0.2g", "--period", "1.5s", "--format", "csv"]
+    texts = [
+        run.invoke(app, ["response", *body, *options]).stdout
+        for body in (
+            ["--width", "60cm", "--height", "9m", "--sides", "right", "--rebound", "0.4"],
+            ["--body", "rectangle(width=60cm, height=9m, sides=right, rebound=0.4)"],
+        )
+    ]
+    rows = [pd.read_csv(io.StringIO(text)).iloc[0] for text in texts]
+    assert rows[0]["rotation_right_deg [deg]"] == pytest.approx(rows[1]["rotation_right_deg [deg]"])
+    row = rows[0]
+    wall = RigidBody.from_size(0.6, 9.0).one_sided("right", 0.4)
+    found = wall.response("cosine", peak_acceleration="0.2 g", period=1.5)
+    assert row["rotation_right_deg [deg]"] == pytest.approx(math.degrees(found.rotation_right), rel=1e-6)
+    (tmp_path / "motion.csv").write_text("\n".join(map(str, noise(3, 300, 0.02).acceleration)))
+    suite = {
+        "name": "s",
+        "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02},
+        "measure": "pga",
+        "intensity": [1.0, 3.0, 9.0],
+        "blocks": ["rectangle(width=60cm, height=6m, sides=right)", {"width": 0.5, "height": 4.0, "sides": "right"}],
+    }
+    (tmp_path / "suite.json").write_text(json.dumps(suite))
+    out = run.invoke(app, ["fragility", str(tmp_path / "suite.json"), "--format", "csv"])
+    assert out.exit_code == 0, out.output
+    table = pd.read_csv(io.StringIO(out.stdout))
+    walls = RigidBody.from_size([0.6, 0.5], [6.0, 4.0]).one_sided("right")
+    expected = rocking.fragility(
+        [rocking.read_record(tmp_path / "motion.csv", unit="m/s2", time_step=0.02)], walls, intensity=[1.0, 3.0, 9.0]
+    )
+    np.testing.assert_array_equal(table["exceedances"], expected["exceedances"].values.ravel())

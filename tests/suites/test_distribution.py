@@ -1,0 +1,103 @@
+"""Distributions of peak rotations: against counts and SciPy, and how often their bands hold."""
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from scipy import stats
+from typer.testing import CliRunner
+
+import rocking
+from rocking._cli.app import app
+from rocking.suites import distribution
+from tests.suites.motions import noise
+
+MOTIONS = [noise(k, 400, 0.02) for k in range(8)]
+
+
+def test_of_a_suite_is_what_counting_gives() -> None:
+    blocks = [rocking.Block(0.4, 1.6), rocking.Block(0.3, 1.8)]
+    suite = rocking.fragility(MOTIONS, blocks, intensity=[3.0, 5.0])
+    found = distribution(suite, rotation=[0.0, 0.2, 0.5, 1.0])
+    for block in range(2):
+        for level in range(2):
+            one = suite.isel(block=block, intensity=level)
+            peaks = [
+                np.inf if over else peak
+                for peak, over in zip(*(one[n].values for n in ("peak_rotation", "overturned")), strict=True)
+            ]
+            for at in found["rotation"].values:
+                here = found.isel(block=block, intensity=level).sel(rotation=at)
+                count = sum(peak <= at for peak in peaks)
+                ends = stats.binomtest(count, 8).proportion_ci(0.95, "exact")
+                assert here["probability"].item() == count / 8
+                assert (here["probability_lower"].item(), here["probability_upper"].item()) == pytest.approx(ends)
+    assert (found["overturned"].values == suite["fraction"].values).all()
+    assert (found["overturned_upper"].values == suite["fraction_upper"].values).all()
+    half = np.sqrt(np.log(2.0 / 0.05) / 16.0)
+    np.testing.assert_allclose(found["band_upper"], np.minimum(found["probability"] + half, 1.0))
+    single = distribution(rocking.fragility(MOTIONS[0], blocks[0], intensity=[3.0]), rotation=[0.5])
+    assert single.attrs["members"] == 1
+
+
+@pytest.mark.parametrize("members", [5, 40])
+def test_how_often_the_band_holds(members: int) -> None:
+    """Of samples of a known distribution the band contains all of it in at least the stated share."""
+    peak = np.random.default_rng(7).random((2000, members))
+    data = xr.Dataset({"peak_rotation": (("sample", "record"), peak), "overturned": (("sample", "record"), peak > 0.9)})
+    found = distribution(data, confidence=0.9)
+    x = found["rotation"]
+    true = x.where(x < 0.9, 0.9)
+    holds = ((found["band_lower"] <= true + 1e-12) & (true <= found["band_upper"] + 1e-12)).all("rotation").mean()
+    at = found.sel(rotation=0.5)
+    covers = ((at["probability_lower"] <= 0.5) & (at["probability_upper"] >= 0.5)).mean()
+    assert holds.item() > 0.89
+    assert 0.89 < covers.item() < 0.99
+
+
+def test_of_restitutions_and_of_mirrored_records() -> None:
+    wall = rocking.RigidBody.from_size(0.3, 2.0).one_sided("right")
+    eta = np.random.default_rng(1).uniform(0.3, 0.6, 50)
+    found = distribution(wall.response(MOTIONS[0], scale=1.5, restitution=eta), over="restitution")
+    assert found.attrs["members"] == 50
+    assert np.ptp(found["probability"].values) > 0.0
+    block = rocking.Block(0.4, 1.6).response(MOTIONS[0], scale=1.5, restitution=eta)
+    assert distribution(block, over="restitution").attrs["members"] == block.peak_rotation.size == 50
+    both = distribution(rocking.fragility(MOTIONS, wall, intensity=[3.0]))
+    assert both.attrs["members"] == 8
+    assert both["probability"].dims == ("intensity", "rotation")
+
+
+def test_command_and_picture(tmp_path: Path) -> None:
+    for one in MOTIONS[:3]:
+        (tmp_path / f"{one.name}.csv").write_text("\n".join(map(str, one.acceleration)))
+    about = {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02}
+    suite = {"name": "s", "records": about, "measure": "pga", "intensity": [2.0, 4.0]}
+    path = tmp_path / "suite.json"
+    path.write_text(json.dumps(suite | {"blocks": [{"width": 0.4, "height": 1.6}]}))
+    out = CliRunner().invoke(app, ["fragility", str(path), "--table", "distribution", "--format", "csv"])
+    assert out.exit_code == 0, out.output
+    table = pd.read_csv(io.StringIO(out.stdout))
+    assert len(table) == 2 * 21
+    assert table["probability"].between(table["band_lower"], table["band_upper"]).all()
+    out = CliRunner().invoke(app, ["plot", "distribution", str(path), "--output", str(tmp_path / "a.png")])
+    assert out.exit_code == 0, out.output
+    assert (tmp_path / "a.png").stat().st_size > 5000
+
+
+def test_refused() -> None:
+    block = rocking.Block(0.4, 1.6)
+    suite = rocking.fragility(MOTIONS[:2], block, intensity=[3.0])
+    for wrong in ({"over": "block"}, {"rotation": [0.5, 0.1]}, {"rotation": [-1.0]}, {"confidence": 1.0}):
+        with pytest.raises(rocking.InvalidArgumentError, match=next(iter(wrong))):
+            distribution(suite, **wrong)
+    with pytest.raises(rocking.InvalidArgumentError, match="ensemble"):
+        distribution(suite[["fraction"]])
+    with pytest.raises(rocking.InvalidArgumentError, match="over"):
+        distribution(block.response(MOTIONS[0]), over="dim_0")
+    with pytest.raises(rocking.InvalidArgumentError, match="data"):
+        rocking.plot.distribution(distribution(suite))
