@@ -2,13 +2,14 @@
 
 Under a record the outcome is not monotone in the strength, and the lowest range of strengths that overturn a body is
 often narrow: of 140 pairs of objects and records half of these ranges are narrower than 0.1 %, since the body strikes
-10 to 200 times. `lowest_overturning` tries strengths from that of uplift on, `resolution` apart. Each response has a
-reach: how far above and below in strength one of its peaks comes to the unstable equilibrium, by the derivative of the
-peak (`rocking._solver.records.estimate`). An interval is halved while it is wider than half the reach at one of its
-ends, down to a 512th of the resolution; then while it is wider than an 8th and a 32nd of it, as long as the body has
-had fewer than `BUDGET` responses in a `WINDOW`; and close below the lowest that overturns the intervals are as narrow
-as a 64th of their distance from it. All of these are estimates; each that is the lowest so far is confirmed by the
-solver, and the change of outcome below the lowest is bisected with it. A narrower range can be missed.
+10 to 200 times, and there are others of 0.001 % and less. `lowest_overturning` tries strengths from that of uplift on,
+`resolution` apart. Each response has a reach: how far above and below in strength one of its peaks comes to the
+unstable equilibrium, by the derivative of the peak (`rocking._solver.records.estimate`). An interval is halved while it
+is wider than half the reach at one of its ends, down to a 4096th of the resolution; then while it is wider than an 8th
+and a 32nd of it; all this as long as the body has had fewer than `BUDGET` responses in a `WINDOW`. Close below the
+lowest that overturns the intervals are as narrow as a 32nd of their distance from it. All of these are estimates; each
+that is the lowest so far is confirmed by the solver, there or close by, and the change of outcome below the lowest is
+bisected with it. A narrower range can be missed.
 """
 
 from __future__ import annotations
@@ -42,18 +43,18 @@ RESOLUTION = 0.005
 RESOLUTIONS = 1e-4, 0.1
 """Finest and coarsest that can be asked for [-]."""
 
-PARTS = 512
+PARTS = 4096
 """Parts of the resolution, a power of two, into which it is divided where the body may overturn."""
 
-CLOSE, CLOSE_RATIO = PARTS, 64
+CLOSE, CLOSE_RATIO = PARTS, 32
 """Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
 MULTIPLES = 2.0, 8.0, 32.0
 """An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other."""
 
-WINDOW, BUDGET = 16, 1000
-"""Intervals of the resolution that are searched together, from the weakest on; responses of a body in them with which
-the larger multiples are not used."""
+WINDOW, BUDGET = 16, 2000
+"""Intervals of the resolution that are searched together, from the weakest on; responses of a body in them after which
+only those close below the lowest that overturns are halved."""
 
 FEWEST, SHARES = 64, 4
 """Bodies in a part of an array at least, below which the overhead counts, and parts for each core."""
@@ -64,8 +65,8 @@ SCAN_RATIO = 1.002
 RELATIVE_ERROR = 1e-6
 """Relative width to which a change of outcome is bisected [-]."""
 
-NONE = np.iinfo(np.intp).max
-"""Place of the lowest that overturns where none is known."""
+SHIFTS = 0, *(sign * shift for shift in (1, 2, 3, 4, 6, 8, 12, 16, 24) for sign in (-1, 1))
+"""Parts from a strength that overturns by an estimate to those at which the solver confirms it, one after the other."""
 
 _PARTS = 16
 """Values between the two ends of an interval that is bisected, solved by one call."""
@@ -168,7 +169,8 @@ def lowest_overturning(
     resolution : float
         Largest relative distance of two strengths [-]. Above `RESOLUTION` the budget of responses is smaller.
     enough : float array (bodies,)
-        The search of a body ends with a strength up to this one that overturns it, which need not be the lowest.
+        The search of a body ends with a strength up to this one that overturns it, which need not be the lowest; one
+        above it is good to a 4096th of the resolution.
 
     Returns
     -------
@@ -197,10 +199,10 @@ class _Search:
         self.unit, self.budget = math.log1p(resolution) / PARTS, BUDGET * min(RESOLUTION / resolution, 1.0)
         with np.errstate(divide="ignore"):
             self.enough = np.log(enough / start) / self.unit  # place
-        self.first = np.full(start.size, NONE)  # place of the lowest that overturns
+        self.first = np.full(start.size, math.inf)  # place of the lowest that overturns
         self.tried = np.zeros(start.size)  # responses in the window
 
-    def strength(self, line: Index, place: Index) -> Array:
+    def strength(self, line: Index, place: Index | Array) -> Array:
         """The strength at a place."""
         return np.asarray(np.minimum(self.start[line] * np.exp(self.unit * place), self.limit[line]))
 
@@ -214,8 +216,8 @@ class _Search:
             hits = np.flatnonzero(left)
             lowest = hits[np.unique(line[hits], return_index=True)[1]]
             left[lowest] = False
-            for shift in (0, -1, 1):  # the estimate may be that of a place beside it
-                at = np.maximum(place[lowest] + shift, 0)
+            for shift in SHIFTS:
+                at = np.maximum(place[lowest] + shift, 0.0)
                 confirmed = self.lines.overturned(line[lowest], self.strength(line[lowest], at))
                 own, at = line[lowest[confirmed]], at[confirmed]
                 self.first[own] = np.minimum(self.first[own], at)
@@ -250,11 +252,11 @@ class _Search:
                 intervals = self.refined(intervals, MULTIPLES[-1])
             solved_to += WINDOW * PARTS
             # those close below a later one are looked at again
-            lines = lines[(self.first[lines] == NONE) & (solved_to - CLOSE < end[lines]) & (solved_to < last[lines])]
+            lines = lines[np.isinf(self.first[lines]) & (solved_to - CLOSE < end[lines]) & (solved_to < last[lines])]
             left = np.zeros(self.start.size, dtype=np.bool_)
             left[lines] = True
             intervals = intervals.take(left[intervals.line] & (intervals.high > solved_to - CLOSE))
-        return self.bisected(np.flatnonzero(self.first < NONE))
+        return self.bisected(np.flatnonzero(np.isfinite(self.first)))
 
     def refined(self, intervals: Intervals, multiple: float) -> Intervals:
         """The intervals, and those into which they are divided as long as one is to be halved."""
@@ -262,7 +264,7 @@ class _Search:
         while True:
             intervals = intervals.take((intervals.low < self.first[intervals.line]) & ~self.settled()[intervals.line])
             gap = intervals.high - intervals.low
-            used = np.where(self.tried[intervals.line] < self.budget, multiple, MULTIPLES[0])
+            used = np.where(self.tried[intervals.line] < self.budget, multiple, 0.0)
             below = self.first[intervals.line] - intervals.low
             close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
             near = gap * used > np.minimum(intervals.low_reach, intervals.high_reach)
@@ -284,14 +286,14 @@ class _Search:
     def bisected(self, known: Index) -> Array:
         """The lowest strengths of bodies for which one is known, with the change of outcome below it."""
         place = self.first[known]
-        low = np.where(self.settled()[known], place, np.maximum(place - 1, 0))
+        low = np.where(np.isfinite(self.enough[known]), place, np.maximum(place - 1.0, 0.0))
         found = np.full(self.start.size, math.nan)
         over = np.ones(known.size, dtype=np.bool_)
         while (down := np.flatnonzero(over & (low < place))).size:
             over[down] = self.lines.overturned(known[down], self.strength(known[down], low[down]))
             down = down[over[down]]
             place[down] = low[down]
-            low[down] = np.maximum(low[down] - 1, 0)
+            low[down] = np.maximum(low[down] - 1.0, 0.0)
         high, under = (self.strength(known, each) for each in (place, low))
         while (wide := np.flatnonzero(high / under - 1.0 > RELATIVE_ERROR)).size:
             middle = np.sqrt(under[wide] * high[wide])
