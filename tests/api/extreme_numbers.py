@@ -121,9 +121,9 @@ OBJECTS: dict[str, Any] = {
 }  # fmt: skip
 """Arguments that are no numbers."""
 
-OF_PULSES = ("peak_acceleration", "period", "frequency_ratio", "relative_tolerance")
-OF_RECORDS = ("scale", "frequency_parameter", "vertical_scale")
-"""Numbers that belong to one kind of motion."""
+OF_PULSES = ("peak_acceleration", "period", "frequency_ratio", "relative_tolerance", "start")
+OF_RECORDS = ("scale", "frequency_parameter", "vertical_scale", "start")
+"""Numbers that do not belong to the other kind of motion; a start from rest excludes both."""
 
 MADE = (rocking.Block, rocking.EquivalentBlock, rocking.Record, rocking.SampledPulse, Groups, Problem)
 """Classes that are made from numbers."""

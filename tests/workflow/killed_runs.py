@@ -36,14 +36,19 @@ def project(folder: Path) -> Path:
 
 
 def content(folder: Path) -> dict[str, str]:
-    """Return the digests of all files that a run left, except those that contain times."""
+    """Return the digests of all files that a run left, except those that contain times or the commit of a checkout."""
     found = (path for top in ("results", "logs", ".snakemake") for path in (folder / top).rglob("*") if path.is_file())
     names = {path.relative_to(folder).as_posix(): path for path in found}
     return {
-        name: "" if name.startswith(WITH_TIMES) else hashlib.sha256(path.read_bytes()).hexdigest()
+        name: "" if name.startswith((*WITH_TIMES, "results/.records/manifest.")) else digest(path)
         for name, path in sorted(names.items())
         if not name.startswith((".snakemake/log", ".snakemake/run.lock", ".snakemake/iocache"))
     }
+
+
+def digest(path: Path) -> str:
+    """Return the digest of a file, of a manifest without the commit that it states."""
+    return hashlib.sha256(re.sub(rb'\n "commit": "\w+",', b"", path.read_bytes())).hexdigest()
 
 
 def reproduce(folder: Path) -> subprocess.CompletedProcess[str]:

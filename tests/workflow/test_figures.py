@@ -169,8 +169,7 @@ def test_scale_law_of_excitations_is_that_of_single_blocks() -> None:
     records = ["napa_HNN.csv"]
     axis = {"low": 2.0, "high": 8.0, "points": 4}
     data = figure_scale_law_excitations.data(
-        motions=[PROJECT / "workflow/motions" / name for name in records], records=records, restitution=[0.8, 0.9],
-        reference=0.9, slenderness={"low": 0.3, "high": 0.9, "points": 4}, frequency_ratio=axis,
+        records=records, restitution=[0.8, 0.9], reference=0.9, slenderness={"low": 0.3, "high": 0.9, "points": 4}, frequency_ratio=axis,
         frequency_parameter=axis,
     )  # fmt: skip
     low, high = (

@@ -42,6 +42,7 @@ def test_every_product_is_made_and_listed(smoke_results: Path) -> None:
         *(f"figure-{k}" for k in range(10, 14)),
         "figure-S1",
         "figure-scale-law",
+        "figure-scale-law-excitations",
         "figure-master-spectra",
         "figure-master-housner",
         "table-1",

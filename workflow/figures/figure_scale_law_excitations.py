@@ -23,6 +23,7 @@ from workflow.figures.style import panel_letters, plotted
 
 Floats = NDArray[np.float64]
 
+MOTIONS = Path(__file__).parents[1] / "motions"
 LAW = 0.10  # error up to which the law is said to hold [-]
 LEVELS = (0.003, 0.01, 0.03, LAW, 0.3, 1.0)  # of the colours of the error [-]
 COLOURS = ("#08306B", "#2171B5", "#6BAED6", "#C6DBEF", "#FDBE85", "#E6550D", "#7F2704")  # blue where the law holds
@@ -45,7 +46,6 @@ ACROSS = {
 
 def data(
     *,
-    motions: Sequence[Path],
     records: Sequence[str],
     restitution: Sequence[float],
     reference: float,
@@ -55,7 +55,7 @@ def data(
 ) -> xr.Dataset:
     """Errors of the law and exponents under each excitation, where the slender block survives for every restitution.
 
-    `motions`: files of the `records`, which are their names; `restitution`: eta [-]; `reference`: the eta from which
+    `records`: files of `workflow/motions`; `restitution`: eta [-]; `reference`: the eta from which
     the law predicts the other peaks [-]. Low, high and points of the axes: `slenderness` [-], g alpha/a_g, for records
     with their peak ground acceleration in place of a_g, in equal steps; `frequency_ratio` [-] for pulses and
     `frequency_parameter` p [rad/s] for records, in equal ratios.
@@ -69,7 +69,8 @@ def data(
     peaks = {
         "pulse": [peak_response(name, frequency_ratio=omega, **blocks).peak_rotation for name in PULSE_NAMES],
         "record": [
-            record_response(read_record(path), frequency_parameter=p, **blocks).peak_rotation for path in motions
+            record_response(read_record(MOTIONS / name), frequency_parameter=p, **blocks).peak_rotation
+            for name in records
         ],
     }
     nodes = {"pulse": omega, "record": p}

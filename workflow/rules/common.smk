@@ -20,6 +20,7 @@ from workflow.configuration import (
     BYTES,
     ConfigurationError,
     check,
+    chosen,
     nodes_of_cube,
     restitutions,
 )

@@ -9,12 +9,6 @@ FIGURE_INPUTS = {
         figure: {pulse: overturning_files(pulse, restitutions(config, figure))[0] for pulse in ("sine", "cosine")}
         for figure in ("figure-10", "figure-master-spectra")
     },
-    "figure-scale-law-excitations": {
-        "motions": [
-            os.path.relpath(PROJECT / "workflow/motions" / name)
-            for name in _figures["figure-scale-law-excitations"]["ours"]["records"]
-        ]
-    },
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
 }
 FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
@@ -38,7 +32,12 @@ config["captions"] = {
 
 for _figure, _files in FIGURES.items():
     _name = _figure.replace("-", "_")
-    _provenance = provenance(_name, ["scripts/figure.py", f"figures/{_name}.py"], _figures[_figure], _files.values())
+    _read = {
+        name: records.digest(PROJECT / "workflow/motions" / name)["sha256"]
+        for name in chosen(config, _figure).get("records", ())
+    }
+    _settings = {**_figures[_figure], **({"motions": _read} if _read else {})}
+    _provenance = provenance(_name, ["scripts/figure.py", f"figures/{_name}.py"], _settings, _files.values())
     RECORDS.append(record_of(f"figures/{_figure}", _provenance))
 
     rule:

@@ -189,7 +189,7 @@ def _out_of_range(model: type[Params], name: str, value: float, index: tuple[int
     schema = model.model_json_schema()["properties"][name]
     ends = next(one for one in (schema, *schema.get("anyOf", ())) if "minimum" in one or "exclusiveMinimum" in one)
     low, high = ends.get("minimum", ends.get("exclusiveMinimum")), ends.get("maximum", math.inf)
-    unit = re.search(r"\[([^]]+)\]", schema["description"])
+    unit = re.search(r"\[([^]]+)\]", schema.get("description", ""))
     try:
         in_range(name, value, low, high, closed="both" if "minimum" in ends else "right", unit=unit[1] if unit else "-")
     except InvalidArgumentError as error:
