@@ -91,7 +91,7 @@ def most():
     return int(line.split()[1])
 
 before = most()
-assert read_record(sys.argv[1]).samples == 400_000
+assert read_record(sys.argv[1]).samples == 600_000
 print(most() - before)
 """
 """Prints how much memory reading a file takes [kB]."""
@@ -103,7 +103,7 @@ print(most() - before)
     [
         ("time_s,acceleration_g\n", "{0:.2f},{1:.9f}\n"),
         ("unit: g\ndt: 0.01\n", "{1:.17f}\n"),
-        (at2("NPTS= 400000, DT= .01", body=""), "{1:19.10E}\n"),
+        (at2("NPTS= 600000, DT= .01", body=""), "{1:19.10E}\n"),
     ],
     ids=["columns", "one column", "AT2"],
 )

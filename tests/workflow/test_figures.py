@@ -166,12 +166,15 @@ def test_blocks_of_figure_11_have_equal_groups() -> None:
 
 
 def test_scale_law_of_excitations_is_that_of_single_blocks() -> None:
-    records = ["napa_HNN.csv"]
     axis = {"low": 2.0, "high": 8.0, "points": 4}
     data = figure_scale_law_excitations.data(
-        records=records, restitution=[0.8, 0.9], reference=0.9, slenderness={"low": 0.3, "high": 0.9, "points": 4}, frequency_ratio=axis,
+        records=["napa_HNN.csv"],
+        restitution=[0.8, 0.9],
+        reference=0.9,
+        slenderness={"low": 0.3, "high": 0.9, "points": 4},
+        frequency_ratio=axis,
         frequency_parameter=axis,
-    )  # fmt: skip
+    )
     low, high = (
         peak_response("cosine", slenderness=0.5, frequency_ratio=8.0, restitution=eta).peak_rotation
         for eta in (0.8, 0.9)
