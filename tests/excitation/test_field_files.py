@@ -45,7 +45,7 @@ REFUSED = [  # file, arguments, what the message names
     ("factor_and_step_first.txt", {"unit": "g"}, "line 1: found 1, 0.01 before 6.159000e-02; .*`skip`: 2"),
     ("component_underscore.csv", {}, r"components acc_NS\(gal\), acc_EW\(gal\); .*`component`"),
     ("three_components_no_time.txt", {"unit": "gal"}, "components N-S, E-W, U-D; .*`component`"),
-    ("cosmos_volume2.v2", {}, "no time step; .*`time_step`"),
+    ("cosmos_volume2.v2", {}, "COSMOS file that states no time step; .*`time_step`"),
     ("jma_unit_two_names.csv", {}, "components NS, EW, UD; .*`component`"),
     ("sample_counter.csv", {}, "the column sample, a counter.*`time_step`"),
 ]

@@ -119,7 +119,7 @@ def test_volume_1_in_g():
         (csmip(), {}, "components Chan 1: 360 Deg, Chan 2: Up, Chan 3: 90 Deg; .*`component`"),
         (csmip(), {"component": "deg"}, "expected component deg"),
         (csmip()[:3000], {"component": "1"}, "values, and 37 stated in line"),
-        (cosmos(real=False), {}, "no time step"),
+        (cosmos(real=False), {}, "COSMOS file that states no time step"),
         (cosmos().replace("cm/sec2(04)", "counts(50)"), {"unit": "g"}, "found counts; expected a unit"),
         (geonet(2).replace("at 0.020 sec", "at 0.010 sec"), {"component": "Up"}, "0.02 s; expected that of its text"),
         ("Response and Fourier amplitude spectra\n1 2\n", {}, "response spectra .Volume 3."),

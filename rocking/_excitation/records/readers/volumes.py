@@ -92,6 +92,8 @@ def read(file: TextFile, kind: str, unit: str | None, time_step: float | None, c
     if one.unit is None and (unit is None or re.search(r"count|volt", one.unit_text, re.I)):
         raise file.error(one.line, one.unit_text or "no unit", "a unit of acceleration, such as cm/sec2")
     agreed = agreed_unit(file, one.line, one.unit, unit)
+    if one.step is None and time_step is None:
+        raise file.error(one.line, f"a {kind} file that states no time step", "the argument `time_step`")
     step = agreed_step(file, one.line, one.step, time_step)
     name = " ".join([file.name.rsplit(".", 1)[0], *([one.name] if len(channels) > 1 else [])])
     return Record(one.values, step, agreed, name=name, source=f"{file.name} ({kind}, {one.name or 'one channel'})")
