@@ -41,6 +41,11 @@ def test_the_period_is_that_of_the_sentence_until_another_is_stated_and_the_page
     assert "period" not in query(page)
 
 
+def test_values_of_a_logarithmic_axis_are_round(open_page):
+    values = "async () => (await import('/static/explorer/chart.js')).logAxis('PGV').splits(null, 0, 11.7, 145)"
+    assert open_page().evaluate(values) == [20, 30, 40, 50, 60, 70, 80, 90, 100]
+
+
 def ask_by_keyboard(page, **values):
     """Type numbers into the sentence with keys alone, from the top of the page."""
     for _ in range(80):

@@ -29,7 +29,8 @@ export function spread(values, place, apart) {
   return kept;
 }
 
-function decades(low, high) {
+/** The values between `low` and `high` of one digit, or 1.5, times a power of ten. */
+export function decades(low, high) {
   const found = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power += 1) {
     for (const digit of [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9]) found.push(Number((digit * 10 ** power).toPrecision(3)));

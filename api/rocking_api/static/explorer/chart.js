@@ -1,7 +1,7 @@
 // A line chart by uPlot in the colours of the page, as wide as its container.
 
 import { Problem } from "./api.js";
-import { spread } from "./axes.js";
+import { decades, spread } from "./axes.js";
 import { onTheme, themed } from "./colours.js";
 import { number } from "./labels.js";
 import { fontOf, onTextSize, textScale } from "./text.js";
@@ -46,13 +46,13 @@ export function axis(label, more = {}) {
 
 /** A logarithmic axis with a title, with labels at round values that do not touch each other. */
 export function logAxis(label, more = {}) {
-  const values = (u, splits, at) => {
-    const apart = LABEL_SPACE[at] * textScale();
-    const round = splits.filter((value) => value !== null && Number(value.toPrecision(1)) === value);
-    const labelled = spread(round, (value) => u.valToPos(value, "xy"[at]), apart);
-    return splits.map((value) => (labelled.includes(value) ? number(value, 3) : ""));
+  // those of uPlot begin at the low end of the scale and are not round from 10 on
+  const splits = (_, at, low, high) => decades(low, high).filter((value) => Number(value.toPrecision(1)) === value);
+  const values = (u, places, at) => {
+    const labelled = spread(places, (value) => u.valToPos(value, "xy"[at]), LABEL_SPACE[at] * textScale());
+    return places.map((value) => (labelled.includes(value) ? number(value, 3) : ""));
   };
-  return axis(label, { filter: (_, splits) => splits, values, ...more });
+  return axis(label, { filter: (_, places) => places, splits, values, ...more });
 }
 
 /**
