@@ -14,8 +14,8 @@ from workflow.run_lock import join_run
 def run(task: Callable[..., None], snakemake: Any) -> None:
     """Call `task` with the named inputs, outputs and parameters of the job; its output goes to the log of the job.
 
-    The output `record` is not passed to the task: the digests of the other outputs are written to it afterwards. Parts
-    of products, which end with a digest of their own, have no record. `snakemake` is the object that Snakemake provides
+    The output `record` is not passed to the task: the digests of the other outputs are written to it afterwards. The
+    samples of a pulse, whose name holds their digest, have no record. `snakemake` is the object that Snakemake provides
     to a script.
     """
     join_run()
