@@ -18,6 +18,8 @@ MANIFEST = $(subst $(EMPTY) ,\ ,$(RESULTS))/manifest.json
 PYTHON ?= $(shell for p in python3.11 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
+# uv installs the lock with a sixth of pip's processor time.
+UV := $(or $(shell command -v uv),build/uv/bin/uv)
 # Another active environment must not affect this one.
 unexport VIRTUAL_ENV PYTHONPATH PYTHONHOME PYTHONDONTWRITEBYTECODE
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
@@ -85,11 +87,6 @@ SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin
 mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
 	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)
 
-UV := $(or $(shell command -v uv),build/uv/bin/uv)
-
-build/uv/bin/uv:
-	$(PYTHON) -m venv --clear build/uv && build/uv/bin/pip install --quiet uv
-
 oldest: ## run the solver's tests with the lowest versions that pyproject.toml allows (PYTHON=3.12: another Python)
 newest: ## the same with the newest versions (PRERELEASE=allow: pre-releases, too)
 
@@ -137,17 +134,23 @@ atlas/results/manifest.json atlas-small/results/manifest.json: %/results/manifes
 %/manifest.json:
 	@echo 'RESULTS=$* is not allowed: no $@; allowed: results, atlas-small/results, atlas/results, or a folder with data sets and their manifest' >&2; exit 1
 
+VENV = test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; use make PYTHON=/path/to/python3.11' >&2; exit 1; }; \
+	$(PYTHON) -m venv --clear $(1) || { \
+	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
+
+build/uv/bin/uv:
+	@$(call VENV,build/uv)
+	@build/uv/bin/pip install --quiet uv
+
 # No isolation: packages without a wheel are built with the pinned build tool, which is installed first; with isolation
-# pip would fetch an unpinned one.
-INSTALL := .venv/bin/python -m pip install --quiet --require-hashes --no-build-isolation --use-pep517
+# an unpinned one would be fetched.
+INSTALL := $(UV) pip install --quiet --python .venv --require-hashes --no-build-isolation
 
 # The copy of the lock in .venv is written last: it records the lock that the environment was made from, and that the
 # environment is complete. Contents are compared, not time stamps, so that a new checkout of the same lock needs nothing.
-.venv/environment.lock: $(shell cmp -s environment.lock .venv/environment.lock || echo FORCE)
-	@test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; use make PYTHON=/path/to/python3.11' >&2; exit 1; }
-	@echo 'Making .venv from environment.lock (about a minute) ...'
-	@$(PYTHON) -m venv --clear .venv || { \
-	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
+.venv/environment.lock: $(shell cmp -s environment.lock .venv/environment.lock || echo FORCE) | $(UV)
+	@echo 'Making .venv from environment.lock ...'
+	@$(call VENV,.venv)
 	@sed -n '/^setuptools==/,/[^\\]$$/p' environment.lock >.venv/build-tool.lock
 	@$(INSTALL) -r .venv/build-tool.lock && $(INSTALL) -r environment.lock
 	@cp environment.lock $@
