@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rocking_api.settings import Settings
 
-PAGE = (Path(__file__).parents[2] / "docs" / "service.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "service-operation.md").read_text(encoding="utf-8")
 ROWS = dict(re.findall(r"^\| ROCKING_(\w+) \| ([^|]+?) \|", PAGE, flags=re.MULTILINE))
 
 
