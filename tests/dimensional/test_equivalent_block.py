@@ -159,17 +159,6 @@ def test_it_is_accepted_wherever_a_block_is():
     assert outcomes["overturned"].values.ravel().tolist() == [False, True]
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("alpha", 1.6), ("frequency_parameter", 0.0), ("restitution", 1.1), ("uplift_acceleration", -1.0),
-     ("top_height", math.inf), ("gravity", math.nan)],
-)  # fmt: skip
-def test_values_out_of_range_are_named(name, value):
-    given = {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9, name: value}
-    with pytest.raises(InvalidArgumentError, match=name):
-        rocking.EquivalentBlock(**given)
-
-
 def test_structures_that_would_bounce_are_refused():
     squat = rocking.Block(width=4.0, height=2.0)
     with pytest.raises(InvalidArgumentError, match="column"):

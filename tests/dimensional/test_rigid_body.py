@@ -87,8 +87,6 @@ def test_a_body_of_a_size_has_its_edges_mass_and_top_there_for_arrays_and_labels
             "`offset` = '20 cm' is not allowed; allowed: less than half the width to either side, 0.2 m",
         ),
         ({"offset": [0.0, -0.3]}, "less than half the width"),
-        ({"mass_height": 0.0}, "`mass_height` = 0.0"),
-        ({"gyration": -1.0}, "`gyration`"),
     ],
 )
 def test_a_mass_that_is_not_above_the_base_is_refused(given, words):
@@ -353,8 +351,6 @@ def test_a_mesh_of_a_box_is_the_uniform_body(tmp_path):
         ({"period": 1.0}, "`peak_acceleration` = None"),
         ({**MOTION, "scale": 2.0}, "`scale` = 2.0"),
         ({**MOTION, "restitution": "housner"}, "momentum, or"),
-        ({**MOTION, "restitution": 1.2}, "`restitution` = 1.2"),
-        ({"peak_acceleration": -3.0, "period": 1.0}, "`peak_acceleration` = -3"),
         ({"peak_acceleration": [1.0, 2.0], "period": [1.0, 2.0, 3.0]}, "shapes that broadcast"),
     ],
 )

@@ -145,7 +145,6 @@ def test_the_history_of_a_very_slow_pulse_ends(name, alpha):
     [
         ("duration", [0.0, -1.0, math.nan, math.inf]),
         ("samples", [1, 0, -5, 2_000_000]),
-        ("slenderness", [0.0, math.nan]),
     ],
 )
 def test_invalid_arguments(argument, values):

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.block import Block
 
 lengths = st.floats(1e-3, 1e3)
@@ -61,11 +60,3 @@ def test_inelastic_restitution_has_no_tensile_impulse(alpha):
     if abs(block.momentum_restitution) > 1e-9:
         assert (old > 0) == (block.momentum_restitution < 0)
     assert block.inelastic_restitution == (0.0 if old > 0 else pytest.approx(block.momentum_restitution, abs=1e-9))
-
-
-@pytest.mark.parametrize("name", ["width", "height", "gravity"])
-@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf, "wide"])
-def test_invalid_blocks_are_rejected_by_name(name, value):
-    good = {"width": 0.4, "height": 2.0, "gravity": 9.81}
-    with pytest.raises(InvalidArgumentError, match=f"`{name}`"):
-        Block(**{**good, name: value})

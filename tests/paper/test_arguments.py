@@ -56,9 +56,7 @@ def test_labelled_arrays_of_equal_dimensions_give_the_numbers_of_plain_ones(func
     np.testing.assert_array_equal(np.asarray(labelled), np.asarray(plain))
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("amplitude", 0.99), ("frequency_ratio", 0.0), ("restitution", 1.01), ("restitution", np.nan)]
-)
-def test_values_out_of_range_are_refused(name, value):
-    with pytest.raises(InvalidArgumentError, match=f"^`{name}` = "):
-        checked(**{name: value})
+@pytest.mark.parametrize("value", [0.99, np.nan])
+def test_amplitudes_below_uplift_are_refused(value):
+    with pytest.raises(InvalidArgumentError, match=r"^`amplitude` = "):
+        checked(amplitude=value)

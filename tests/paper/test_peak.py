@@ -21,21 +21,6 @@ def test_peak_of_velocity_at_and_above_the_overturning_velocity():
     assert cf.peak_of_velocity(1e-9) == pytest.approx(5e-19, rel=1e-12)
 
 
-def test_closed_form_spectrum_is_exact_where_the_peak_follows_the_first_impact():
-    rng = np.random.default_rng(3)
-    n = 4000
-    omega = np.exp(rng.uniform(np.log(1.5), np.log(15), n))
-    a = cf.limit_amplitude(omega) + rng.uniform(0, 1, n) * (cf.case_2_amplitude(omega) - cf.limit_amplitude(omega))
-    eta = rng.uniform(0.8, 0.96, n)
-    found = peak_response("sine", slenderness=1 / a, frequency_ratio=omega, restitution=eta)
-    after_impact = found.peak_mode == 3  # one impact, then free rocking
-    assert after_impact.sum() > 500
-    closed = cf.case_1_2_peak(a, omega, eta)
-    np.testing.assert_allclose(closed[after_impact], found.peak_rotation[after_impact], rtol=1e-9)  # (4.13)
-    np.testing.assert_array_equal(np.isnan(closed), found.overturned)
-    np.testing.assert_allclose(cf.case_1_2_peak_by_pulse(a, omega, eta) * a, closed, rtol=1e-15)
-
-
 def test_peak_after_impact_is_nan_where_the_block_overturns_without_impact():
     """(4.13) and its leading term are valid below (3.10) only and are not negative there."""
     assert np.isnan(cf.case_1_2_peak(1 / 0.3, 2, 0.9))
@@ -59,6 +44,7 @@ def test_small_peak_formulas_are_the_leading_term():
     velocity_squared = 0.85**2 * cf.scale_function(a, omega)
     np.testing.assert_allclose(error, -velocity_squared / 4, rtol=0.1)  # the next term of the series
     np.testing.assert_allclose(cf.small_peak_by_pulse(a, omega, 0.85), cf.small_peak(a, omega, 0.85) / a)  # (4.15)
+    np.testing.assert_allclose(cf.case_1_2_peak_by_pulse(a, omega, 0.85), exact / a, rtol=1e-15)
 
 
 def test_scale_law_deviation_is_zero_for_the_leading_term():

@@ -1,6 +1,5 @@
 """Properties of the tree: one version, no paths of a machine, light imports, valid links, short files."""
 
-import ast
 import importlib.util
 import re
 import subprocess
@@ -122,14 +121,13 @@ def test_links_have_a_target(page: str) -> None:
             assert anchor in headings(path.read_text()), f"{page}: {link}"
 
 
-def test_modules_have_a_docstring() -> None:
-    modules = [name for name in TEXTS if name.startswith(("rocking/", "api/")) and name.endswith(".py")]
-    assert [name for name in modules if not ast.get_docstring(ast.parse(TEXTS[name]))] == []
-
-
-def test_ci_runs_make_test_only() -> None:
-    commands = [line for line in TEXTS[".ci/run"].splitlines() if line and not line.startswith("#")]
-    assert commands == ['cd "$(dirname "$0")/.." && exec make --no-print-directory test']
+def test_hosted_runs_call_targets_of_make() -> None:
+    targets = set(re.findall(r"^([a-z-]+):.*##", TEXTS["Makefile"], re.MULTILINE))
+    hosted = [text for name, text in TEXTS.items() if name.startswith(".github/workflows/")]
+    commands = [line for text in hosted for line in re.findall(r"^ +(?:- )?run: (.*)$", text, re.MULTILINE)]
+    assert {command.split()[1] for command in commands} == {"test", "test-all", "newest", "oldest", "wheel"} <= targets
+    assert all(command.startswith("make ") for command in commands)
+    assert TEXTS[".ci/run"].splitlines()[-1].endswith("exec make --no-print-directory test")
 
 
 def test_settings_are_for_files_that_exist() -> None:

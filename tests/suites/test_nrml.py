@@ -1,11 +1,7 @@
 """Fragility models in NRML 0.5, read with the rules of OpenQuake's reader."""
 
 import io
-import json
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -79,25 +75,6 @@ def test_lognormal_functions_are_the_fitted_curves(found, tmp_path):
     np.testing.assert_allclose(curves["overturns"](LEVELS / 9.80665), fit["fitted"], atol=1e-7)
     rocks = curves["rocks"](LEVELS / 9.80665)
     np.testing.assert_allclose(rocks, LEVELS / BLOCKS[0].uplift_acceleration > 1.0, atol=1e-9)
-
-
-@pytest.mark.skipif(find_spec("openquake") is None, reason="openquake.engine is not installed")
-@pytest.mark.parametrize("form", ["discrete", "lognormal"])
-def test_openquake_reads_the_same_functions(found, tmp_path, form):
-    """Its own reader, of openquake.engine 3.26.2; its geometry packages may be absent."""
-    write_nrml(found, tmp_path / "model.xml", format=form)
-    levels = [0.05, 0.3, 0.5, 2.0, 9.0]
-    command = [sys.executable, "-m", "tests.suites.openquake_reader", str(tmp_path / "model.xml"), *map(str, levels)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
-    theirs = json.loads(done.stdout.splitlines()[-1])
-    ours = {
-        f"{name} {state}": curve(np.array(levels))
-        for (name, _), curves in read(tmp_path / "model.xml").items()
-        for state, curve in curves.items()
-    }
-    assert theirs.keys() == ours.keys()
-    for name, expected in ours.items():
-        np.testing.assert_allclose(theirs[name], expected, atol=1e-9)
 
 
 def test_below_the_lowest_level_a_probability_is_not_cut_off(found, tmp_path):

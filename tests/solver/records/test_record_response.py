@@ -174,11 +174,7 @@ def test_responses_are_labelled() -> None:
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        ({"frequency_parameter": 0.0}, "frequency_parameter"),
         ({"frequency_parameter": 1e5}, "frequency_parameter"),
-        ({"slenderness": -1.0}, "slenderness"),
-        ({"restitution": 1.1}, "restitution"),
-        ({"alpha": 2.0}, "alpha"),
         ({"threads": 0}, "threads"),
         ({"slenderness": [0.1, 0.2], "restitution": [0.1, 0.2, 0.3]}, "shapes"),
     ],
