@@ -84,8 +84,20 @@ slurm: .venv/project ## make data sets through a Slurm cluster of one node and c
 # Besides these the plugin needs what is locked; it is not installed into .venv.
 SLURM_PLUGIN := snakemake-executor-plugin-slurm==2.8.0 snakemake-executor-plugin-slurm-jobstep==0.6.1
 
-mutants: .venv/project ## mutation test: change single operators and constants, run the tests; hours (COUNT=, SEED=)
-	python -m stress.mutations --count $(or $(COUNT),150) --seed $(or $(SEED),1)
+build/cosmic-ray/bin/cosmic-ray: | .venv/project
+	$(PYTHON) -m venv build/cosmic-ray && build/cosmic-ray/bin/pip install --quiet cosmic-ray
+
+build/mutants.sqlite: | build/cosmic-ray/bin/cosmic-ray
+	rm -rf build/mutants && git clone --quiet . build/mutants
+	cd build/mutants && PYTHONPATH=. python -m rocking.precompile
+	build/cosmic-ray/bin/cosmic-ray init stress/mutants.toml $@.all
+	python -m stress.mutants --session $@.all --count $(or $(COUNT),150) --seed $(or $(SEED),1)
+	mv $@.all $@
+
+mutants: build/mutants.sqlite ## mutation test of the last commit: change single operators and constants, run the tests; hours (COUNT=, SEED=)
+	git -C build/mutants checkout --quiet .
+	build/cosmic-ray/bin/cosmic-ray exec stress/mutants.toml $<
+	build/cosmic-ray/bin/cr-report --surviving-only --show-diff $<
 
 oldest: ## run the solver's tests with the lowest versions that pyproject.toml allows (PYTHON=3.12: another Python)
 newest: ## the same with the newest versions (PRERELEASE=allow: pre-releases, too)

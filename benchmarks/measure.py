@@ -8,12 +8,13 @@ import math
 import platform
 import sys
 import time
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 Name = TypeVar("Name", bound=Hashable)
@@ -91,6 +92,12 @@ def versions(*packages: str) -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
+
+
+def columns(rows: Iterable[Mapping[str, Any]], **titles: str) -> str:
+    """Format the columns of rows that have a title; None is written as "tightest"."""
+    found = pd.DataFrame(rows)[[*titles]]
+    return found.to_string(index=False, header=[*titles.values()], float_format="{:.4g}".format, na_rep="tightest")
 
 
 def save(record: dict[str, Any], path: Path) -> None:

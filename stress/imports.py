@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from rocking._base.source_tree import imported_names
+
 
 class ImportGraph:
     """The imports between the Python files of a tree.
@@ -58,21 +60,19 @@ class ImportGraph:
 def _public(root: Path, stub: Path) -> Iterator[tuple[str, str]]:
     """The names that a package loads lazily, and where they are defined."""
     package = ".".join(stub.parent.relative_to(root).parts)
-    for node in ast.walk(ast.parse(stub.read_bytes())):
-        if isinstance(node, ast.ImportFrom):
-            yield from ((f"{package}.{one.name}", f"{package}.{node.module}") for one in node.names if node.module)
+    for name, base, _ in imported_names(ast.parse(stub.read_bytes())):
+        if base:
+            yield f"{package}.{name}", f"{package}.{base}"
 
 
 def _names(tree: ast.Module) -> Iterator[str]:
     """The dotted names that a file imports, and those that it looks up in what it imports."""
-    bound = {}
+    imported: dict[str, str] = {}
     for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (one.name for one in node.names)
-            bound |= {one.asname or one.name: one.name for one in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            bound |= {one.asname or one.name: f"{node.module}.{one.name}" for one in node.names}
-    yield from bound.values()
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            base = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
+            imported |= {one.asname or one.name: base + one.name for one in node.names}
+    yield from imported.values()
     for node in ast.walk(tree):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in bound:
-            yield f"{bound[node.value.id]}.{node.attr}"
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in imported:
+            yield f"{imported[node.value.id]}.{node.attr}"

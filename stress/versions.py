@@ -5,8 +5,8 @@
 
 With `--processor` the other tree is compiled for other instructions, by the name that LLVM has for them.
 
-Cells are drawn in chunks, for all named pulses and a record in turn, slender and rigid (`stress.tree_worker`), and
-solved by a process of each tree. A comparison that was interrupted is continued by the same command. Reported for each
+Cells are drawn in chunks, for all named pulses and a record in turn, slender and rigid, and solved by a process of each
+tree (`benchmarks.checkouts`). A comparison that was interrupted is continued by the same command. Reported for each
 kind of cell:
 
 - peaks: the largest relative difference, and the largest over the effect of one rounding, 2^-53, of each input and of
@@ -19,8 +19,6 @@ kind of cell:
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import sys
 from collections.abc import Sequence
 from itertools import product
@@ -30,10 +28,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.checkout_worker import INPUTS
+from benchmarks.checkouts import Checkout
 from benchmarks.measure import arguments, progress, save
 from rocking._base.source_tree import PROJECT, SourceTree
 from rocking._excitation.pulses import PULSE_NAMES
-from stress.tree_worker import INPUTS, RESULT
 
 RECORD = PROJECT / "workflow/motions/napa_HNE.csv"
 
@@ -48,42 +47,6 @@ SMALL = 1e-10
 
 MAX_ULPS = 256
 """Largest change of the inputs, in units in the last place, that explains another outcome."""
-
-
-class Tree:
-    """A process that solves chunks with the package of a checkout."""
-
-    def __init__(self, root: Path, processor: str = "") -> None:
-        worker = Path(__file__).with_name("tree_worker.py")
-        environment = os.environ | {"PYTHONPATH": str(root), "OMP_NUM_THREADS": "1"}
-        environment |= {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""} if processor else {}
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", str(worker)], env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-        )
-
-    def close(self) -> None:
-        """End the process."""
-        self._process.communicate()
-
-    def start(self, chunk: dict[str, Any]) -> None:
-        """Let the process solve a chunk."""
-        assert self._process.stdin is not None
-        self._process.stdin.write(json.dumps(chunk).encode() + b"\n")
-        self._process.stdin.flush()
-
-    def result(self) -> tuple[NDArray[np.void], float]:
-        """The responses of the chunk that was started, and its processor time [s]."""
-        assert self._process.stdout is not None
-        about = json.loads(self._process.stdout.readline() or b"null")
-        if about is None:
-            sys.exit(f"a process has ended with status {self._process.wait()}")
-        content = self._process.stdout.read(about["cells"] * RESULT.itemsize)
-        return np.frombuffer(content, RESULT), float(about["seconds"])
-
-    def solve(self, chunk: dict[str, Any], cells: NDArray[np.intp], factors: NDArray[np.float64]) -> NDArray[np.void]:
-        """The responses of some cells of a chunk with inputs multiplied by factors (4,)."""
-        self.start(chunk | {"cells": cells.tolist(), "factors": factors.tolist()})
-        return self.result()[0]
 
 
 def kinds() -> list[dict[str, Any]]:
@@ -101,7 +64,7 @@ def same_events(one: NDArray[np.void], other: NDArray[np.void]) -> NDArray[np.bo
     return np.asarray((one["outcome"] == other["outcome"]) & (~counted | (one["impacts"] == other["impacts"])))
 
 
-def compare_chunk(chunk: dict[str, Any], trees: Sequence[Tree]) -> dict[str, Any]:
+def compare_chunk(chunk: dict[str, Any], trees: Sequence[Checkout]) -> dict[str, Any]:
     """Solve a chunk in both trees and compare the responses."""
     for tree in trees:
         tree.start(chunk)
@@ -130,7 +93,7 @@ def compare_chunk(chunk: dict[str, Any], trees: Sequence[Tree]) -> dict[str, Any
 
 
 def conditioning(
-    chunk: dict[str, Any], cells: NDArray[np.intp], found: NDArray[np.void], tree: Tree
+    chunk: dict[str, Any], cells: NDArray[np.intp], found: NDArray[np.void], tree: Checkout
 ) -> NDArray[np.float64]:
     """Sum over the inputs of the relative change of the peak over that of the input [-]; infinite at a boundary."""
     total = np.zeros(cells.size)
@@ -149,7 +112,7 @@ def ulps_that_explain(
     cells: NDArray[np.intp],
     here: NDArray[np.void],
     there: NDArray[np.void],
-    trees: Sequence[Tree],
+    trees: Sequence[Checkout],
 ) -> list[int | None]:
     """The change of the inputs, in ulps, with which each tree finds what the other has found; None above `MAX_ULPS`.
 
@@ -160,7 +123,7 @@ def ulps_that_explain(
 
 
 def ulps_to_find(
-    chunk: dict[str, Any], cells: NDArray[np.intp], wanted: NDArray[np.void], tree: Tree
+    chunk: dict[str, Any], cells: NDArray[np.intp], wanted: NDArray[np.void], tree: Checkout
 ) -> list[int | None]:
     """The change of the inputs, in ulps, with which a tree finds the wanted events; None above `MAX_ULPS`."""
     found: list[int | None] = [None] * cells.size
@@ -223,7 +186,7 @@ def main() -> None:
     if options.out.exists():
         former = json.loads(options.out.read_bytes())
         chunks = former["chunks"] if {name: former.get(name) for name in identity} == identity else []
-    trees, partial = [Tree(roots[0]), Tree(roots[1], options.processor)], options.out.with_suffix(".partial")
+    trees, partial = [Checkout(roots[0]), Checkout(roots[1], options.processor)], options.out.with_suffix(".partial")
     done = sum(chunk["cells"] for chunk in chunks)
     while done < options.cells:
         seed = [options.seed, len(chunks)]

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.measure import arguments, finish, progress
+from benchmarks.measure import arguments, columns, finish, progress
 from rocking._lookup.cube import Cube, Points, open_cube
 from rocking._solver.peak_response import peak_response
 
@@ -89,27 +89,12 @@ def measure(folder: Path, count: int, tolerance: float, seed: int) -> dict[str, 
     return record
 
 
-def row_text(row: dict[str, Any]) -> str:
-    """Format a row."""
-    return (
-        f"{row['pulse']:25}{row['tolerance']:<8.0e}{row['kind']:20}{row['share']:8.4f}"
-        f"{row['share_of_surviving']:9.4f}{row['share_with_impacts']:9.4f}{row['wrong_outcomes']:7.0f}{row['wrong_impacts']:9.0f}"
-        f"{row['wrong_exceeded_alpha']:7.0f}{row['bounds_broken']:8.0f}{row['largest_share_of_bound']:7.2f}"
-        f"{row['microseconds']:7.2f}"
-    )
-
-
 def table(record: dict[str, Any]) -> str:
     """Format all rows: errors in outcome, impacts, exceeded_alpha and bounds; largest share of a bound."""
-    titles = "".join(
-        f"{name:>{width}}"
-        for name, width in zip(
-            ("share", "survive", "counted", "outc.", "impacts", "alpha", "bounds", "used", "us"),
-            (8, 9, 9, 7, 9, 7, 8, 7, 7),
-            strict=True,
-        )
-    )
-    return "\n".join([f"{'':53}{titles}", *map(row_text, record["rows"])])
+    errors = {"wrong_outcomes": "outc.", "wrong_impacts": "impacts", "wrong_exceeded_alpha": "alpha"}
+    bounds = {"bounds_broken": "bounds", "largest_share_of_bound": "used", "microseconds": "us"}
+    shares = {"share": "share", "share_of_surviving": "survive", "share_with_impacts": "counted"}
+    return columns(record["rows"], pulse="", tolerance="", kind="", **shares, **errors, **bounds)
 
 
 def main() -> None:
@@ -121,7 +106,7 @@ def main() -> None:
         for tolerance in (1e-4, 1e-6):
             for kind, found in measure(folder, options.count, tolerance, options.seed).items():
                 rows.append({"pulse": folder.name, "tolerance": tolerance, "kind": kind} | found)
-                progress(row_text(rows[-1]))
+                progress(f"{folder.name}, {tolerance:.0e}, {kind}")
     finish({"rows": rows}, options.out, table)
 
 

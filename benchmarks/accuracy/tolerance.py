@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import rocking
-from benchmarks.measure import arguments, finish, progress, relative_error, versions
+from benchmarks.measure import accuracy, arguments, columns, finish, progress, relative_error, versions
 from benchmarks.tables import Table, read_table
 
 TOLERANCES = tuple(10.0**-k for k in range(4, 14))
@@ -38,35 +38,26 @@ def summary(cells: Table, found: NDArray[np.float64], tolerance: float | None) -
     error = relative_error(found, cells["peak_rotation"])
     allowed = EPS if tolerance is None else tolerance
     explained = allowed * np.maximum(cells["peak_rotation_per_ulp"] / EPS, 1.0)
-    return {
+    return accuracy(found, cells["peak_rotation"]) | {
         "tolerance": tolerance,
         "above": int(np.sum(error > allowed)),
         "above_tenfold": int(np.sum(error > 10.0 * allowed)),
         "above_and_unexplained": int(np.sum(error > explained)),
         "above_tenfold_and_unexplained": int(np.sum(error > 10.0 * explained)),
-        "wrong_outcomes": int(np.sum(np.isnan(found) != np.isnan(cells["peak_rotation"]))),
-        "median_error": float(np.nanmedian(error)),
-        "error_99": float(np.nanquantile(error, 0.99)),
-        "largest_error": float(np.nanmax(error)),
         "largest_over_explained": float(np.nanmax(error / explained)),
     }
 
 
 def table(record: dict[str, Any]) -> str:
     """Format the record as text."""
-    counts = ("above", "above_tenfold", "above_and_unexplained", "above_tenfold_and_unexplained", "wrong_outcomes")
-    errors = ("median_error", "error_99", "largest_error", "largest_over_explained")
-    titles = ("above", "10 x", "unexpl.", "10 x", "outcomes", "error", "99 %", "largest", "/ expl.")
-    lines = [f"{'tolerance':>10}" + "".join(f"{title:>9}" for title in titles)]
-    for row in record["tolerances"]:
-        tolerance = "tightest" if row["tolerance"] is None else f"{row['tolerance']:.0e}"
-        lines.append(
-            f"{tolerance:>10}"
-            + "".join(f"{row[key]:9d}" for key in counts)
-            + "".join(f"{row[key]:9.1e}" for key in errors)
-        )
-    lines.append(f"\n{record['cells']} cells, {record['surviving']} of them survive; tightest compared with {EPS:.1e}")
-    return "\n".join(lines)
+    above = {"above": "above", "above_tenfold": "10 x"}
+    unexplained = {"above_and_unexplained": "unexpl.", "above_tenfold_and_unexplained": "10 x"}
+    errors = {"wrong_outcomes": "outcomes", "median_error": "error", "error_99": "99 %", "largest_error": "largest"}
+    rows = columns(
+        record["tolerances"], tolerance="", **above, **unexplained, **errors, largest_over_explained="/ expl."
+    )
+    survive = f"{record['cells']} cells, {record['surviving']} of them survive"
+    return f"{rows}\n\n{survive}; tightest compared with {EPS:.1e}"
 
 
 def main() -> None:

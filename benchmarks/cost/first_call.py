@@ -16,6 +16,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from benchmarks.installation import build_wheel, copy_source, install
 from benchmarks.measure import arguments, finish, versions
 
@@ -89,13 +91,10 @@ def size(folder: Path) -> int:
 
 
 def table(found: dict[str, Any]) -> str:
-    """The measurements as text."""
-    names = [*found["seconds"]["cached"]]
-    lines = [f"{'kernels':10}" + "".join(f"{name:>13}" for name in names) + "   s"]
-    for state, times in found["seconds"].items():
-        lines.append(f"{state:10}" + "".join(f"{times[name]:13.4f}" for name in names))
-    sizes = {name: found[f"{name}_bytes"] for name in ("wheel", "packages", "kernels", "memory")}
-    return "\n".join([*lines, ", ".join(f"{name} {value / 1e6:.3g} MB" for name, value in sizes.items())])
+    """The measurements as text: times [s] with kernels compiled and cached, and sizes."""
+    times = pd.DataFrame(found["seconds"]).T.to_string(float_format="{:.4f}".format)
+    sizes = (f"{name} {found[f'{name}_bytes'] / 1e6:.3g} MB" for name in ("wheel", "packages", "kernels", "memory"))
+    return f"{times}\n{', '.join(sizes)}"
 
 
 def main() -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
@@ -190,9 +191,7 @@ def compare(suite: list[Record], kind: str, count: int) -> dict[str, float]:
 
 def table(found: dict[str, Any]) -> str:
     """Format the record as text."""
-    lines = [f"{'':32}" + "".join(f"{kind:>12}" for kind in ALPHA)]
-    lines += [f"{name:32}" + "".join(f"{found[kind][name]:12.4g}" for kind in ALPHA) for name in found["slender"]]
-    return "\n".join(lines)
+    return pd.DataFrame({kind: found[kind] for kind in ALPHA}).to_string(float_format="{:.4g}".format)
 
 
 def main() -> None:

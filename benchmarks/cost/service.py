@@ -24,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from benchmarks.measure import arguments, finish, progress, spread, versions
@@ -170,39 +171,30 @@ def main(command_line: list[str] | None = None) -> None:
     names = versions("rocking", "fastapi", "uvicorn", "uvloop", "httptools", "numpy")
     record: dict[str, Any] = {"versions": names, "workers": asked.workers, "points": []}
     with service(asked.results, asked.workers, point) as (one, start):
-        record |= {"start": start, "memory_at_first": one.memory()}
+        record |= {"start": start, "memory": {"at first": one.memory()}}
         for connections in asked.connections if shutil.which("wrk") else ():
             progress(f"{connections} connections")
             record["points"].append(load(one, point, connections, asked.seconds))
-        record["memory_after_points"] = one.memory()
+        record["memory"]["after points"] = one.memory()
         progress("batches")
         sizes = {"netcdf": asked.points, "json": asked.json_points}
         record["batches"] = batches(one, groups, sizes, asked.rounds)
         answer = json.loads(one.ask("/v1/response", as_json(groups, random_blocks(max(asked.json_points)))))
         record["share_by_data_sets"] = answer["source"].count("cube") / len(answer["source"])
-        record["memory_after_batches"] = one.memory()
+        record["memory"]["after batches"] = one.memory()
     finish(record, asked.out, table)
 
 
 def table(record: dict[str, Any]) -> str:
-    """All of it in lines."""
-    start = record["start"]
-    lines = [f"start       listens after {start['listens_s']:.2f} s, first answer {start['first_answer_s']:.2f} s"]
-    lines += [
-        f"{row['connections']:>3} connections  {row['per_second']:8.0f} requests/s   median {row['median_ms']:7.2f} ms "
-        f"  p99 {row['p99_ms']:7.2f} ms   processor {row['processor_ms']:.3f} ms a request   errors {row['errors']}"
-        for row in record["points"]
-    ]
-    lines += [
-        f"{row['form']:<7}{row['points']:>9} blocks  {row['seconds']['median']:8.4f} s "
-        f"({row['seconds']['smallest']:.4f} to {row['seconds']['largest']:.4f})"
-        for row in record["batches"]
-    ]
-    lines.append(f"by data sets {100 * record['share_by_data_sets']:.1f} %, the rest by the solver")
-    memory = [record[f"memory_{when}"] for when in ("at_first", "after_points", "after_batches")]
-    lines.append("memory      " + ", ".join(f"{m['now_MB']:.0f} MB" for m in memory) + " (first, points, batches)")
-    lines.append(f"at most     {memory[-1]['most_MB']:.0f} MB in one process")
-    return "\n".join(lines)
+    """All of it as tables."""
+    parts = {
+        "start": pd.DataFrame([record["start"]]),
+        "requests for one block": pd.DataFrame(record["points"]),
+        "batches": pd.json_normalize(record["batches"]),
+        "memory": pd.DataFrame(record["memory"]).T,
+    }
+    shown = [f"{title}\n{part.to_string(float_format='{:.4g}'.format)}" for title, part in parts.items()]
+    return "\n\n".join([*shown, f"by data sets {100 * record['share_by_data_sets']:.1f} %, the rest by the solver"])
 
 
 if __name__ == "__main__":

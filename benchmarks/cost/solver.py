@@ -8,49 +8,17 @@ for each of its points. Processor time of one thread; compilation is excluded.
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import pandas as pd
+
+from benchmarks.checkouts import Checkout
 from benchmarks.measure import arguments, finish, progress, spread, versions
 from rocking._excitation.pulses import PULSE_NAMES
 
 ROOT = Path(__file__).parents[2]
-
-WORKER = """
-import json, sys, time
-sys.meta_path = [one for one in sys.meta_path if "editable" not in str(one).lower()]
-sys.path.insert(0, sys.argv[1])
-import numpy as np
-import rocking
-assert rocking.__file__.startswith(sys.argv[1]), rocking.__file__
-grids = {}
-def cells(count, highest, order):
-    omega, slenderness = np.meshgrid(np.linspace(0.5, 12.0, count), np.linspace(0.02, highest, count))
-    omega, slenderness, eta = omega.ravel(), slenderness.ravel(), np.full(omega.size, 0.85)
-    if order == "random":
-        order = np.random.default_rng(0).permutation(omega.size)
-        omega, slenderness = omega[order], slenderness[order]
-    elif order == "eta":
-        eta = np.tile(np.linspace(0.5, 0.98, 32), omega.size)
-        omega, slenderness = np.repeat(omega, 32), np.repeat(slenderness, 32)
-    return dict(slenderness=slenderness, frequency_ratio=omega, restitution=eta)
-for line in sys.stdin:
-    pulse, alpha, *grid = json.loads(line)
-    key = tuple(grid)
-    if key not in grids:
-        grids[key] = cells(*grid)
-    begin = time.process_time()
-    rocking.peak_response(pulse, **grids[key], alpha=alpha, threads=1)
-    print((time.process_time() - begin) / grids[key]["slenderness"].size, flush=True)
-"""
-
-
-PIPES: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "cwd": "/"}
 
 
 class Case(NamedTuple):
@@ -87,49 +55,32 @@ def cases(scale: float) -> Iterator[Case]:
 
 def measure(folders: dict[str, Path], rounds: int, scale: float) -> list[dict[str, Any]]:
     """Return one row for each case: times of each checkout [ns], and their ratio where there are two."""
-    rows, command = [], (sys.executable, "-c", WORKER)
-    with ExitStack() as stack:
-        workers = {
-            name: stack.enter_context(subprocess.Popen([*command, str(folder.resolve())], **PIPES))
-            for name, folder in folders.items()
-        }
-        for case in cases(scale):
-            times: dict[str, list[float]] = {name: [] for name in folders}
-            for k in range(rounds + 1):
-                for name, worker in workers.items():
-                    assert worker.stdin is not None
-                    assert worker.stdout is not None
-                    worker.stdin.write(json.dumps(case) + "\n")
-                    worker.stdin.flush()
-                    found = float(worker.stdout.readline())
-                    if k > 0:  # the first call compiles
-                        times[name].append(1e9 * found)
-            rows.append({"case": case.label, **{name: spread(values) for name, values in times.items()}})
-            progress(row_text(rows[-1]))
-        for worker in workers.values():
-            assert worker.stdin is not None
-            worker.stdin.close()
+    rows = []
+    checkouts = {name: Checkout(folder.resolve()) for name, folder in folders.items()}
+    for case in cases(scale):
+        times: dict[str, list[float]] = {name: [] for name in folders}
+        for k in range(rounds + 1):
+            for name, checkout in checkouts.items():
+                checkout.start(case._asdict())
+                found, seconds = checkout.result()
+                if k > 0:  # the first call compiles
+                    times[name].append(1e9 * seconds / found.size)
+        rows.append({"case": case.label, **{name: spread(values) for name, values in times.items()}})
+        progress(case.label)
+    for checkout in checkouts.values():
+        checkout.close()
     return rows
-
-
-def row_text(row: dict[str, Any]) -> str:
-    """Format a row."""
-    here = row["here"]["median"]
-    text = f"{row['case']:54}{here:10.1f}"
-    if "baseline" in row:
-        before = row["baseline"]["median"]
-        smallest = row["baseline"]["smallest"] / row["here"]["smallest"]
-        text += f"{before:10.1f}{before / here:8.2f}{smallest:8.2f}"
-    return text
 
 
 def table(record: dict[str, Any]) -> str:
     """Format all rows as text: medians [ns], ratio of the medians and of the smallest times."""
-    rows = record["rows"]
-    head = f"{'ns a cell':54}{'here':>10}"
-    if rows and "baseline" in rows[0]:
-        head += f"{'baseline':>10}{'ratio':>8}{'of min':>8}"
-    return "\n".join([head, *map(row_text, rows)])
+    rows = pd.json_normalize(record["rows"])
+    found = pd.DataFrame({"ns a cell": rows["case"], "here": rows["here.median"]})
+    if "baseline.median" in rows:
+        found["baseline"] = rows["baseline.median"]
+        found["ratio"] = found["baseline"] / found["here"]
+        found["of min"] = rows["baseline.smallest"] / rows["here.smallest"]
+    return found.to_string(index=False, float_format="{:.2f}".format)
 
 
 def main() -> None:

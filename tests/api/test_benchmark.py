@@ -23,5 +23,5 @@ def test_the_benchmark_measures_a_worker(results, tmp_path):
         assert 0 < row["median_ms"] <= row["p99_ms"]
     assert [(one["form"], one["points"]) for one in record["batches"]] == [("netcdf", 2000), ("json", 500)]
     assert 0 < record["share_by_data_sets"] < 1
-    assert record["memory_after_batches"]["now_MB"] > 50
+    assert record["memory"]["after batches"]["now_MB"] > 50
     assert "the rest by the solver" in done.stdout

@@ -1,9 +1,9 @@
-"""Solves chunks of random cells with the package that PYTHONPATH gives; started by `stress.versions`, once for a tree.
+"""Solves chunks of cells with the package that PYTHONPATH gives; `benchmarks.checkouts` starts one for each checkout.
 
-It imports nothing of `stress/`, so that it runs with the package of any commit. A line of JSON on standard input
-describes a chunk, with the seed from which its cells are drawn; the answer on standard output is a line of JSON (number
-of cells, processor time [s]) and the records `RESULT` of the responses. A chunk may name some of its cells, and factors
-of their inputs: then only these are solved.
+It imports nothing of the checkout but the package, so that it runs with that of any commit. A line of JSON on standard
+input describes a chunk: a grid, or the seed from which its cells are drawn. The answer on standard output is a line of
+JSON (number of cells, processor time [s]) and the records `RESULT` of the responses. A chunk with a seed may name some
+of its cells, and factors of their inputs: then only these are solved.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections.abc import Callable
 from functools import lru_cache, partial
 from typing import Any
 
@@ -42,6 +43,19 @@ def draw(chunk: dict[str, Any]) -> list[Array]:
 
 
 @lru_cache
+def grid(count: int, highest: float, order: str) -> dict[str, Array]:
+    """The inputs of a square grid: in rows, in random order, or with 32 restitutions at each point."""
+    points = np.meshgrid(np.linspace(0.02, highest, count), np.linspace(0.5, 12.0, count), indexing="ij")
+    cells = [values.ravel() for values in (*points, np.full(points[0].shape, 0.85))]
+    if order == "random":
+        shuffled = np.random.default_rng(0).permutation(count**2)
+        cells = [values[shuffled] for values in cells]
+    elif order == "eta":
+        cells = [np.repeat(cells[0], 32), np.repeat(cells[1], 32), np.tile(np.linspace(0.5, 0.98, 32), count**2)]
+    return dict(zip(INPUTS, cells, strict=False))
+
+
+@lru_cache
 def read_motion(path: str) -> rocking.Record:
     """The record of a file."""
     return rocking.read_record(path)
@@ -49,6 +63,9 @@ def read_motion(path: str) -> rocking.Record:
 
 def solve(chunk: dict[str, Any]) -> tuple[NDArray[np.void], float]:
     """The responses of a chunk, array (cells,) of `RESULT`, and the processor time [s]."""
+    if "order" in chunk:
+        cells = grid(chunk["count"], chunk["highest"], chunk["order"])
+        return timed(partial(rocking.peak_response, chunk["pulse"], **cells, alpha=chunk["alpha"], threads=1))
     cells = draw(chunk)
     if "cells" in chunk:
         chosen = np.array(chunk["cells"], np.intp)
@@ -63,10 +80,15 @@ def solve(chunk: dict[str, Any]) -> tuple[NDArray[np.void], float]:
     else:
         call = partial(rocking.peak_response, chunk["pulse"], threads=1)
     call(**{name: values[: values.size // 50] for name, values in inputs.items()})  # compiled before the time is taken
+    return timed(partial(call, **inputs))
+
+
+def timed(call: Callable[[], rocking.Response]) -> tuple[NDArray[np.void], float]:
+    """What a call returns, and its processor time [s]."""
     started = time.process_time()
-    response = call(**inputs)
+    response = call()
     seconds = time.process_time() - started
-    found = np.empty(cells[0].size, RESULT)
+    found = np.empty(response.shape, RESULT)
     for name in RESULT.names or ():
         found[name] = getattr(response, name)
     return found, seconds
