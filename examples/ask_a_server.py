@@ -2,8 +2,8 @@
 Ask a server
 ============
 
-The HTTP service answers the same questions: ``rocking serve``, or ``make serve`` with the data sets. The
-client needs the standard library only.
+How do I ask a running service from a program? ``rocking serve`` starts a service, ``make serve`` one with the data
+sets. The client needs the standard library only.
 """
 
 import csv
@@ -44,7 +44,7 @@ with urlopen(request) as reply:
         print(row["outcome"], row["peak_rotation"])
 
 # %%
-# A wrong question is answered with the parameter, its value and what is allowed (RFC 9457).
+# The answer to a wrong question names the parameter, its value and what is allowed (RFC 9457).
 
 try:
     urlopen(f"{server}/v1/response?pulse=sine&slenderness=0.4&frequency_ratio=5&restitution=1.85")

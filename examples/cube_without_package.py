@@ -2,9 +2,9 @@
 A downloaded cube without this package
 ======================================
 
-The data sets are netCDF files with units, meanings and equation numbers. Any program that reads them can use
-them; here xarray and SciPy. Between the nodes the peak is interpolated where the file says that this is good,
-and where not, there is no number.
+Can I use the data sets in another program? They are netCDF files with units, meanings and equation numbers, which
+any program can read; here xarray and SciPy. Between the nodes the peak is interpolated where no corner of the cell
+overturns; elsewhere there is no number.
 """
 
 import os
@@ -27,8 +27,8 @@ node = cube.sel(alpha=0.0).sel(slenderness=0.4, frequency_ratio=5.0, method="nea
 print(meanings[int(node.outcome)], float(node.peak_rotation))
 
 # %%
-# Linear interpolation of one layer, refused in cells at whose corners a block overturns: their peak is
-# missing.
+# Linear interpolation of one layer. Where a block at a corner of the cell overturns, its peak is missing, and there is
+# no number.
 
 layer = cube.peak_rotation.sel(alpha=0.0)
 peak = RegularGridInterpolator(

@@ -2,7 +2,7 @@
 Does the block overturn?
 ========================
 
-A cabinet of 0.4 m by 1.6 m stands on the ground. A sine pulse of 0.45 g and 0.5 s arrives.
+A cabinet of 0.4 m by 1.6 m stands on the ground. Does a sine pulse of 0.45 g and 0.5 s overturn it?
 """
 
 import matplotlib.pyplot as plt
@@ -24,12 +24,12 @@ for warning in response.warnings:
     print("warning:", warning)
 
 # %%
-# The picture shows the response among those to all amplitudes of the same pulse.
+# The picture shows this response, and those to all other amplitudes of the same pulse.
 
 ax = rocking.plot.response(response)
 
 # %%
-# The motion in time: impacts are marked, and the time of the pulse is shaded.
+# The motion in time. Impacts are marked; the pulse acts in the shaded range.
 
 history = block.history("sine", peak_acceleration=0.45 * 9.80665, period=0.5)
 figure, axes = plt.subplots(2, 1, sharex=True, height_ratios=(2, 1), layout="constrained")

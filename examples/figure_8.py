@@ -3,8 +3,7 @@ Self-similar spectra from the data sets, with xarray alone
 ==========================================================
 
 Figure 8 of Dimitrakopoulos & DeJong (2012): the peak rotation of slender blocks against the frequency ratio,
-for several coefficients of restitution. The files need no package of their own: this example does not import
-``rocking``.
+for several coefficients of restitution. The example does not import ``rocking``: xarray reads the files.
 """
 
 import os

@@ -2,8 +2,8 @@
 Fragility under a suite of records
 ==================================
 
-The probability that a block overturns at an intensity, from five records scaled to the same peak
-acceleration. Five records are too few for a decision: the intervals say so.
+How probable is it that a block overturns at an intensity? The answer is from five records scaled to the same peak
+acceleration. Five records are too few for a decision, as the intervals show.
 """
 
 import os
@@ -24,8 +24,8 @@ print(f"median {float(curve.median_intensity):.2f} m/s2, dispersion {float(curve
 print("survive above their first overturning:", found.records_surviving_above_first.item())
 
 # %%
-# Every level is evaluated, because a record can spare at a higher level the block that it overturns at a
-# lower one. The dotted curve counts each record from its first overturning on, and is too low.
+# Every level is evaluated, because a block can survive a record at a higher level than one that overturns it. The
+# dotted curve counts each record from the first level at which it overturns the block, and is too low.
 
 rocking.plot.fragility(found)
 plt.show()

@@ -2,8 +2,8 @@
 The block from a measured free rocking
 ======================================
 
-A block is tilted by hand, released, and filmed at 60 frames a second. The trace gives its coefficient of
-restitution, slenderness angle and frequency parameter, with intervals of 95 %.
+What are the coefficient of restitution, the slenderness angle and the frequency parameter of a real block? Tilt it by
+hand, release it, and film it at 60 frames a second. The trace gives all three, with intervals of 95 %.
 """
 
 import matplotlib.pyplot as plt

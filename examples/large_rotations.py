@@ -2,8 +2,8 @@
 Large rotations
 ===============
 
-The slender limit replaces sines by angles. A block that is not slender, or that rotates beyond alpha and is
-brought back by the ground, follows the full equation of motion (2.2): pass the angle ``alpha``.
+The slender limit replaces sines by angles. For a block that is not slender, or that rotates beyond alpha and comes
+back, pass the angle ``alpha``: the block then follows the full equation of motion (2.2).
 """
 
 import matplotlib.pyplot as plt

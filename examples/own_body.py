@@ -2,8 +2,8 @@
 A body of your own
 ===================
 
-Any rigid body that rocks on two edges is a ``RigidBody``: where they are below its centre of mass, and its radius of
-gyration. Here a block with crushed corners, which turns about points inside its base.
+How does a block with crushed corners rock? It turns about points inside its base. Any rigid body that rocks on two
+edges is a ``RigidBody``: state where the edges are below its centre of mass, and its radius of gyration.
 """
 
 import matplotlib.pyplot as plt

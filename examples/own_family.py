@@ -2,8 +2,8 @@
 A family of pulses of your own
 ===============================
 
-A subclass of ``SmoothPulse`` gives any smooth function of the phase, in any unit; its parameters are fields. Responses
-are exact to rounding, as for the pulses of the catalogue. Here a decaying sine whose frequency grows.
+A subclass of ``SmoothPulse`` makes a pulse of any smooth function of the phase, in any unit; its parameters are fields.
+Responses are as accurate as for the pulses of the catalogue. Here: a decaying sine whose frequency grows.
 """
 
 import math

@@ -2,8 +2,8 @@
 A pulse of your own
 ====================
 
-A pulse is a sum of sinusoids on a window of phase, or a polynomial times a Gaussian. Every function takes it
-in place of a name. Here two and a half cycles of a sine in a sinusoidal envelope.
+A pulse of your own is a sum of sinusoids on a window of phase, or a polynomial times a Gaussian. Every function takes
+it in place of a name. Here: two and a half cycles of a sine in a sinusoidal envelope.
 """
 
 import math

@@ -1,9 +1,10 @@
 """
-How old is this rock's luck?
+A precariously balanced rock
 ============================
 
-From a scan and a hazard file to the probability that a rock has stood for its age, with a drawing of the rock, its two
-edges and its weakest direction. The scan and the hazard are made up, so that the example runs alone.
+How probable is it that a rock has survived for its age? From a scan and a hazard file to the probability, with a
+drawing of the rock, its two edges and its weakest direction. The scan and the hazard are made up, so that the example
+runs alone.
 """
 
 # %%
@@ -38,8 +39,8 @@ weakest = luck.to_series().idxmin()
 print(luck.to_series())
 
 # %%
-# The rock from the side in its weakest direction, with its centre of mass, the two edges about which it rocks and their
-# slenderness angles; and from above, its footprint and the survival in every direction of the ground motion:
+# Left: the rock from the side in its weakest direction, with its centre of mass, the two edges about which it rocks and
+# their slenderness angles. Right: its footprint from above, and the survival in every direction of the ground motion.
 plane, angle = rock.planes[weakest], float(weakest.removesuffix(" deg"))
 figure, (side, above) = plt.subplots(1, 2, figsize=(7.0, 3.6), layout="constrained")
 x, y = rock.outline(weakest).T

@@ -2,8 +2,8 @@
 A recorded ground motion
 ========================
 
-A component of the South Napa earthquake of 2014 under a stele of 0.5 m by 2 m. ``read_record`` reads PEER
-AT2, ESM, K-NET and columns of numbers.
+Does a component of the South Napa earthquake of 2014 overturn a stele of 0.5 m by 2 m? ``read_record`` reads PEER
+AT2, ESM, K-NET, columns of numbers and other formats.
 """
 
 import os
@@ -23,8 +23,8 @@ for warning in response.warnings:
     print("warning:", warning)
 
 # %%
-# The outcome is not monotone in the scale of the record: between two scales at which the block overturns
-# there can be some at which it survives.
+# The outcome is not monotone in the scale of the record: between two scales at which the block overturns there can be
+# scales at which it survives.
 
 scales = response.thresholds
 print(f"{len(scales)} changes of the outcome up to {scales.searched[1]:.2f} times the record, the first of them:")
@@ -41,7 +41,7 @@ rocking.plot.ground_acceleration(history, axes[1], linewidth=0.6)
 plt.show()
 
 # %%
-# Many blocks under one record: arguments broadcast as those of numpy.
+# Many blocks under one record: arguments broadcast as in numpy.
 
 heights = np.linspace(1.0, 6.0, 200)  # m
 blocks = [rocking.Block(width=0.3 * height, height=height) for height in heights]

@@ -2,8 +2,8 @@
 Rocking spectrum of a block
 ===========================
 
-The peak rotation of one block under pulses of one amplitude, against the period of the pulse. A longer pulse
-of the same amplitude rotates the block further, until it overturns.
+How far does a block rotate under pulses of one amplitude and different periods? A longer pulse of the same amplitude
+rotates the block further, until it overturns.
 """
 
 import matplotlib.pyplot as plt
@@ -24,6 +24,6 @@ axes[1].set_ylabel("")
 plt.show()
 
 # %%
-# The data set holds the outcome and the displacement of the top as well.
+# The spectrum also holds the outcome and the displacement of the top.
 
 print(spectrum[["rotation", "top_displacement", "outcome"]].sel(period=0.8, method="nearest"))
