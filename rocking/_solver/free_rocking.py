@@ -33,11 +33,12 @@ def release(z: float, w: float, alpha: float) -> tuple[bool, float, float]:
         x, squared = slender_energy(z, w)
     else:
         x = 2.0 * math.sin(0.5 * alpha * (1.0 - z)) / alpha
+        # X(0)^2 - X(z)^2 as a product: for small z the difference of the squares would lose its digits
         climbed = 4.0 * math.sin(0.5 * alpha * z) * math.sin(0.5 * alpha * (2.0 - z)) / (alpha * alpha)
         squared = w * w + climbed if x > 0.0 else barrier * barrier - (x - w) * (x + w)
     if w >= x:  # (3.8): B >= 0
         return True, math.inf, math.inf
-    if w > 0.0:  # z increases first
+    if w > 0.0:  # z increases first, to where the velocity is used up: X(z)^2 = X^2 - w^2
         return False, highest_rotation(squared, math.sqrt((x - w) * (x + w)), barrier, alpha), squared
     return False, z, squared
 

@@ -86,11 +86,13 @@ def expand_polynomials(steps: Record) -> None:
     x = (phase - gather(steps.middles, places)) * inverse
     for k in range(DEGREE + 1):
         store(f, k, gather(steps.coefficients[k], places))
+    # synthetic division by x, DEGREE times: the coefficients about x
     for first in range(DEGREE):
         carried = load(f, DEGREE)
         for k in range(1, DEGREE + 1 - first):
             carried = load(f, DEGREE - k) + x * carried
             store(f, DEGREE - k, carried)
+    # from powers of the piece's variable to powers of tau; the polynomial ends, so do its coefficients
     rate, power = omega * inverse, load(steps.strength, 0)
     for n in range(DEGREE + 1):
         store(f, n, power * load(f, n))

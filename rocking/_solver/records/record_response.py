@@ -50,10 +50,10 @@ def record_response(
     stop: StopFlag | None = None,
     body: Any = None,
 ) -> Response:
-    """`rocking.peak_response` under a record, whose arguments and errors it has, for arguments that are not labelled.
+    """`rocking.peak_response` under a record, for arguments without labels; `body` as of `Response`.
 
     "pulse" in the descriptions of the fields stands for the motion. Impacts are counted until the outcome and the peak
-    are certain. `body` as of `Response`.
+    are certain.
     """
     cores = AVAILABLE_CORES if threads is None else integer("threads", threads, 1, math.inf)
     given = {
@@ -93,9 +93,7 @@ def record_cells(
 
 
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
-    """The groups of a response under a record by name, as `check_groups`, beside it frequency parameter and factor.
-
-    The factor of the vertical component is 0 for a record without one.
+    """The checked groups of a response under a record by name; the vertical factor is 0 without such a component.
 
     Raises `InvalidArgumentError` if `motion` is not a record, or a value is out of range.
     """
@@ -117,9 +115,7 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
 def solve_pulse(
     pulse: AbstractPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
-    """Response records (size,) of blocks under a sampled pulse; `cells` and errors as for `solve_cells` of
-    `peak_response`.
-    """
+    """Response records (size,) of blocks under a sampled pulse; arguments as for `peak_response.solve_cells`."""
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
     return solve_bodies_under_pulse(pulse, block_cells(omega, slenderness, eta, alpha), threads, stop)[0]
@@ -141,7 +137,7 @@ def solve_bodies_under_pulse(
 def _each_kind(
     kinds: NDArray[np.int64], solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]], each_side: bool
 ) -> tuple[NDArray[np.void], Array]:
-    """The result of `solve_bodies` for cells of several kinds (size,), those of each kind solved together."""
+    """The result of `solve_bodies` for cells of several kinds (size,): `solve` takes the cells of one kind together."""
     records, edges = np.empty(kinds.size, RESPONSE_RECORD), np.empty((kinds.size if each_side else 0, EDGE_COLUMNS))
     for kind in np.unique(kinds):
         own = kinds == kind
