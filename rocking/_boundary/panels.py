@@ -208,13 +208,13 @@ def _distance_to_end(column: Column, side: int) -> float:
     the one is chosen that fits the widths on the last three columns; if two are known only, the square root where the
     regions on both sides are equal. `side` is 0 if the end lies to the right.
     """
-    secant, step, curvature, span = column.trends[side].T.tolist()
+    secant, step, curvature, span = column.trends[side].T.tolist()  # of the two curves that bound the region
     least = float(column.least_width(np.array([0]))[0])
     width = float(column.below[1] - column.above[0])
     narrowing = (secant[0] - secant[1]) * (1.0 - 2.0 * side)
     if not (narrowing > 0.0 and width > least):
         return math.nan
-    before = width + narrowing * step[0]  # one chord away
+    before = width + narrowing * step[0]  # the width one chord away
     of_squares = (before**2 - width**2) / step[0]
     further = span[0] - step[0]
     first = before + further * (narrowing - 0.5 * span[0] * (curvature[0] - curvature[1]))  # two chords away
