@@ -135,15 +135,7 @@ _NAMES["kg"] |= dict.fromkeys(("gram", "grams", "gramme", "grammes", "gramm"), "
 
 
 def unit_name(text: str, unit: str) -> str | None:
-    """The name in `UNITS` of a unit that a text names; None if it names none of this quantity.
-
-    Parameters
-    ----------
-    text : str
-        Such as "cm", "M/S^2", "m s-2".
-    unit : str
-        SI unit of the quantity, a key of `UNITS`.
-    """
+    """The name in `UNITS` of a unit such as "M/S^2"; None if it is none of the quantity with the SI unit `unit`."""
     return _NAMES[unit].get(_plain(text)) if len(text) <= MAX_LENGTH else None
 
 

@@ -162,8 +162,7 @@ class PolygonProperties:
 
 
 def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
-    """Mass properties of an outline, by Green's theorem; `vertices` (vertices, 2) are corners x, y [m] in order, y
-    upwards.
+    """Mass properties of an outline by Green's theorem, from its corners (vertices, 2): x, y [m] in order, y upwards.
 
     At least three, either way round; the outline is closed by the first one and does not cross itself. Raises
     `InvalidArgumentError` if the vertices are not so, enclose no area, or do not stand: the base is the part of the

@@ -48,13 +48,7 @@ class StopFlag:
         return bool(self.array[0])
 
     def check(self) -> None:
-        """Raise if the flag is set.
-
-        Raises
-        ------
-        StoppedError
-            If the flag is set.
-        """
+        """Raise `StoppedError` if the flag is set."""
         if self.array[0]:
             raise StoppedError("the work was cancelled")
 
