@@ -5,7 +5,7 @@ report the same errors. Physical outcomes such as overturning are results and ra
 
 What the checks share is said here. `parameter` is the name of the argument in the message. A `value` is a number, an
 array of any shape, a quantity of a library (pint, astropy) or a text with a unit such as "40 cm", also in lists and
-arrays. Numbers without a unit are in `unit`, which is that of the result. Boolean, complex, date and other text values,
+arrays. Numbers without a unit are in `unit`, the unit of the result. Boolean, complex, date and other text values,
 which numpy would convert, are rejected, and so are masked entries. The range goes from `low` to `high`, which may be
 infinite; `closed` says which ends belong to it: "both", "left", "right" or "neither". Each check raises
 `InvalidArgumentError` with the first entry that fails, and its index.
@@ -30,8 +30,7 @@ from rocking._base.units import EXAMPLES, UNITS, USUAL, WithUnit, split_quantity
 
 _MAX_FLOAT = sys.float_info.max
 
-MAX_TEXT = 300
-"""Longest text of a value in a message [characters]."""
+MAX_TEXT = 300  # longest text of a value in a message [characters]
 
 
 class RockingError(Exception):
@@ -230,8 +229,7 @@ def float_array(
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
 
 
-_PLAIN_TYPES = {float, int, np.float64, bytes, bool, NoneType}
-"""Types without a unit."""
+_PLAIN_TYPES = {float, int, np.float64, bytes, bool, NoneType}  # types without a unit
 
 
 def _without_unit(parameter: str, value: Any, unit: str) -> Any:

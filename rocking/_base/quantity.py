@@ -84,7 +84,7 @@ class Quantity:
         return in_range(self.name, value, self.lower, self.upper, closed=self.closed, unit=self.unit)
 
     def number(self, value: Values, name: str = "") -> float:
-        """As `convert`, for one number; `name` is that of the error message, where it is another."""
+        """As `convert`, for one number; `name`: in the error message, where it is another."""
         if type(value) is float and self.lower < value < self.upper:  # all that is left to do for most
             return value
         from rocking._base.errors import number  # noqa: PLC0415

@@ -115,7 +115,7 @@ def _absolute_names(path: Path, syntax: ast.Module) -> Iterable[tuple[str, str]]
 
 
 def _module_files(name: str, attribute_of: str, root: Path) -> Iterable[Path]:
-    """Files of a dotted name; if it is not a module, those of the module that has it as an attribute."""
+    """Files of a dotted name; if it is not a module, the files of the module that has it as an attribute."""
     place = root.joinpath(*name.split("."))
     module = place.with_suffix(".py") if place.name else place
     initial = place / "__init__.py"

@@ -25,8 +25,7 @@ class WithUnit(Protocol):
 
 Scalar = float | str | WithUnit
 """A number in the SI unit, a text such as "40 cm", or a quantity."""
-Values = ArrayLike | WithUnit
-"""The same, or an array."""
+Values = ArrayLike | WithUnit  # the same, or an array
 
 UNITS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048},
@@ -81,8 +80,7 @@ USUAL = {
 }
 """The units that an error proposes where there is none."""
 
-MAX_LENGTH = 64
-"""Longest text that is read as a quantity or a unit [characters]."""
+MAX_LENGTH = 64  # longest text that is read as a quantity or a unit [characters]
 
 _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "m": ("metre", "metres", "meter", "meters"),
@@ -120,8 +118,7 @@ def _forms(name: str) -> tuple[str, ...]:
     return (name, f"{length}s-1") if time == "s" else (name, *_OTHER_NAMES.get(name, ()))
 
 
-_SIGNS = str.maketrans("¹²⁻−", "12--")
-"""Signs of powers, and the minus sign of mathematics."""
+_SIGNS = str.maketrans("¹²⁻−", "12--")  # signs of powers, and the minus sign of mathematics
 
 
 def _plain(text: str) -> str:

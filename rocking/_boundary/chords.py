@@ -8,15 +8,15 @@ from rocking._boundary.columns import THINNEST, Index
 from rocking._boundary.search import ELASTIC_RESOLUTION, RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
 SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
-"""Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the
-distance at which it may lie [-]."""
+"""Where a region is looked for at the middle of a chord: near it, then further away, as shares of the distance at
+which it may lie [-]."""
 
-WIDENINGS = 4  # times that the distance at which the two sides of a curve are looked for is widened [-]
+WIDENINGS = 4  # times that the bracket of a curve is widened [-]
 
 SURE = 0.5
-"""Share of the largest distance below which it is not measured where the chords on both sides agree on it [-]."""
+"""A distance below this share of the largest one is not measured if the chords on both sides agree on it [-]."""
 
-FINE = 0.02  # share of the largest distance to which a distance near it is measured [-]
+FINE = 0.02  # accuracy of a measured distance, as a share of the largest one [-]
 HALVINGS = 12  # times that a chord is halved at most [-]
 
 

@@ -23,13 +23,13 @@ KNOWN, UNKNOWN, SINGLE = 0.02, 0.03, 0.5
 """Cost of a threshold without partner, per step in log omega, if the slope of its curve is known or not, and if both
 columns have one threshold of its kind only [-]."""
 
-NEAR = 0.3  # share of the distance to the next threshold up to which two thresholds can belong to one curve only [-]
+NEAR = 0.3  # two thresholds this share of the distance to the next one apart can belong to one curve only [-]
 
 PAIR, LEFT_ALONE, RIGHT_ALONE = range(3)
 """What the next thresholds of two columns do: they belong to one curve, or one of them has no partner."""
 
 STRAIGHT = 0.05
-"""Difference of the slopes of two chords up to which they belong to one curve, the regions being equal [-]."""
+"""Two chords between equal regions belong to one curve if their slopes differ by less than this [-]."""
 
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
@@ -77,7 +77,7 @@ def _interpolate(at: float, x: FloatArray, y: FloatArray) -> Any:
 
 @array_kernel
 def _filled(x: FloatArray, slopes: FloatArray) -> FloatArray:
-    """Slopes, the unknown ones interpolated between those of the curves beside them."""
+    """Slopes; unknown ones are interpolated between the curves beside them."""
     known = ~np.isnan(slopes)
     if not known.any() or known.all():
         return slopes
@@ -139,7 +139,7 @@ def match_trends(
     of all of them, from the last thresholds to the first.
 
     `x` (n,), `y` (m,): 1/a of the thresholds of the left and the right column, ascending; `codes` (n + 1,),
-    `other_codes` (m + 1,): region codes, `many` that of many impacts; `trends` (n, 4), `other_trends` (m, 4): from the
+    `other_codes` (m + 1,): region codes, `many` for many impacts; `trends` (n, 4), `other_trends` (m, 4): from the
     left, and from the right; `step`: distance of the columns in log omega [-].
     """
     kinds, others = _kinds(codes), _kinds(other_codes)

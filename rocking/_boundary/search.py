@@ -47,10 +47,10 @@ restitutions of 0.99 and more take over 5 s, since each of thousands of counts i
 UNCOUNTED = -1  # region code of overturning whose impacts are not counted, and the `impacts` of its curves
 
 LARGE_MARGIN = 10.0
-"""Margin beyond which its logarithm counts where points are interpolated [-].
+"""A larger margin counts by its logarithm where points are interpolated [-].
 
 On the brackets of the cosine at 0 and 20 degrees the mean number of points differs by less than 5 % from 3 to 30, and
-from that without the logarithm, with which fewer brackets take more than 25 points: 8 in place of 10 %.
+and from the mean without the logarithm; with it 8 % of the brackets take more than 25 points, without it 10 %.
 """
 
 Floats = NDArray[np.float64]

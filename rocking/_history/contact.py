@@ -56,8 +56,7 @@ ATTRIBUTES = (
 )
 """Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
-FORCES = (*ATTRIBUTES, "friction_time", "normal_time")
-"""Fields of `ContactExtremes` that depend on the contact forces."""
+FORCES = (*ATTRIBUTES, "friction_time", "normal_time")  # fields of `ContactExtremes` that depend on the contact forces
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ class ContactExtremes:
     outcome: Outcome  # final outcome of the motion
 
     def without_forces(self) -> ContactExtremes:
-        """The same without the forces, for structures of which only the motion is known."""
+        """The same without the forces, where only the motion of a structure is known."""
         unknown = dict.fromkeys(FORCES, math.nan)
         return replace(self, **unknown)  # type: ignore[arg-type]
 
@@ -182,7 +181,7 @@ def reactions_of(
     """
     ground, vertical = motion.ground_acceleration(tau), 1.0 + motion.vertical_acceleration(tau)
     geometry = motion.contact_geometry
-    # the edge in contact: that of the stretch between two impacts; of the velocity where the stretch has no rotation
+    # the edge in contact: one for each stretch between two impacts; by the velocity where a stretch has no rotation
     leaning = _sides_between(impact_times, tau, rotation)[np.searchsorted(impact_times, tau, side="right")]
     side = np.where(leaning != 0.0, leaning, np.sign(velocity))
     still = (rotation == 0.0) & (velocity == 0.0)
@@ -321,7 +320,7 @@ def _until_last_crossing_of_alpha(motion: BodyMotion, tau: Floats, rotation: Flo
 
 
 def _refined_maximum(measure: Callable[[Floats], Floats], tau: Floats, values: Floats) -> tuple[float, float]:
-    """Time and value of the maximum of a function, of which these are values, refined around the largest of them."""
+    """Time and value of the maximum of a function, refined around the largest of its `values` at times `tau`."""
     k = int(values.argmax())
     for _ in range(3):
         tau = np.union1d(np.linspace(tau[max(k - 1, 0)], tau[min(k + 1, tau.size - 1)], 33), tau[k])

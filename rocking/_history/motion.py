@@ -248,7 +248,7 @@ class PulseMotion(BodyMotion):
         impact_times[:written] = (impacts["next_phase"][:written] - self.pulse.start) / self.frequency_ratio
         if self.alpha == 0.0:
             self._set_response(record)
-            at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
+            at_rest = history[TAU] <= record["uplift_time"]  # the flights have another one by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
         if self._flag[0]:
             check_stop(self.stop)

@@ -26,7 +26,7 @@ MAX_SAMPLES = 1_000_000  # largest number of uniform samples of a history
 DEFAULT_SAMPLES = 400  # uniform samples of a history under a pulse
 
 MIN_CONTINUED = 10_000
-"""Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""
+"""So many samples after the end of a motion keep its step [-], even if the motion has fewer."""
 
 
 def time_history(

@@ -34,7 +34,7 @@ class Edge:
     restitution: Array
     # R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion [-]
     inertia_ratio: Array
-    # whether by a wall; its other values are then those of the other edge
+    # whether a wall blocks it; its other values are then equal to the other edge's
     blocked: bool | NDArray[np.bool_] = False
 
     @property

@@ -36,7 +36,7 @@ def check_window(
 ) -> tuple[float, float]:
     """The ends of a window of a parameter, low < high, in its range.
 
-    `names` are those of the error message; by default that of the parameter with the endings `_min` and `_max`.
+    `names`: for the error message; by default the name of the parameter with the endings `_min` and `_max`.
     """
     first, last = names or (f"{parameter.name}_min", f"{parameter.name}_max")
     lower = parameter.number(low, first)

@@ -22,8 +22,7 @@ latencies of two units of eight overlap, which saves a tenth to a fifth of the t
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
-FLOAT_LANES = 2 * LANES
-"""Single-precision numbers of a vector, which is as long."""
+FLOAT_LANES = 2 * LANES  # single-precision numbers of a vector, which is as long
 
 _LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _LLVM_FLOATS = ir.VectorType(ir.FloatType(), FLOAT_LANES)

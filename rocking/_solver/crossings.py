@@ -52,7 +52,7 @@ def refine_crossings(
 def find_crossings(below: float, above: float, flight: Record) -> None:
     """Set `crossing_phase` to the phases at which f = -`below` and f = `above` on the pieces that contain them.
 
-    The crossing with sgn(f) opposite to f' on a piece precedes the other one. The first guess is that of a cosine
+    The crossing with sgn(f) opposite to f' on a piece precedes the other one. The first guess is a cosine
     between the ends of the piece.
     """
     for row in range((2 * flight.pieces + LANES - 1) // LANES):

@@ -3,7 +3,7 @@
 With z = |theta|/alpha and w = dz/dtau let X(z) = (2/alpha) sin(alpha (1 - z)/2), which is 1 - z in the slender limit.
 (2.2) without ground motion conserves X^2 - w^2 between impacts, with the barrier at X = 0 (theta = alpha). The block
 escapes when w >= X, which is (3.8) in the slender limit; otherwise it returns. `rocking._solver.rules.final_outcome`
-says which impacts after the motion can matter. The functions are those of a block in its own time p t and angle alpha;
+says which impacts after the motion can matter. The functions hold for a block in its own time p t and angle alpha;
 edges that differ are scaled by the caller.
 """
 

@@ -49,7 +49,7 @@ TRUNCATION_FRACTION = 1e-4
 """Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
 
 NEAR_BOUNDARY_MARGIN = 1e-3
-"""Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
+"""A block with a smaller outcome margin [-] is solved again at full precision, whatever the tolerance."""
 
 
 NO_EDGES = np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges

@@ -35,7 +35,7 @@ from rocking._solver.free_rocking import barrier_of, highest_rotation, release
 from rocking._solver.state import set_empty_response
 
 IMPACT_LIMIT = 200_000
-"""Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
+"""After so many impacts a block that neither rests nor overturns is set to rest and flagged as chatter."""
 
 MODES_PER_UPLIFT = 65536  # number of peak modes reserved for the motion between two uplifts from rest
 MAX_UPLIFT_MODE = 32_767  # largest number of uplifts that the mode of a peak counts: it is an int32
@@ -104,7 +104,7 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
     """Take a peak z into the response if it is the largest so far; `impacts`: before it, `free`: 1 in free rocking."""
     if z <= state.side_peak[side]:
         return
-    peak = z / state.ratio[side]  # over the angle of the edge itself, z is over that of the right edge
+    peak = z / state.ratio[side]  # over the angle of the edge itself; z is over the angle of the right edge
     # of two peaks that differ by rounding the earlier one gives the mode, which would else depend on the last digit
     if peak > state.peak_rotation * (1.0 + 1e-12):
         uplifts = min(state.uplifts, MAX_UPLIFT_MODE)
@@ -117,7 +117,7 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
 def count_impact(state: Record, time: float, w: float) -> float:
     """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it.
 
-    sgn(theta) after it is `state.turn` times that before.
+    It multiplies sgn(theta) by `state.turn`.
     """
     if state.impacts == 0:
         state.first_impact_time, state.first_impact_velocity = time, state.sign * w

@@ -140,11 +140,11 @@ FLIGHT_STATE = _flight_layout()  # layout of the record of an excitation and a c
 
 FOLLOWED_FLIGHT = np.dtype(
     [
-        ("phase", np.float64),  # fields of `FLIGHT_STATE`: those of the start,
+        ("phase", np.float64),  # fields of `FLIGHT_STATE`: at the start,
         ("w0", np.float64),
         ("sign", np.float64),
         ("starts_at_uplift", np.int64),
-        ("length", np.float64),  # and of the end
+        ("length", np.float64),  # and at the end
         ("next_phase", np.float64),
     ]
 )
@@ -188,7 +188,7 @@ STEP_FIELDS = [
     ("second_derivative_bound", np.float64, _LANES),  # bound of |w''| on it
     ("taken", np.int64, _LANES),  # number of steps of the flight
 ]
-"""Fields of `LANES` Taylor steps under any motion; `ACCURACY_FIELDS` follow after those of one kind of motion."""
+"""Fields of `LANES` Taylor steps under any motion; the fields of one kind of motion, then `ACCURACY_FIELDS` follow."""
 
 ACCURACY_FIELDS = [
     ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`

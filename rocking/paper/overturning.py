@@ -91,8 +91,8 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
     """Amplitude at which the first impact coincides with the end of the pulse, the curve of (3.31).
 
     a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact is after the pulse (case 1.2, up to
-    `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and that of
-    case 2 agree in all printed digits.
+    `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 it agrees with the
+    curve of case 2 in all printed digits.
     """
     omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)

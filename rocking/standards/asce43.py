@@ -31,8 +31,7 @@ from rocking.standards.arguments import checked, checked_body, checked_number
 
 Array = NDArray[np.float64]
 
-ANGLES = 400
-"""Angles between 1e-4 alpha and alpha at which spectrum and capacity are compared, in equal ratios [-]."""
+ANGLES = 400  # angles between 1e-4 alpha and alpha at which spectrum and capacity are compared, in equal ratios [-]
 
 FREQUENCIES = 0.02, 100.0, 800
 """Lowest and highest frequency [Hz] at which the sliding coefficient is looked for, and their number [-]."""

@@ -24,8 +24,7 @@ from rocking.standards.static import west_acceleration
 
 Array = NDArray[np.float64]
 
-CAPACITY = 0.4
-"""d_u over d_0, and d_s over d_u [-]."""
+CAPACITY = 0.4  # d_u over d_0, and d_s over d_u [-]
 
 
 def circolare2009_activation(

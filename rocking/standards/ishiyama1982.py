@@ -19,8 +19,7 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking.standards.arguments import checked, checked_body
 from rocking.standards.static import west_acceleration
 
-SHARE = 0.4
-"""Of the velocity that overturns a body when the ground stops at once: the lower bound of observed ones [-]."""
+SHARE = 0.4  # of the velocity that overturns a body when the ground stops at once: the lower bound of observed ones [-]
 
 
 def ishiyama_velocity(

@@ -39,7 +39,7 @@ def fill_polynomials(record: Record, series: PolynomialSeries) -> None:
 
 @kernel
 def locate_pieces(pulse: Record, phases: FloatArray) -> None:
-    """Set `places` to the pieces that hold phases (LANES,), from those of the last call, which are near."""
+    """Set `places` to the pieces that hold phases (LANES,): the search starts at the pieces of the last call."""
     places, ends, last = pulse.places, pulse.ends, pulse.polynomials - 1
     for lane in range(LANES):
         phase, place = phases[lane], places[lane]

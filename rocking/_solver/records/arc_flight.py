@@ -59,7 +59,7 @@ def flight_by_arcs(block: Record, samples: FloatArray) -> tuple[int, int, float,
     if impact >= 0.0:
         return IMPACT, k, impact, z, w
     k += 1
-    # from here on whole intervals, of which nearly all hold no event
+    # from here on whole intervals; nearly all hold no event
     known = max(block.peak_rotation, block.largest_z)
     equidistant = block.equidistant == 1
     cosh1, sinh, above = hyperbolic(h)

@@ -31,7 +31,7 @@ MAX_INTERVAL = 50.0
 """Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
 
 MAX_DIVIDED = 200_000
-"""Most intervals into which the samples of a pulse are divided where they are longer than `MAX_INTERVAL`."""
+"""Most intervals of a pulse after those longer than `MAX_INTERVAL` are divided [-]."""
 
 MIN_CHUNK, MAX_CHUNK = 64, 512
 """Cells given to a thread at a time: at least a millisecond of work, with full SIMD lanes for most of it; more in
@@ -106,7 +106,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
 
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
-    """Smallest and largest frequency parameter p of a block under this record, which is checked to be one [rad/s]."""
+    """Smallest and largest frequency parameter p of a block under a record [rad/s]; an error if it is no record."""
     if not isinstance(motion, Record):
         raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
@@ -166,7 +166,7 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
             "frequency_ratio", lowest, f"at least {least:.3g} for this pulse of {phases.size} samples"
         )
     needed = np.log2(np.maximum(longest / (MAX_INTERVAL * frequency_ratio), 1.0))
-    # powers of two, so that an array needs few divisions; each is the cell's own, not that of the lowest ratio
+    # powers of two, so that an array needs few divisions; each cell has its own, whatever the others need
     return np.left_shift(1, np.ceil(needed).astype(np.int64)).clip(max=most)
 
 
@@ -176,12 +176,12 @@ def solve_bodies(
     """Response records (size,) of bodies `BODY_CELL` (size,) under `sample_rows`, and what differs from edge to edge.
 
     `each_side`: whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size,
-    EDGE_COLUMNS); else the second result has no rows. Errors are those of `rocking._solver.peak_response.solve_cells`.
+    EDGE_COLUMNS); else the second result has no rows. Errors as of `rocking._solver.peak_response.solve_cells`.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
     kinds = np.full(cells.size, -1)
     if by_steps.any():
-        # what sets the rounding of a cell is its own, not that of the cells beside it in the array or the thread
+        # the degree sets the rounding of a cell: it must not depend on the cells beside it in the array or the thread
         kinds[by_steps] = 2 * taylor_orders(samples, cells[by_steps]) + (cells["vertical"][by_steps] != 0.0)
     if cells.size and (kinds != kinds[0]).any():
         return _each_kind(kinds, lambda own, _: solve_bodies(samples, cells[own], threads, stop, each_side), each_side)

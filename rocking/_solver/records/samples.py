@@ -1,6 +1,6 @@
 """The samples of a ground motion as the kernels read them, and searches in them.
 
-The motion is linear between its samples and zero after the last. Samples of a record are equidistant; those of a
+The motion is linear between its samples and zero after the last. Samples of a record are equidistant; samples of a
 sampled pulse need not be.
 """
 
@@ -18,7 +18,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel
 SHAPE, LATER, BLOCKS, TIME, VERTICAL, LATER_LOW, BLOCKS_LOW = range(7)
 """Rows of the array of a motion, see `sample_rows`."""
 
-BLOCK = 32  # sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold one extreme
+BLOCK = 32  # sample intervals for each extreme in the rows `BLOCKS` and `BLOCKS_LOW`
 
 
 def sample_rows(

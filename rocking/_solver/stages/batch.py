@@ -43,7 +43,7 @@ def leave_rest(which: int, pulse: Record, group: Record) -> None:
         columns[column.W0, lane], columns[column.AT_UPLIFT, lane], columns[column.PIECE, lane] = 0.0, 1.0, piece
         columns[column.UPLIFTS, lane] += 1.0
         columns[column.IMPACTS_BEFORE, lane] = columns[column.IMPACTS, lane]
-        # a list holds one sign of rotation: the cell joins the same one again, or that of the other sign
+        # a list holds one sign of rotation: the cell joins the same list again, or the list of the other sign
         group.next[lane] = float(REPEATED if (sign > 0.0) == (which % 2 == 1) else LONG)
 
 

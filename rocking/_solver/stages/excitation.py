@@ -114,7 +114,7 @@ def start_particular_solution(pulse: Record, group: Record, sign: float, a: Simd
 
 @kernel
 def particular_increments(pulse: Record, group: Record) -> Any:
-    """Change of the particular solution of z, and that of w plus w0, from the start of the flight to the angles."""
+    """Changes of the particular solution from the start of the flight to the angles: of z, and of w with w0 added."""
     z, w = load(group.offset_z, 0), load(group.offset_w, 0)
     if pulse.family == WAVELET:
         at_phase, rate = particular_solution(pulse, group)

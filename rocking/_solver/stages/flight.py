@@ -17,8 +17,8 @@ flight. No event is missed, since q keeps its sign on a part: it changes at the 
 Worked example: the sine, 1/a = 0.6, omega = 2. The first flight starts at the uplift, phi = 0.644 (f = 0.6), about the
 left edge. On the parts to pi/2 and to the cut at phi = 2.498 (f = 0.6 again) q <= 0 and w >= 0 at the left end: no
 event, and neither state is computed. The part to 3 pi/2 is restored: z = 0.226 and w = -0.933 at its right end, and
-w = 0.460 at its left end, which is computed now: one peak, which is kept for later, and no impact. On the last part, to
-2 pi, z < 0 at the right end: one impact, which is located at phi = 5.099 with w = -1.416, and the peak with it.
+w = 0.460 at its left end, computed only now: one peak, kept for later, and no impact. On the last part, to
+2 pi, z < 0 at the right end: one impact, located at phi = 5.099 with w = -1.416, and the peak with it.
 """
 
 from typing import Any
@@ -110,7 +110,7 @@ def follow_part(
         store_where(group.known, 0, inside, zero)
         store(group.left_h, 0, h)
         return
-    # 2. Their state at the right end; at the end of the pulse that of the others too, which was left open
+    # 2. Their state at the right end; at the end of the pulse also the states that were left open
     if end > 0:
         set_end_angles(pulse, group, end)
     else:
@@ -162,7 +162,7 @@ def restored_events(
 ) -> Any:
     """Impacts and peaks on a part with q >= 0, from the times, z and w at its ends; on the left where it is `known`.
 
-    Returns the masks of the cells with an impact, which is where z <= 0 at the right end, and of those left undecided;
+    Returns the masks of the cells with an impact (z <= 0 at the right end) and of the cells left undecided;
     then z and w at the left end, computed where it was left open and w < 0 at the right end: without a fall there is
     neither a peak nor an impact, whatever the state at the left end was. The peak of a cell is kept as pending, with
     its bracket and first guess.
@@ -255,10 +255,10 @@ def bracket_impacts(group: Record, hits: Any, left: Any, right: Any, q: SimdVect
 
 @kernel
 def find_dips(pulse: Record, group: Record, of_w: float, wanted: Any, low_end: Any, high_end: Any) -> Any:
-    """Whether v has a zero between two ends, each a time, v > 0 and its slope, which are < 0 and > 0.
+    """Whether v has a zero between two ends, each a time, v > 0 there and its slope, < 0 at the first and > 0 then.
 
-    v is z if `of_w` is 0, otherwise `of_w` w, which are convex where they keep their sign. The state is computed where
-    the tangents at both ends meet, which becomes the next end, until the tangents exclude a zero or v <= 0. Returns the
+    v is z if `of_w` is 0, otherwise `of_w` w; both are convex where they keep their sign. The state is computed where
+    the tangents at both ends meet. That is the next end, until the tangents exclude a zero or v <= 0. Returns the
     masks of the cells that remain undecided, and of those with a zero, whose `impact_high` is set to the time with
     v <= 0.
     """

@@ -57,7 +57,7 @@ def take_places(which: int, group: Record, cells: Record) -> None:
 def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells: Record, responses: Record) -> bool:
     """Put the cells of a block into the lists of first flights; True if some share a flight.
 
-    Consecutive cells that differ in eta only share the first flight, for which the first of them stands.
+    Consecutive cells that differ in eta only share the first flight: the first of them stands for all.
     """
     members = cells.members
     f_start, shared, place, count = pulse.end_shape[0], False, 0, len(slenderness)
@@ -84,7 +84,7 @@ def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells
 
 @kernel
 def sort_by_slenderness(which: int, slenderness: FloatArray, cells: Record) -> None:
-    """Order a list by slenderness, on which the number of flights and of iterations mainly depends.
+    """Order a list by slenderness: the numbers of flights and of iterations mainly depend on it.
 
     Vectors of cells in random order wait for the slowest of their cells. A list remains as it is if most of its vectors
     hold cells of about the same slenderness.

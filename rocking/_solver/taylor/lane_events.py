@@ -63,7 +63,7 @@ def refine_roots(
     """The decreasing zeros of series between `low` and `high` where the mask `wanted` is true, and the slopes there.
 
     The mask `deflated` tells where the series is divided by h, which removes the zero at the start of a flight. The
-    bracketed Newton iteration is that of `rocking._solver.taylor.events.refine_root`.
+    bracketed Newton iteration is the one of `rocking._solver.taylor.events.refine_root`.
     """
     h = select((guess > low) & (guess < high), guess, 0.5 * (low + high))
     going, before, slope, divides = wanted, splat(0.0), splat(0.0), any_lane(deflated & wanted)
