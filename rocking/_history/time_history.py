@@ -80,6 +80,12 @@ def time_history(
         For an argument out of range, missing, or without meaning for the kind of motion.
     StoppedError
         If `stop` was set.
+
+    Examples
+    --------
+    >>> history = time_history("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.9)
+    >>> history.attrs["outcome"], history.impact_time.values.round(4).tolist()
+    ('OVERTURNED_AFTER_IMPACT', [1.8387])
     """
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)

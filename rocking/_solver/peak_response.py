@@ -158,6 +158,13 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
     StoppedError
         If `stop` was set.
+
+    Examples
+    --------
+    >>> peak_response("sine", slenderness=0.75, frequency_ratio=3.0, restitution=0.9)
+    <rocking.Response under sine: rocks and comes to rest: peak rotation 0.537221 alpha, 1 impact>
+    >>> peak_response("sine", slenderness=[0.2, 0.5, 0.75], frequency_ratio=3.0, restitution=0.9).overturned
+    array([ True,  True, False])
     """
     restitution = known_restitution(restitution, alpha)
     arguments = {

@@ -29,6 +29,11 @@ def ishiyama_velocity(
 
     v = 0.4 sqrt((2 g I_O/(m R)) (1 - cos alpha)/cos^2 alpha), for a uniform rectangle
     0.4 sqrt((8 g R/3) (1 - cos alpha)/cos^2 alpha).
+
+    Examples
+    --------
+    >>> round(float(ishiyama_velocity(half_width=0.2, mass_height=0.8)), 4)
+    0.3308
     """
     b, h, inertia = checked_body(half_width, mass_height, gyration)
     radius, alpha = np.hypot(b, h), np.arctan2(b, h)

@@ -18,7 +18,13 @@ from rocking.standards.arguments import checked
 
 
 def west_acceleration(half_width: ArrayLike, mass_height: ArrayLike) -> NDArray[np.float64]:
-    """Peak ground acceleration from which a body uplifts, and that it needs to overturn: g b/h [m/s2]."""
+    """Peak ground acceleration from which a body uplifts, and that it needs to overturn: g b/h [m/s2].
+
+    Examples
+    --------
+    >>> float(west_acceleration(half_width=0.2, mass_height=0.8))
+    2.4516625
+    """
     b, h = checked(half_width=half_width, mass_height=mass_height)
     return STANDARD_GRAVITY * b / h  # West
 
