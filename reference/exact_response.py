@@ -13,7 +13,7 @@ NO_UPLIFT, RECOVERS, OVERTURNED_DIRECTLY, OVERTURNED_AFTER_IMPACT, CAPPED = 0, 1
 
 @dataclass
 class ExactResponse:
-    """Response of a block; times are tau = p t. Of a body with two edges p and alpha are those of the right one.
+    """Response of a block; times are tau = p t. Of a body with two edges p and alpha belong to the right one.
 
     `margin` is the distance of the deciding quantity from the barrier (> 0 overturns), `uplifts` counts uplifts from
     rest, `slowest_impact` is the smallest speed at an impact during the pulse. `peaks` are the largest |theta|/alpha on

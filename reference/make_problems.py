@@ -67,8 +67,7 @@ UNDER_PULSES = (
     ("grazing: just above the lowest overturning", "sine", None, 1.0, 0.2, 2.5, 0.9, True),
 )
 
-GRAZING = 1e-6
-"""Relative distance of the grazing problems from the lowest overturning amplitude [-]."""
+GRAZING = 1e-6  # relative distance of the grazing problems from the lowest overturning amplitude [-]
 
 SLENDER, WALL = {"slender": True}, {"wall": True}
 

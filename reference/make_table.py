@@ -21,8 +21,7 @@ from flint import arb
 from reference.conditioning import integrate_with_conditioning
 from reference.exact_pulses import PULSES
 
-ONSET = (1e-9, 0.2)
-"""1 - slenderness of the cells near the onset of uplift, where blocks chatter."""
+ONSET = (1e-9, 0.2)  # 1 - slenderness of the cells near the onset of uplift, where blocks chatter
 
 
 def random_cells(

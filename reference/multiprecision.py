@@ -93,7 +93,7 @@ class _Integration:
         """At rest at tau: move to the next time with |u| >= 1; return False if there is none."""
         ground = self.motion.ground(self.tau)
         self.crossing = not abs(ground) > 1
-        if self.crossing:
+        if self.crossing:  # held down now: on to the next time at which |u| rises through 1
             self.uplifts = [t for t in self.uplifts if t > self.tau]
             if not self.uplifts:
                 return False
@@ -109,6 +109,8 @@ class _Integration:
         Return the outcome, None if it is not decided yet.
         """
         while self.tau < self.end:
+            # order of the zero of z at the start, which is divided out: 0 in flight, 1 after an impact, 2 for an uplift
+            # beyond |u| = 1, 3 for one through it, where the acceleration is zero too
             zeros = 0 if self.z > 0 else 1 if self.v > 0 else 3 if self.crossing else 2
             series, length = self._expand(zeros)
             self.crossing = False
@@ -118,6 +120,7 @@ class _Integration:
                 return self._overturned()
             self._watch_peak(series, length, zeros)
             self._move(series, length)
+            # a root within rounding of the end of the step is not returned: there z tells
             if impact is not None or (self.v < 0 and self.z <= self.rounding):
                 if self._impact():
                     return None
@@ -142,6 +145,7 @@ class _Integration:
         last = bool(remaining_limit <= step)
         size = remaining_limit if last else arb(step)
         series = self.motion.expand(self.tau, self.z, self.v, self.side, size, order, self.crossing)
+        # the series is exact as far as its last four terms are below rounding
         coarse = [abs(float(c)) for c in series]
         scale = max(coarse[1:]) * 2.0 ** (12 - ctx.prec)
         self.rounding = scale * 2.0**24  # a smaller z at the end of the step is the impact itself
@@ -177,6 +181,7 @@ class _Integration:
     def _watch_peak(self, series: list[arb], length: arb, zeros: int) -> None:
         if bernstein_bounds(series, length)[1] < float(self.peak):
             return
+        # z is largest at a root of z' or at the end
         slope = [k * c for k, c in enumerate(series)][max(zeros, 1) :]
         for x in [*roots(slope, length), length]:
             z = _value(series, x)
@@ -200,7 +205,7 @@ class _Integration:
             response.slowest_impact = abs(self.v)
         self.side, self.z, self.v = -self.side, arb(0), abs(eta * self.v).mid()
         ground = self.motion.ground(self.tau)
-        if abs(ground) > 1:
+        if abs(ground) > 1:  # one edge is destabilised: the block does not rest, and without velocity uplifts there
             if self.v == 0:
                 self.side = -1 if ground > 0 else 1
             return False
@@ -210,6 +215,7 @@ class _Integration:
         loss = float(1 - eta)
         if loss == 0.0 or reserve == 0.0:
             return False
+        # all remaining flights together last about 2 v/(reserve loss)
         remaining = 2.0 * float(self.v) / (reserve * loss) * self.rate * (1.0 + float(self.motion.amplitude))
         if self.motion.alpha is not None:
             remaining *= float(self.motion.alpha / self.motion.alpha.sin())

@@ -28,14 +28,11 @@ from reference.exact_response import (
 from reference.polynomial_roots import bernstein_bounds, roots
 
 BITS = 170
-REST_VELOCITY = 1e-22
-"""Velocity after an impact [-] below which the block rests, where the ground does not lift it."""
+REST_VELOCITY = 1e-22  # velocity after an impact [-] below which the block rests, where the ground does not lift it
 
-STEP = 0.3
-"""Longest Taylor step [tau]."""
+STEP = 0.3  # longest Taylor step [tau]
 
-RELATIVE_CHANGE = "1e-25"
-"""Relative change of the amplitude for `amplification`."""
+RELATIVE_CHANGE = "1e-25"  # relative change of the amplitude for `amplification`
 
 
 class Edge(NamedTuple):
@@ -175,6 +172,7 @@ class _Integration:
             return False
         side = self._lifted(self.s)
         self.at_crossing = side == 0
+        # q is linear on an interval: an edge is lifted in the first one at whose end q < 0
         while side == 0 and self.k < len(self.ground) - 1:
             side = self._lifted(self.length)
             if side == 0:
@@ -194,8 +192,9 @@ class _Integration:
         rest = (self.length - self.s).mid()
         size = rest if rest <= STEP else arb(STEP)
         force, pressing = self._at(self.ground, self.s), self._at(self.pressing, self.s)
+        # the order of the zero of z at the start, as in `multiprecision`
         zeros = 0 if self.z > 0 else 1 if self.v > 0 else 3 if self.at_crossing else 2
-        if zeros == 1:
+        if zeros == 1:  # after an impact: a step just beyond the next one keeps the digits of a short flight
             restoring = float(self._restoring(self.side, force, pressing))
             if restoring > 0.0 and 3.0 * float(self.v) / restoring < float(size):
                 size = arb(3.0 * float(self.v) / restoring)
@@ -259,7 +258,7 @@ class _Integration:
         self.z, self.v = arb(0), abs(self.edges[self.side].eta * self.v).mid()
         self._change_side()
         lifted = self._lifted(self.s)
-        if lifted != 0:
+        if lifted != 0:  # the ground lifts an edge: no rest, and without velocity an uplift there
             if self.v == 0:
                 self.side = lifted
             return False

@@ -2,10 +2,13 @@
 
 import rocking
 from rocking._excitation.pulses import AbstractPulse
-from rocking._numba.compilation import Record
+from rocking._numba.compilation import Record, kernel
 from rocking._solver.kernels.event_loop import init_state, start_flight
 from rocking._solver.rules import RECOVERS, final_outcome, set_body, set_sign
-from rocking._solver.state import block_cell, pulse_state
+from rocking._solver.state import IN_FLIGHT, block_cell, pulse_state
+from rocking._solver.taylor.flight import process_step, start_steps
+from rocking._solver.taylor.lane_events import locate_events
+from rocking._solver.taylor.step import take_step
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:
@@ -44,3 +47,18 @@ def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, flo
     overturns = int(state["outcome"]) > RECOVERS
     after = 0 if overturns else max(int(state["peak_mode"]), 0) // 2
     return int(state["impacts"]) + 1 if overturns else 0, float(state["peak_rotation"]), after
+
+
+@kernel
+def flight_by_steps(flight: Record, steps: Record) -> tuple[int, float, float]:
+    """Follow one flight in the first lane, the others being unused; what `process_step` returns at its end."""
+    for lane in range(len(steps.in_use)):
+        steps.in_use[lane] = 0.0
+    steps.omega[0] = flight.omega
+    start_steps(flight, steps, 0)
+    ended, w, z = IN_FLIGHT, 0.0, 0.0
+    while ended == IN_FLIGHT:
+        take_step(steps)
+        locate_events(steps)
+        ended, w, z = process_step(flight, steps, 0)
+    return ended, w, z

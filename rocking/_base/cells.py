@@ -34,21 +34,9 @@ def rank(one: Quantity, header: str) -> int:
 def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
     """The value of a cell in SI units; the text of a column of texts as it stands.
 
-    Parameters
-    ----------
-    one : Quantity
-        What the column holds.
-    cell : str
-        With its unit or without.
-    unit : str
-        Of cells without one, as `unit_name` gives it; "": unknown.
-    decimal : str
-        The decimal sign of the table, which settles "1,234"; "": unknown.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the cell is no number, its decimal sign is not certain, or its unit is unknown.
+    `unit`: of cells without one, as `unit_name` gives it; `decimal`: the decimal sign of the table, which settles
+    "1,234"; each "" if unknown. Raises `InvalidArgumentError` if the cell is no number, its decimal sign is not
+    certain, or its unit is unknown.
     """
     if not one.unit:
         return cell
@@ -91,13 +79,7 @@ def _number(name: str, written: str, exponent: str, text: str, decimal: str) -> 
 
 
 def decimal_sign(digits: str) -> str:
-    """The decimal sign of a number: "." or ",", with "?" before it if it may separate thousands; "": not shown.
-
-    Parameters
-    ----------
-    digits : str
-        Digits with signs, without blanks.
-    """
+    """The decimal sign of a number without blanks: ".", ",", with "?" before it if it may separate thousands, or ""."""
     used = [sign for sign in digits if sign in ".,"]
     if not used:
         return ""
@@ -153,21 +135,10 @@ def named(text: str, names: Mapping[str, Quantity]) -> Quantity | None:
 
 
 def read_header(text: str, names: Mapping[str, Quantity], argument: str) -> tuple[Quantity, str] | None:
-    """The column that a header names, and its unit, "" for none; None for another column.
+    """The quantity that a header such as "Breite (cm)" or "depth_mm" names, and its unit or ""; None if it names none.
 
-    Parameters
-    ----------
-    text : str
-        Such as "width [cm]", "Breite (cm)", "height, m", "depth_mm", "friction %".
-    names : mapping
-        Quantitys by their names and aliases, as `plain_name` gives them.
-    argument : str
-        What an error calls the table.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the unit of a quantity is not understood.
+    `names`: quantities by their names and aliases, as `plain_name` gives them; `argument`: what an error calls the
+    table. Raises `InvalidArgumentError` if the unit of a quantity is not understood.
     """
     for name, written, must in _splits(text):
         one = named(name, names)

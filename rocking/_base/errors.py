@@ -2,6 +2,13 @@
 
 Every public function checks its arguments with these functions, so that Python, the command line and the HTTP service
 report the same errors. Physical outcomes such as overturning are results and raise nothing.
+
+What the checks share is said here. `parameter` is the name of the argument in the message. A `value` is a number, an
+array of any shape, a quantity of a library (pint, astropy) or a text with a unit such as "40 cm", also in lists and
+arrays. Numbers without a unit are in `unit`, the unit of the result. Boolean, complex, date and other text values,
+which numpy would convert, are rejected, and so are masked entries. The range goes from `low` to `high`, which may be
+infinite; `closed` says which ends belong to it: "both", "left", "right" or "neither". Each check raises
+`InvalidArgumentError` with the first entry that fails, and its index.
 """
 
 from __future__ import annotations
@@ -23,8 +30,7 @@ from rocking._base.units import EXAMPLES, UNITS, USUAL, WithUnit, split_quantity
 
 _MAX_FLOAT = sys.float_info.max
 
-MAX_TEXT = 300
-"""Longest text of a value in a message [characters]."""
+MAX_TEXT = 300  # longest text of a value in a message [characters]
 
 
 class RockingError(Exception):
@@ -84,13 +90,7 @@ class UnreadableFileError(InvalidArgumentError):
 
 
 class SeveralArgumentsError(InvalidArgumentError):
-    """Several invalid arguments; parameter, value and allowed are those of the first.
-
-    Parameters
-    ----------
-    errors : sequence of InvalidArgumentError
-        One for each, at least one.
-    """
+    """Several invalid arguments, an error for each; parameter, value and allowed are those of the first."""
 
     def __init__(self, errors: Sequence[InvalidArgumentError]) -> None:
         super().__init__(errors[0].parameter, errors[0].value, errors[0].allowed)
@@ -126,28 +126,7 @@ def _short(value: Any) -> str:
 def in_range(
     parameter: str, value: ArrayLike | WithUnit, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> NDArray[np.float64]:
-    """Return `value` as a float64 array (shape kept) after checking that all of it is finite and in the range.
-
-    Parameters
-    ----------
-    parameter : str
-        Name for the error message.
-    value : array_like of real numbers, any shape; a quantity; or a text with a unit
-        Numbers without a unit are in `unit`. Quantities (pint, astropy) and texts such as "40 cm", also in lists and
-        arrays, are converted to it. Boolean, complex, date and other text values, which numpy would convert, are
-        rejected, and so are masked entries.
-    low, high : float
-        Range; `high` may be infinite.
-    closed : {"both", "left", "right", "neither"}
-        Which ends belong to the range.
-    unit : str
-        Unit of the result.
-
-    Raises
-    ------
-    InvalidArgumentError
-        With the first offending entry and its index.
-    """
+    """Return `value` as a float64 array (shape kept) after checking that all of it is finite and in the range."""
     array = float_array(parameter, value, low, high, closed=closed, unit=unit)
     # two comparisons instead of arrays of them; min and max are nan if an entry is
     if array.size == 0 or (low < array.min() and array.max() < high):
@@ -165,7 +144,7 @@ def in_range(
 def number(
     parameter: str, value: ArrayLike | WithUnit, low: float, high: float, *, closed: str = "both", unit: str = "-"
 ) -> float:
-    """Return `value` as a float after checking that it is one finite number in the range; as `in_range`."""
+    """Return `value` as a float after checking that it is one finite number in the range."""
     if type(value) is float and low < value < high:  # all that is left to do for most
         return value
     if isinstance(value, list | tuple) or (hasattr(value, "ndim") and value.ndim):
@@ -174,12 +153,12 @@ def number(
 
 
 def positive(parameter: str, value: ArrayLike | WithUnit, unit: str) -> float:
-    """Return `value` as a float after checking that it is one finite number > 0; as `in_range`."""
+    """Return `value` as a float after checking that it is one finite number > 0."""
     return number(parameter, value, 0.0, math.inf, closed="neither", unit=unit)
 
 
 def integer(parameter: str, value: ArrayLike | WithUnit, low: float, high: float) -> int:
-    """Return `value` as an int after checking that it is one whole number from `low` to `high`; as `in_range`."""
+    """Return `value` as an int after checking that it is one whole number from `low` to `high`."""
     found = number(parameter, value, low, high)
     if not found.is_integer():
         raise InvalidArgumentError(parameter, value, f"a whole number in {_interval(low, high, 'both', '-')}")
@@ -187,23 +166,9 @@ def integer(parameter: str, value: ArrayLike | WithUnit, low: float, high: float
 
 
 def si_value(parameter: str, text: str, unit: str) -> float:
-    """The value of a quantity in an SI unit.
+    """The value of a text with a number and a unit, such as "30cm", "4 m/s^2", "0.4 g", "20 deg" or "45 %".
 
-    Parameters
-    ----------
-    parameter : str
-        Name for the error message.
-    text : str
-        A number and a unit, such as "1.2 m", "30cm", "4 m/s^2", "0.4 g", "400 gal", "20 deg", "45 %".
-    unit : str
-        Unit of the result, a key of `rocking._base.units.UNITS`.
-
-    Raises
-    ------
-    MissingUnitError
-        If there is no unit; the message proposes one.
-    InvalidArgumentError
-        If the unit is unknown or of another quantity, or the value is not finite.
+    `unit` is a key of `rocking._base.units.UNITS`. Without a unit it raises `MissingUnitError`, which proposes one.
     """
     percentage = "a number, or a percentage such as '45 %'"
     allowed = percentage if unit == "-" else f"a number with its unit, such as {EXAMPLES[unit]}"
@@ -219,13 +184,7 @@ def si_value(parameter: str, text: str, unit: str) -> float:
 
 
 def plain_number(parameter: str, text: str) -> float:
-    """The value of a text without a unit, such as "0.45", "1e-3" or "45 %".
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is neither a number nor a percentage.
-    """
+    """The value of a text without a unit, such as "0.45", "1e-3" or "45 %"."""
     try:
         return float(text)
     except ValueError:
@@ -233,13 +192,7 @@ def plain_number(parameter: str, text: str) -> float:
 
 
 def plain_numbers(parameter: str, text: str) -> list[float]:
-    """The values of a text of numbers that are separated by commas.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the text holds anything else.
-    """
+    """The values of a text of numbers that are separated by commas."""
     try:
         return [float(one) for one in text.split(",")]
     except ValueError:
@@ -260,7 +213,7 @@ def float_array(
     closed: str = "neither",
     unit: str = "-",
 ) -> NDArray[np.float64]:
-    """Return `value` as a float64 array, as `in_range` but not compared with the range, nan and infinity included."""
+    """Return `value` as a float64 array that may hold nan and infinity; the range is only for the message."""
     if type(value) is np.ndarray and value.dtype == np.float64:
         return value
     given = value if type(value) in _PLAIN_TYPES else _without_unit(parameter, value, unit)
@@ -276,8 +229,7 @@ def float_array(
         reject_range(parameter, math.copysign(math.inf, wrong > 0 or -1), low, high, closed, unit)
 
 
-_PLAIN_TYPES = {float, int, np.float64, bytes, bool, NoneType}
-"""Types without a unit."""
+_PLAIN_TYPES = {float, int, np.float64, bytes, bool, NoneType}  # types without a unit
 
 
 def _without_unit(parameter: str, value: Any, unit: str) -> Any:
@@ -356,20 +308,10 @@ def _interval(low: float, high: float, closed: str, unit: str) -> str:
 def broadcast(
     given: Mapping[str, ArrayLike | WithUnit | None], checked: Sequence[NDArray[np.float64]]
 ) -> list[NDArray[np.float64]]:
-    """The `checked` arrays of some arguments, broadcast against each other.
+    """The `checked` arrays of arguments, broadcast against each other; `given`: the arguments by name, for messages.
 
-    Parameters
-    ----------
-    given : mapping
-        The arguments by name, as given by the caller.
-    checked : sequence of float arrays
-        Their values.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the shapes do not broadcast; also if labelled arguments (xarray, pandas) differ in their dimensions, in the
-        order of these, or in their indexes: numpy would combine entries by position.
+    Labelled arguments (xarray, pandas) have to agree in dimensions, their order and their indexes: numpy would combine
+    entries by position.
     """
     pairs = zip(given.items(), checked, strict=False)  # an argument that is None may be left out at the end
     labelled = {name: _labels(value) for (name, value), array in pairs if array.ndim}
@@ -406,13 +348,7 @@ def _same_labels(labels: list[tuple[Hashable, Any]], others: list[tuple[Hashable
 
 
 def needed(kind: str, **argument: Any) -> Any:
-    """Return an argument that a kind of motion, "a pulse" or "a record", needs.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is None.
-    """
+    """Return an argument that a kind of motion, "a pulse" or "a record", needs; None is an error."""
     ((name, value),) = argument.items()
     if value is None:
         raise InvalidArgumentError(name, None, f"a number, for {kind}")
@@ -420,13 +356,7 @@ def needed(kind: str, **argument: Any) -> Any:
 
 
 def reject_given(kind: str, **arguments: Any) -> None:
-    """Reject arguments that have no meaning for a kind of motion.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For the first that is not None.
-    """
+    """Reject arguments that have no meaning for a kind of motion: each has to be None."""
     for name, value in arguments.items():
         if value is not None:
             raise InvalidArgumentError(name, value, f"nothing for {kind}")
@@ -443,16 +373,7 @@ def one_of(parameter: str, value: str, choices: Iterable[str]) -> str:
 class RecordFileError(InvalidArgumentError):
     """A file of a recorded motion that is damaged, ambiguous or of an unknown format.
 
-    Parameters
-    ----------
-    file : str
-        Name of the file.
-    line : int or None
-        Number of the line, from 1; None for the whole file.
-    found : object
-        What was found there.
-    expected : str
-        What was expected.
+    `line`: its number from 1, or None for the whole file; `found` and `expected`: what is there, and what should be.
     """
 
     def __init__(self, file: str, line: int | None, found: Any, expected: str) -> None:

@@ -25,18 +25,11 @@ _TEXT = re.compile(r"(-?)([A-Za-z_]\w{0,99})(?:\s*\(([^()]{0,2000})\))?")
 
 @dataclass(frozen=True)
 class Kind(Generic[Made]):
-    """A kind of body or pulse.
+    """A kind of body or pulse."""
 
-    Attributes
-    ----------
-    make : callable
-        Makes one from numbers in SI units and texts; each parameter is annotated `Annotated[float, QUANTITY]`.
-    reads_files : bool
-        Whether a parameter is a path, which the service does not take.
-    """
-
+    # makes one from numbers in SI units and texts; each parameter is annotated `Annotated[float, QUANTITY]`
     make: Callable[..., Made]
-    reads_files: bool = False
+    reads_files: bool = False  # whether a parameter is a path, which the service does not take
 
     @property
     def name(self) -> str:
@@ -73,10 +66,7 @@ class Kind(Generic[Made]):
     def read(self, given: Mapping[str, Any], *, numbers: bool = False) -> dict[str, Any]:
         """The parameters in SI units, `numbers` or arrays; texts have their units, labelled arrays stay as they are.
 
-        Raises
-        ------
-        InvalidArgumentError
-            If one is missing, unknown or out of range.
+        Raises `InvalidArgumentError` if one is missing, unknown or out of range.
         """
         from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
 
@@ -114,10 +104,7 @@ def _read(quantity: Quantity, value: Any) -> Any:
 def split_kind(text: str, argument: str) -> tuple[str, str, Mapping[str, str]] | None:
     """The sign, the name and the parameters in a text; None if it has another form.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If a parameter is stated twice, or without a name.
+    Raises `InvalidArgumentError` if a parameter is stated twice, or without a name.
     """
     from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
 

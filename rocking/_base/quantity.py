@@ -78,24 +78,13 @@ class Quantity:
     assumed: str = ""
 
     def convert(self, value: Values) -> NDArray[np.float64]:
-        """The value in the SI unit as a float64 array, shape kept.
-
-        Parameters
-        ----------
-        value : array_like, text with a unit, or quantity of a library
-            None of its entries masked.
-
-        Raises
-        ------
-        InvalidArgumentError
-            With the first entry that is not a finite real number in the range.
-        """
+        """The value in the SI unit as a float64 array, shape kept; checked as `rocking._base.errors` says."""
         from rocking._base.errors import in_range  # noqa: PLC0415
 
         return in_range(self.name, value, self.lower, self.upper, closed=self.closed, unit=self.unit)
 
     def number(self, value: Values, name: str = "") -> float:
-        """As `convert`, for one number; `name` is that of the error message, where it is another."""
+        """As `convert`, for one number; `name`: in the error message, where it is another."""
         if type(value) is float and self.lower < value < self.upper:  # all that is left to do for most
             return value
         from rocking._base.errors import number  # noqa: PLC0415
@@ -105,17 +94,8 @@ class Quantity:
     def read(self, value: Any, *, si: bool = False) -> Any:
         """What an option, a cell of JSON or a parameter of a query says: one of the words, a text, or a number.
 
-        Parameters
-        ----------
-        value : object
-            A text, such as "40 cm" or "momentum", or a number in the SI unit.
-        si : bool
-            Whether a text without a unit is in the SI unit, as in a query; otherwise it needs one.
-
-        Raises
-        ------
-        InvalidArgumentError
-            As `convert`; the words are among what it allows.
+        `value` is a text such as "40 cm" or "momentum", or a number in the SI unit. `si`: whether a text without a unit
+        is in the SI unit, as in a query; otherwise it needs one. Raises `InvalidArgumentError` as `convert`.
         """
         from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
         from rocking._base.units import USUAL  # noqa: PLC0415
@@ -177,13 +157,7 @@ class Quantity:
         return (self.name.replace("_", " "), *filter(None, self.aliases.split(", ")))
 
     def restricted(self, lower: float, upper: float) -> Quantity:
-        """The same on a smaller range, closed at its finite ends.
-
-        Raises
-        ------
-        ValueError
-            If the range is not a part of that of the quantity.
-        """
+        """The same on a smaller range, closed at its finite ends; `ValueError` if that is no part of its own."""
         if not self.lower <= lower < upper <= self.upper:
             raise ValueError(f"[{lower:g}, {upper:g}] is not a part of {self.interval}, the range of {self.name}")
         return replace(self, lower=lower, upper=upper, closed="both" if math.isfinite(upper) else "left")

@@ -19,13 +19,8 @@ _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")  # attributes of 
 class SourceTree:
     """The Python files of a folder as they are now: each is read once, for any number of digests.
 
-    Parameters
-    ----------
-    root : Path
-        Folder that holds the files and the lock, and from which absolute imports are resolved.
-    packages : collection of str, optional
-        The packages in it that imports are followed to; default: all. An installation has those of others beside this
-        one: they are not read.
+    `root` holds the files and the lock; absolute imports are resolved from it. Imports are followed into `packages`
+    only, by default into all: an installation has the packages of others beside this one.
     """
 
     def __init__(self, root: Path, packages: Collection[str] | None = None) -> None:
@@ -120,7 +115,7 @@ def _absolute_names(path: Path, syntax: ast.Module) -> Iterable[tuple[str, str]]
 
 
 def _module_files(name: str, attribute_of: str, root: Path) -> Iterable[Path]:
-    """Files of a dotted name; if it is not a module, those of the module that has it as an attribute."""
+    """Files of a dotted name; if it is not a module, the files of the module that has it as an attribute."""
     place = root.joinpath(*name.split("."))
     module = place.with_suffix(".py") if place.name else place
     initial = place / "__init__.py"

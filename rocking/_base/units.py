@@ -25,8 +25,7 @@ class WithUnit(Protocol):
 
 Scalar = float | str | WithUnit
 """A number in the SI unit, a text such as "40 cm", or a quantity."""
-Values = ArrayLike | WithUnit
-"""The same, or an array."""
+Values = ArrayLike | WithUnit  # the same, or an array
 
 UNITS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048},
@@ -81,8 +80,7 @@ USUAL = {
 }
 """The units that an error proposes where there is none."""
 
-MAX_LENGTH = 64
-"""Longest text that is read as a quantity or a unit [characters]."""
+MAX_LENGTH = 64  # longest text that is read as a quantity or a unit [characters]
 
 _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "m": ("metre", "metres", "meter", "meters"),
@@ -120,8 +118,7 @@ def _forms(name: str) -> tuple[str, ...]:
     return (name, f"{length}s-1") if time == "s" else (name, *_OTHER_NAMES.get(name, ()))
 
 
-_SIGNS = str.maketrans("¹²⁻−", "12--")
-"""Signs of powers, and the minus sign of mathematics."""
+_SIGNS = str.maketrans("¹²⁻−", "12--")  # signs of powers, and the minus sign of mathematics
 
 
 def _plain(text: str) -> str:
@@ -135,15 +132,7 @@ _NAMES["kg"] |= dict.fromkeys(("gram", "grams", "gramme", "grammes", "gramm"), "
 
 
 def unit_name(text: str, unit: str) -> str | None:
-    """The name in `UNITS` of a unit that a text names; None if it names none of this quantity.
-
-    Parameters
-    ----------
-    text : str
-        Such as "cm", "M/S^2", "m s-2".
-    unit : str
-        SI unit of the quantity, a key of `UNITS`.
-    """
+    """The name in `UNITS` of a unit such as "M/S^2"; None if it is none of the quantity with the SI unit `unit`."""
     return _NAMES[unit].get(_plain(text)) if len(text) <= MAX_LENGTH else None
 
 

@@ -133,6 +133,11 @@ def thresholds(
         For an argument out of range, missing, or without meaning for the kind of motion.
     StoppedError
         If `stop` was set.
+
+    Examples
+    --------
+    >>> thresholds("sine", frequency_ratio=3.0, restitution=0.9)
+    <rocking.Thresholds: overturns above a = 1.40357, survives above a = 3.48466, overturns above a = 3.63115>
     """
     if highest is None:
         highest = 10.0 if isinstance(motion, Record) else 100.0

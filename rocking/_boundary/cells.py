@@ -6,14 +6,14 @@ from numpy.typing import NDArray
 
 from rocking._boundary.curves import curves_at
 
-MARGIN = 0.1  # share of a cell by which a curve is widened: a chord of a curve lies that close to it [-]
-STEP = 0.2  # distance of the points by which a curve is followed, in cells [-]
+MARGIN = 0.1  # a curve is widened by this share of a cell: a chord lies that close to its curve [-]
+STEP = 0.2  # distance of points on a curve, in cells [-]
 
 Array = NDArray[np.float64]
 
 
 def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Array) -> NDArray[np.bool_]:
-    """Cells (n - 1, m - 1) of a spectrum grid through which an overturning boundary passes, or next to which it does.
+    """Cells (n - 1, m - 1) of a spectrum grid that an overturning boundary crosses, or just misses.
 
     `boundary`: ragged curves as of `overturning_boundary`, with alpha(curve) [rad]; `alpha`: the angle [rad], 0 for the
     slender limit; `rows` (n,), `columns` (m,): slenderness and frequency_ratio.

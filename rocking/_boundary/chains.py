@@ -55,6 +55,7 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
 
     Regions that lie on a single line are left out.
     """
+    # a point is an end of a region in a whole column: parts of one column have it in common
     number: dict[tuple[int, int, int], int] = {}
     points: list[tuple[float, float, float, int, int, int, float]] = []
     beside: list[list[int]] = []

@@ -8,15 +8,15 @@ from rocking._boundary.columns import THINNEST, Index
 from rocking._boundary.search import ELASTIC_RESOLUTION, RESOLUTION, UNCOUNTED, Classify, Floats, refine_brackets
 
 SCANS = np.linspace(-1.0, 1.0, 31)[10:21], np.linspace(-1.0, 1.0, 31)
-"""Points by which a region is looked for at the middle of a chord, near it and then further away, as shares of the
-distance at which it may lie [-]."""
+"""Where a region is looked for at the middle of a chord: near it, then further away, as shares of the distance at
+which it may lie [-]."""
 
-WIDENINGS = 4  # times that the distance at which the two sides of a curve are looked for is widened [-]
+WIDENINGS = 4  # times that the bracket of a curve is widened [-]
 
 SURE = 0.5
-"""Share of the largest distance below which it is not measured where the chords on both sides agree on it [-]."""
+"""A distance below this share of the largest one is not measured if the chords on both sides agree on it [-]."""
 
-FINE = 0.02  # share of the largest distance to which a distance near it is measured [-]
+FINE = 0.02  # accuracy of a measured distance, as a share of the largest one [-]
 HALVINGS = 12  # times that a chord is halved at most [-]
 
 
@@ -25,9 +25,9 @@ def refine_chords(
 ) -> tuple[Chains, float, float, int]:
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
-    Regions of many impacts lie side by side with equal codes, and a chord can join two of them. It is taken out: the
-    curve is not found at its middle. `largest`: distance in the plane of 1/a and log omega [-], `uncounted` for regions
-    of many impacts; `end`: width in log omega of the chords that end a region, which are not halved.
+    Regions of many impacts lie side by side with equal codes, and a chord can join two of them. Such a chord is taken
+    out, since the curve is not found at its middle. `largest`: distance in the plane of 1/a and log omega [-],
+    `uncounted` for regions of many impacts; `end`: width in log omega of the chords that end a region: not halved.
 
     Returns the curves, bounds of the largest distance of a chord from its curve, without regions of many impacts and
     for these, and the number of chords whose curve was not found at the middle.
@@ -43,6 +43,7 @@ def refine_chords(
         )
         first = np.flatnonzero(todo)
         bend, spread = _bend(chains, first)
+        # the chords before and after agree that this one is near its curve: no block is solved for it
         sure = (np.abs(bend) + spread < SURE * largest) & ~_uncounted(chains, first)
         error = (np.abs(bend) + spread)[sure].max(initial=error)
         first, bend = first[~sure], bend[~sure]
@@ -58,6 +59,7 @@ def refine_chords(
         close = ~found | (distance <= most)
         error = distance[found & close & ~many].max(initial=error)
         uncounted_error = distance[found & close & many].max(initial=uncounted_error)
+        # the point of the curve becomes a vertex, and both halves are looked at in the next round
         cut = first[~close]
         chains = chains.insert(cut + 1, middle.take(np.flatnonzero(~close)))
         todo = np.zeros(chains.chain.size - 1, dtype=bool)
@@ -85,6 +87,7 @@ def _middles(
     outward = np.where(one.side == 1, -1.0, 1.0)
     width = np.minimum(one.width, two.width)
     nearest = np.where((one.eta == 1.0) & (one.own == UNCOUNTED), ELASTIC_RESOLUTION, 1e-8)
+    # a bracket around the predicted place, one end inside the region and one outside, widened until it holds the curve
     near = np.clip(0.3 * np.abs(bend), nearest, np.maximum(0.4 * width, nearest))
     ends, margins, met = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
     found = np.zeros(y.size, dtype=bool)
@@ -98,6 +101,7 @@ def _middles(
         met[lost] = codes[:, 1]
         found[lost] = (codes[:, 0] == one.own[lost]) & (codes[:, 1] != one.own[lost])
         near = np.minimum(8.0 * near, 0.4 * width)
+    # where that fails, rows of points across the region, the second one over three times the distance
     for shares in SCANS:
         lost = np.flatnonzero(~found)
         if not lost.size:

@@ -12,7 +12,7 @@ import xarray as xr
 from rocking._model.checks import check_one_alpha
 
 ALPHA_TOLERANCE = 1e-12
-"""Difference up to which two slenderness angles are the same one, written in degrees and in radians [rad]."""
+"""Two slenderness angles that differ by less are one, written in degrees and in radians [rad]."""
 
 
 def join_curves(parts: Sequence[xr.Dataset]) -> xr.Dataset:

@@ -44,10 +44,10 @@ def critical_frequency_ratio(
     alpha: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> FrequencyThresholds:
-    """Every frequency ratio at which the outcome changes, the amplitude being fixed; arguments and errors of
-    `peak_response`.
+    """Every frequency ratio at which the outcome changes, the amplitude being fixed.
 
-    `window`: smallest and largest omega considered [-], 1e-9 <= low < high <= 1e9, at most four decades apart.
+    Arguments and errors are those of `peak_response`. `window`: smallest and largest omega considered [-],
+    1e-9 <= low < high <= 1e9, at most four decades apart.
 
     Each threshold is good to a relative `RESOLUTION`, or to `ELASTIC_RESOLUTION` where an elastic block overturns after
     more than `MOST_COUNTED` impacts. A region narrower than 1/1000 of a decade that lies between equal outcomes can be

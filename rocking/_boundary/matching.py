@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rocking._boundary.columns import Column
 from rocking._boundary.search import UNCOUNTED
+from rocking._model.outcome_code import SURVIVES
 from rocking._numba.compilation import FloatArray, array_entry, array_kernel
 
 SECANT, STEP, CURVATURE, SPAN = range(4)  # indices of the numbers of a trend
@@ -22,13 +23,13 @@ KNOWN, UNKNOWN, SINGLE = 0.02, 0.03, 0.5
 """Cost of a threshold without partner, per step in log omega, if the slope of its curve is known or not, and if both
 columns have one threshold of its kind only [-]."""
 
-NEAR = 0.3  # share of the distance to the next threshold up to which two thresholds can belong to one curve only [-]
+NEAR = 0.3  # two thresholds this share of the distance to the next one apart can belong to one curve only [-]
 
 PAIR, LEFT_ALONE, RIGHT_ALONE = range(3)
 """What the next thresholds of two columns do: they belong to one curve, or one of them has no partner."""
 
 STRAIGHT = 0.05
-"""Difference of the slopes of two chords up to which they belong to one curve, the regions being equal [-]."""
+"""Two chords between equal regions belong to one curve if their slopes differ by less than this [-]."""
 
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
@@ -45,6 +46,7 @@ def end_slopes(trends: FloatArray, side: int) -> FloatArray:
     slopes = np.empty(len(trends))
     for m in range(len(trends)):
         slopes[m] = trends[m, SECANT]
+        # the secant is the slope at the middle of the chord: on by half a chord, to the threshold
         bend = (0.5 - side) * trends[m, STEP] * trends[m, CURVATURE]
         if not math.isnan(bend):
             slopes[m] += bend
@@ -75,7 +77,7 @@ def _interpolate(at: float, x: FloatArray, y: FloatArray) -> Any:
 
 @array_kernel
 def _filled(x: FloatArray, slopes: FloatArray) -> FloatArray:
-    """Slopes, the unknown ones interpolated between those of the curves beside them."""
+    """Slopes; unknown ones are interpolated between the curves beside them."""
     known = ~np.isnan(slopes)
     if not known.any() or known.all():
         return slopes
@@ -132,8 +134,12 @@ def match_trends(
 ) -> IntArray:
     """Pairs of thresholds (pairs, 2) that belong to one curve, in order: the cheapest choice, see `match_thresholds`.
 
+    Given: the thresholds of two neighbouring columns. Decided: which lie on one curve, and which have no partner.
+    Curves do not cross, so that pairs keep the order of both columns. No choice is missed: `rest` holds the least cost
+    of all of them, from the last thresholds to the first.
+
     `x` (n,), `y` (m,): 1/a of the thresholds of the left and the right column, ascending; `codes` (n + 1,),
-    `other_codes` (m + 1,): region codes, `many` that of many impacts; `trends` (n, 4), `other_trends` (m, 4): from the
+    `other_codes` (m + 1,): region codes, `many` for many impacts; `trends` (n, 4), `other_trends` (m, 4): from the
     left, and from the right; `step`: distance of the columns in log omega [-].
     """
     kinds, others = _kinds(codes), _kinds(other_codes)
@@ -148,7 +154,7 @@ def match_trends(
     for i in range(n):
         for j in range(m):
             moved = _distance(x[i], y[j], filled[i], others_filled[j], step, known[i] or others_known[j])
-            # however curved: no other curve is in question
+            # much nearer to each other than to any other threshold: one curve, however it bends
             distance[i, j] = 0.0 if moved < NEAR * min(gaps[i], other_gaps[j]) else moved
     # rest[i, j]: the least cost of the thresholds from i and from j on; way[i, j]: what the first of them do for it
     rest, way = np.zeros((n + 1, m + 1)), np.zeros((n + 1, m + 1), dtype=np.int8)
@@ -157,6 +163,7 @@ def match_trends(
             if i == n and j == m:
                 continue
             least, taken = np.inf, PAIR
+            # only thresholds between the same two regions can lie on one curve
             if i < n and j < m and kinds[i] == others[j]:
                 least = rest[i + 1, j + 1] + distance[i, j]
             if i < n and rest[i + 1, j] + alone[i] < least:
@@ -164,6 +171,7 @@ def match_trends(
             if j < m and rest[i, j + 1] + others_alone[j] < least:
                 least, taken = rest[i, j + 1] + others_alone[j], RIGHT_ALONE
             rest[i, j], way[i, j] = least, taken
+    # follow the cheapest choices from the first thresholds on
     pairs = np.empty((min(n, m), 2), dtype=np.int64)
     i = j = count = 0
     while i < n or j < m:
@@ -195,6 +203,8 @@ def learn_trends(
     for k in range(len(pairs)):
         m, n = pairs[k, 0], pairs[k, 1]
         secant = (y[n] - x[m]) / step
+        # the right threshold learns the chord to its left, and the left one that to its right; the second derivative
+        # is the change of the secants between the middles of two chords
         for own, other, sign in ((right[n], before[m], 2.0), (left[m], after[n], -2.0)):
             own[SECANT], own[STEP], own[SPAN] = secant, step, step + other[STEP]
             own[CURVATURE] = sign * (secant - other[SECANT]) / own[SPAN]
@@ -226,6 +236,7 @@ def follow_trends(
         middle, width = 0.5 * (low + high), high - low
         straight = 0.5 * (slopes[m] + slopes[m + 1]) * step
         bend = 0.25 * (trends[m, CURVATURE] + trends[m + 1, CURVATURE]) * step * step
+        # where slopes are not known the region moves as the matched curves around it do
         beside, nearby = 0.0, 0.1 * abs(step)
         if at.size:
             beside = _interpolate(middle, at, shift)
@@ -234,6 +245,7 @@ def follow_trends(
         if math.isnan(straight):
             moved, error = beside, nearby
         else:
+            # one chord is known on either side, and perhaps the curvature: the error falls with what is known
             narrow = min(max(width + (slopes[m + 1] - slopes[m]) * step, 0.1 * width), width)
             if math.isnan(bend):
                 moved, error = straight, max(0.2 * abs(beside - straight), 0.02 * abs(straight))
@@ -290,11 +302,8 @@ def join_sides(left: Column, right: Column) -> list[tuple[Side, Side]]:
     other column, or to the next end in its own column, where the region, or the gap in it, ends; the total length of
     all joins is smallest.
     """
-    joined = []
-    for code in sorted({*left.codes, *right.codes} - {0}):
-        a, b = _sides_of(left, code), _sides_of(right, code)
-        joined += _shortest(a, b)
-    return joined
+    codes = sorted({*left.codes, *right.codes} - {SURVIVES})
+    return [join for code in codes for join in _shortest(_sides_of(left, code), _sides_of(right, code))]
 
 
 def _sides_of(column: Column, code: int) -> list[Side]:
@@ -311,7 +320,11 @@ def _position(side: Side) -> float:
 
 
 def _shortest(a: list[Side], b: list[Side]) -> list[tuple[Side, Side]]:
-    """The joins of smallest total length between the sides of one region in two columns."""
+    """The joins of smallest total length between the sides of one region in two columns.
+
+    The ends are taken in order from below: two of equal kind in both columns are joined, or two neighbours in one
+    column, between which the region or its gap ends. `cost[i][j]` is the least length for the first i and j of them.
+    """
     x, y = [*map(_position, a)], [*map(_position, b)]
     n, m = len(a), len(b)
     worst = float("inf")

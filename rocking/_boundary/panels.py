@@ -1,4 +1,4 @@
-"""Where regions lie between two columns: courses of those that one lacks, and panels, which are halved.
+"""Where regions lie between two columns: courses of regions that one of them lacks, and panels, which are halved.
 
 A panel is two columns, or parts of them, between which a region ends, divides or begins.
 """
@@ -16,13 +16,13 @@ from rocking._boundary.matching import Pairs, Side, follow_trends
 from rocking._boundary.search import UNCOUNTED, Codes, Floats
 from rocking._model.outcome_code import SURVIVES
 
-PROBES = 81  # most points by which a region is looked for in one column [-]
+PROBES = 81  # most points for one region in one column [-]
 ACROSS = np.linspace(0.02, 0.98, 9)  # nodes of a column within a panel, as shares of its height [-]
 PREDICTED = 5  # columns that are placed near the predicted end of one region at most; after them all lie halfway [-]
-SHORT = 0.1  # share of the distance to the predicted end of a region by which a column stays before it [-]
+SHORT = 0.1  # a column stays before the predicted end of a region by this share of the distance to it [-]
 
 NEARBY = np.array([-0.3, 0.0, 0.3])
-"""The first nodes by which a region is looked for in it, in widths from the middle of the region [-]."""
+"""The first nodes for a region within a panel, in widths of the region from its middle [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class Courses:
     reach: Floats
 
     def points(self) -> list[Floats]:
-        """Points by which each region is looked for."""
+        """Points for each region, over its reach."""
         distance = 0.3 * np.maximum(self.narrow, 0.3 * THINNEST)
         count = np.clip(2 * np.ceil(self.reach / distance) + 1, 9, PROBES)
         return [
@@ -45,7 +45,7 @@ class Courses:
         ]
 
     def missed(self, x: Floats, codes: Codes) -> Floats:
-        """Points by which the regions are looked for that nodes with these codes do not show."""
+        """Points for the regions that nodes at `x` with these codes do not show."""
         met = (codes == self.codes[:, None]) & (np.abs(x - self.middle[:, None]) <= self.reach[:, None])
         lost = np.flatnonzero(~met.any(axis=1))
         chosen = Courses(*(getattr(self, each.name)[lost] for each in fields(self)))
@@ -70,7 +70,7 @@ def courses_of(column: Column, inner: Index, side: int, step: float, at: Floats,
 def probes_for_lost_regions(
     left: Column, right: Column, pairs: Pairs
 ) -> list[tuple[Column, Floats, tuple[float, int]]]:
-    """Points at which regions that one of two columns lacks are looked for in it, and a key of the region."""
+    """Each column that lacks a region of the other one, points at which to look for it, and a key of the region."""
     found: list[tuple[Column, Floats, tuple[float, int]]] = []
     for side, column, other in ((0, left, right), (1, right, left)):
         lost = np.ones(column.below.size, dtype=bool)
@@ -208,13 +208,13 @@ def _distance_to_end(column: Column, side: int) -> float:
     the one is chosen that fits the widths on the last three columns; if two are known only, the square root where the
     regions on both sides are equal. `side` is 0 if the end lies to the right.
     """
-    secant, step, curvature, span = column.trends[side].T.tolist()
+    secant, step, curvature, span = column.trends[side].T.tolist()  # of the two curves that bound the region
     least = float(column.least_width(np.array([0]))[0])
     width = float(column.below[1] - column.above[0])
     narrowing = (secant[0] - secant[1]) * (1.0 - 2.0 * side)
     if not (narrowing > 0.0 and width > least):
         return math.nan
-    before = width + narrowing * step[0]  # one chord away
+    before = width + narrowing * step[0]  # the width one chord away
     of_squares = (before**2 - width**2) / step[0]
     further = span[0] - step[0]
     first = before + further * (narrowing - 0.5 * span[0] * (curvature[0] - curvature[1]))  # two chords away

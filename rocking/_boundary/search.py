@@ -17,7 +17,7 @@ from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.checks import check_one_alpha
 from rocking._model.energy import outcome_margin
-from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes, overturning_code
+from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.state import FULL_PRECISION
@@ -47,10 +47,10 @@ restitutions of 0.99 and more take over 5 s, since each of thousands of counts i
 UNCOUNTED = -1  # region code of overturning whose impacts are not counted, and the `impacts` of its curves
 
 LARGE_MARGIN = 10.0
-"""Margin beyond which its logarithm counts where points are interpolated [-].
+"""A larger margin counts by its logarithm where points are interpolated [-].
 
 On the brackets of the cosine at 0 and 20 degrees the mean number of points differs by less than 5 % from 3 to 30, and
-from that without the logarithm, with which fewer brackets take more than 25 points: 8 in place of 10 %.
+and from the mean without the logarithm; with it 8 % of the brackets take more than 25 points, without it 10 %.
 """
 
 Floats = NDArray[np.float64]
@@ -108,7 +108,7 @@ def without_layers(codes: Codes) -> Codes:
 
 def counted_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = overturning_code(found.outcome.astype(np.int64), found.impacts.astype(np.int64))
+    codes = outcome_code(found)
     return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
@@ -222,12 +222,14 @@ def refine_brackets(
     does not count; `ends`, `margins` (points, 2): coordinates and margins of both ends; `code`, `met` (points,):
     outcomes there.
 
-    Chandrupatla's method: the outcome alone decides on which side a point lies; the margin in energy, which is
-    continuous through the change of outcome as a rule, makes it a third of the work of bisection. The first point lies
-    halfway: there it shows regions between the two ends more often than near one of them.
+    Given: brackets with one outcome at the first end and another at the second. Kept: the outcome at the first end, so
+    that the bracket always holds a change; the second end takes whatever outcome is met. Chandrupatla's method: the
+    outcome alone decides on which side a point lies. The margin in energy, as a rule continuous through the change of
+    outcome, only chooses the next point, and makes it a third of the work of bisection. The first point lies halfway:
+    there it shows regions between the two ends more often than near one of them.
     """
     place, ends, margins, met = points.copy(), ends.copy(), margins.copy(), met.copy()
-    # b is the newest end of the bracket, a the other one, c the point before them
+    # a is the newest end of the bracket, b the other one, c the end that a replaced
     active = np.arange(len(code))
     b, a = ends.T.copy()
     fb, fa = _distance(margins[:, 0]), -_distance(margins[:, 1])
@@ -243,6 +245,7 @@ def refine_brackets(
         ends[active, end], margins[active, end] = x, margin
         met[active[~within]] = here[~within]
         fx = np.where(within, 1.0, -1.0) * _distance(margin)
+        # the new point replaces the end on its own side
         same = within == (fa > 0.0)
         c, fc = np.where(same, a, b), np.where(same, fa, fb)
         b, fb = np.where(same, b, a), np.where(same, fb, fa)
@@ -251,6 +254,7 @@ def refine_brackets(
         left = width > least_width[active]
         active, a, b, c, fa, fb, fc, width = [each[left] for each in (active, a, b, c, fa, fb, fc, width)]
         share = _next_share(a, b, c, fa, fb, fc)
+        # half the final width from either end: a point nearer to one would hardly shrink the bracket
         least = 0.5 * least_width[active] / width
         share = np.clip(share, least, 1.0 - least)
     return Brackets(ends, margins, met)
@@ -281,7 +285,11 @@ def refine_lines(
 ) -> Nodes:
     """Every change of outcome between nodes on lines along one axis, as two nodes at most `RESOLUTION` apart.
 
-    Where `layers` or `ELASTIC_RESOLUTION` hold, they may lie so far apart. `axis` and `points` (lines, 3) as for
+    Given: nodes with their outcomes. Decided: where each run of one outcome ends. Between two nodes that differ there
+    is a change for certain; a region that no node shows is found only if a point of a search meets it. What is met is a
+    node of the next round, so that a region that was seen once is not lost.
+
+    Where `layers` or `ELASTIC_RESOLUTION` hold, the two nodes may lie so far apart. `axis`, `points` (lines, 3): as for
     `refine_brackets`; `nodes`: on these lines, in ascending order of line, then coordinate; `thinnest`: width below
     which a region between two others need not be found [-]; `layers` (lines,): distance of the two nodes where two
     layers of one region meet, see `region_code` [-].
@@ -304,6 +312,7 @@ def refine_lines(
 
     for _ in range(ROUNDS):
         change = (np.diff(nodes.codes) != 0) & (np.diff(nodes.line) == 0)
+        # pairs of neighbours that differ and are not refined yet, but for regions too thin to be found
         width = np.diff(nodes.x)
         resolution = resolution_at(nodes.line[:-1], nodes.codes[:-1], nodes.codes[1:])
         exact = np.concatenate([[False], change & (width <= 2 * resolution), [False]])  # where a region is known to end
@@ -322,6 +331,7 @@ def refine_lines(
         upper = Nodes.joined([upper.take(other), nodes.take(after + 1)])
         lower = Nodes.joined([outside.take(other), nodes.take(after)])
         last, before = refined(upper, lower)
+        # between the two places another region lies: points near its ends and in its middle show what it holds
         wide = before.x - lower.x > 2 * thinnest
         on, low, high = before.line[wide], lower.x[wide], before.x[wide]
         between = [
@@ -342,11 +352,10 @@ def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tu
 def outcomes_along(
     axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
 ) -> tuple[Floats, Codes]:
-    """Ascending nodes on one line of the control space, with both ends of every bracket in which the outcome changes,
-    and the outcomes.
+    """Nodes on one line of the control space, ascending, and their outcomes, with all changes refined (`refine_lines`).
 
-    `axis`: 0 for a line of 1/a, 1 for one of log omega; `point`: 1/a, log omega and eta, that along the axis does not
-    count; `nodes`: where outcomes are looked for first, ascending. See `refine_lines`.
+    `axis`: 0 for a line of 1/a, 1 for one of log omega; `point`: 1/a, log omega and eta, of which the coordinate along
+    the axis does not count; `nodes`: where outcomes are looked for first, ascending.
     """
     places = np.tile(point, (nodes.size, 1))
     places[:, axis] = nodes

@@ -25,17 +25,17 @@ END = 1e-4  # distance in log omega within which the end of a region is known [-
 CHORD = 1e-4
 """Largest distance of a chord from its curve, in the plane of 1/a and log omega, at the middle of the chord [-]."""
 
-FINER = 8  # parts into which the distance of two nodes is divided where blocks overturn after two impacts or more [-]
+FINER = 8  # times as many nodes where blocks overturn after two impacts or more [-]
 
 NEARLY_ELASTIC = 0.9
-"""Restitution above which regions of overturning after many impacts are resolved less finely than others [-].
+"""Above this restitution, regions of overturning after many impacts are resolved less finely than others [-].
 
-There they lie in ever more layers, on which blocks strike a hundred times: the resolution of the others takes several
+There they lie in ever more layers, and blocks strike a hundred times: the resolution of the others takes several
 times the work.
 """
 
 LAYERED = 3.5
-"""Ends of regions of many impacts that the nodes of one line show, on average, above which the same holds [-].
+"""The same holds if the nodes of a line show, on average, more ends of regions of many impacts than this [-].
 
 Under the pulse c2 surviving bands divide such a region, each with thinner ones beside it, down to the finest scale.
 """
@@ -44,12 +44,12 @@ UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD = 3e-4, 3e-3, 3e-4
 """In these two cases, for regions of many impacts: in place of `THINNEST`, of `END` and of `CHORD` [-]."""
 
 EFFORT = 10_000_000
-"""Impacts and blocks after which regions are no longer followed, and, as many later, steps no longer halved [-].
+"""After so many impacts and blocks regions are no longer followed; after twice as many steps are no longer halved [-].
 
 It bounds the time for blocks that strike hundreds of times; `open_ends` counts what is left then.
 """
 
-SEARCHES = 4  # times that a region which goes on beyond a column may start the search in the next ones anew [-]
+SEARCHES = 4  # times that the search starts anew for regions that go on beyond a column [-]
 
 
 class Tracer:

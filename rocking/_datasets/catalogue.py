@@ -79,7 +79,7 @@ class DatasetFile:
 class DataFile:
     """An open data set file. All reads are of one version, even if the file is replaced in the meantime.
 
-    `version` is that of the file when it was opened or last read. Raises `OSError` if it cannot be opened or is not a
+    `version`: of the file when it was opened or last read. Raises `OSError` if it cannot be opened or is not a
     regular file.
     """
 

@@ -1,23 +1,11 @@
 """Schema of the spectrum cubes, and functions that write and read data set files.
 
-A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio) and
-
-====================  ===  =====================================================================================
-peak_rotation         f8   max |theta|/alpha over the whole response [-], nan where the block overturns
-outcome               i1   code of `rocking._model.response.Outcome`
-impacts               i4   impacts before the pulse ends, and the one after it that is followed by overturning
-exceeded_alpha        i1   1 where |theta| passed alpha at some time
-peak_mode             i4   arc on which the peak is reached; the peak is smooth within one mode
-stencil               i1   what is interpolated in the cell whose lower corner is the node
-interpolation_error   f4   largest error of that, measured at points of the cell and of the eight cells around it
-restitution_error     f4   largest error halfway to the next restitution, measured in the same cells
-alpha_error           f4   largest error halfway to the next angle, measured in the same cells
-====================  ===  =====================================================================================
-
-with scalar coordinates `pulse` and `restitution`, the attribute `IMPACTS_BEFORE_REST`, and derived fields of the nodes
-where they were asked for (`OPTIONAL_VARIABLES`); alpha = 0 stands for the slender limit. A file of a pulse given by
-samples holds these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of
-creation, so equal content gives equal bytes, and a digest of their values.
+A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio), the
+variables `VARIABLES`, which say what they hold, scalar coordinates `pulse` and `restitution`, the attribute
+`IMPACTS_BEFORE_REST`, and derived fields of the nodes where they were asked for (`OPTIONAL_VARIABLES`). alpha = 0
+stands for the slender limit. Values of a cell are stored at its lower corner. A file of a pulse given by samples holds
+these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of creation, so equal
+content gives equal bytes, and a digest of their values.
 """
 
 import hashlib
@@ -101,7 +89,7 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
                     "Lagrange in the square of alpha, measured as restitution_error"},
     ),
 }  # fmt: skip
-"""Type and attributes of each variable of a spectrum cube; those of a response derive from `rocking._model.fields`."""
+"""Type and attributes of each variable of a spectrum cube; fields of a response derive from `rocking._model.fields`."""
 
 OPTIONAL_VARIABLES = {field.name: (field.file_dtype, field.attributes) for field in DERIVED_FIELDS}
 """Variables that a spectrum cube has if they were asked for, at its nodes; they are not interpolated."""

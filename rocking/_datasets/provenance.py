@@ -1,4 +1,4 @@
-"""Digests of the settings from which a result was computed; those of its code are `rocking._base.source_tree`.
+"""Digests of the settings from which a result was computed; `rocking._base.source_tree` has digests of its code.
 
 A result depends on the modules that its script imports, directly or indirectly, and on the locked environment, so that
 a change of a module affects only results that depend on it.
@@ -16,5 +16,5 @@ def settings_digest(settings: Mapping[str, Any]) -> str:
 
 
 def settings_text(settings: Mapping[str, Any]) -> str:
-    """The settings as JSON with sorted keys, of which `settings_digest` is the digest."""
+    """The settings as JSON with sorted keys, the text whose digest is `settings_digest`."""
     return json.dumps(settings, sort_keys=True)

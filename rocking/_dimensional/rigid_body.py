@@ -260,7 +260,7 @@ class RigidBody(RespondingBody):
         Examples
         --------
         >>> facade = RigidBody.from_size("60 cm", "9 m").one_sided("right", rebound=0.4)
-        >>> bool(facade.response("sine", peak_acceleration="0.3 g", period="1 s").overturned)
+        >>> bool(facade.response("sine", peak_acceleration="0.2 g", period="1 s").overturned)
         False
         """
         return RigidBody(**self._given | self.labels | {"rebound": rebound}, sides=side)

@@ -56,8 +56,7 @@ ATTRIBUTES = (
 )
 """Attributes of the whole motion that it adds, beside `lifts_off` and `warnings`."""
 
-FORCES = (*ATTRIBUTES, "friction_time", "normal_time")
-"""Fields of `ContactExtremes` that depend on the contact forces."""
+FORCES = (*ATTRIBUTES, "friction_time", "normal_time")  # fields of `ContactExtremes` that depend on the contact forces
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ class ContactExtremes:
     outcome: Outcome  # final outcome of the motion
 
     def without_forces(self) -> ContactExtremes:
-        """The same without the forces, for structures of which only the motion is known."""
+        """The same without the forces, where only the motion of a structure is known."""
         unknown = dict.fromkeys(FORCES, math.nan)
         return replace(self, **unknown)  # type: ignore[arg-type]
 
@@ -182,10 +181,11 @@ def reactions_of(
     """
     ground, vertical = motion.ground_acceleration(tau), 1.0 + motion.vertical_acceleration(tau)
     geometry = motion.contact_geometry
+    # the edge in contact: one for each stretch between two impacts; by the velocity where a stretch has no rotation
     leaning = _sides_between(impact_times, tau, rotation)[np.searchsorted(impact_times, tau, side="right")]
     side = np.where(leaning != 0.0, leaning, np.sign(velocity))
     still = (rotation == 0.0) & (velocity == 0.0)
-    # a motion that starts with a jump
+    # at rest both edges are in contact, unless the ground lifts one of them at this very time, as a jump does
     left = math.tan(geometry.ratio * motion.alpha) / math.tan(motion.alpha) if motion.alpha > 0.0 else geometry.ratio
     lifting = np.where(ground > left * vertical, -1.0, np.where(-ground > vertical, 1.0, 0.0))
     side = np.where(still, lifting, side)
@@ -215,6 +215,7 @@ def contact_extremes(motion: BodyMotion) -> ContactExtremes:
         return reactions_of(motion, impact_times, at, *motion.sample(at))
 
     sampled = measured(tau)
+    # the demand has a largest value only if the normal reaction stays positive
     normal_time, lowest = _refined_maximum(lambda at: -measured(at).normal, tau, -sampled.normal)
     time, demand = normal_time, math.inf
     if lowest < 0.0:
@@ -283,6 +284,7 @@ def _fine_samples(motion: BodyMotion, record: Record, impact_times: Floats) -> t
     steps = max(MAX_STEP / motion.ground_rate, end / MAX_STEPS), max(MAX_STEP, after / MAX_STEPS)
     tau = np.concatenate([np.linspace(0.0, motion.horizon, 400), _event_sides(motion, record, impact_times)])
     tau = np.unique(np.clip(tau, 0.0, motion.horizon))
+    # divide the steps that are too wide until there are none: where the block rests they may be wide
     while True:
         rotation, velocity = motion.sample(tau)
         beyond = np.flatnonzero(np.abs(rotation) > motion.max_rotation)
@@ -310,7 +312,7 @@ def _until_last_crossing_of_alpha(motion: BodyMotion, tau: Floats, rotation: Flo
     if below == tau.size - 1:
         return tau
     left, right = tau[below], tau[below + 1]
-    for _ in range(6):
+    for _ in range(6):  # 32 parts each time, to 1e-9 of the step
         grid = np.linspace(left, right, 33)
         k = int(np.flatnonzero(_within_alpha(motion, motion.sample(grid)[0])).max(initial=0))
         left, right = grid[k], grid[min(k + 1, 32)]
@@ -318,7 +320,7 @@ def _until_last_crossing_of_alpha(motion: BodyMotion, tau: Floats, rotation: Flo
 
 
 def _refined_maximum(measure: Callable[[Floats], Floats], tau: Floats, values: Floats) -> tuple[float, float]:
-    """Time and value of the maximum of a function, of which these are values, refined around the largest of them."""
+    """Time and value of the maximum of a function, refined around the largest of its `values` at times `tau`."""
     k = int(values.argmax())
     for _ in range(3):
         tau = np.union1d(np.linspace(tau[max(k - 1, 0)], tau[min(k + 1, tau.size - 1)], 33), tau[k])

@@ -75,18 +75,19 @@ class BodyMotion(ABC):
         """tau at which the ground motion ends [-]."""
 
     @property
-    @abstractmethod
     def ground_rate(self) -> float:
         """Largest of 1 and the rate of the phase of the ground motion with respect to tau [-]."""
+        return 1.0
 
     @property
-    @abstractmethod
     def kink_times(self) -> Floats:
         """Times [tau] at which the reactions are continuous and may have a kink."""
+        return np.empty(0)
 
-    @abstractmethod
     def jump_times(self, record: Record) -> Floats:
         """Times [tau] other than impacts at which the reactions may jump."""
+        del record
+        return np.empty(0)
 
     @abstractmethod
     def ground_acceleration(self, tau: Floats) -> Floats:
@@ -226,11 +227,6 @@ class PulseMotion(BodyMotion):
     def ground_rate(self) -> float:
         return max(1.0, self.frequency_ratio)
 
-    @property
-    def kink_times(self) -> Floats:
-        """None: a pulse is smooth between its ends."""
-        return np.empty(0)
-
     def jump_times(self, record: Record) -> Floats:
         """Ends of the intervals of the pulse: of possible uplift, and of extremes of the pulse."""
         cuts = record["interval_phase"][: int(record["interval_count"]) + 1]
@@ -252,7 +248,7 @@ class PulseMotion(BodyMotion):
         impact_times[:written] = (impacts["next_phase"][:written] - self.pulse.start) / self.frequency_ratio
         if self.alpha == 0.0:
             self._set_response(record)
-            at_rest = history[TAU] <= record["uplift_time"]  # which differs from that of the flights by rounding
+            at_rest = history[TAU] <= record["uplift_time"]  # the flights have another one by rounding
             history[ROTATION, at_rest] = history[VELOCITY, at_rest] = 0.0
         if self._flag[0]:
             check_stop(self.stop)
@@ -309,18 +305,8 @@ class SamplesMotion(BodyMotion):
         return float(self.times[-1])
 
     @property
-    def ground_rate(self) -> float:
-        """1: the samples themselves are among the kinks."""
-        return 1.0
-
-    def jump_times(self, record: Record) -> Floats:
-        """None: the ground acceleration is continuous from the first sample to the last."""
-        del record
-        return np.empty(0)
-
-    @property
     def kink_times(self) -> Floats:
-        """Times of the samples."""
+        """Times of the samples; between them the ground acceleration is linear."""
         return self.times
 
     def ground_acceleration(self, tau: Floats) -> Floats:
@@ -353,18 +339,6 @@ class FreeMotion(BodyMotion):
     @property
     def pulse_end(self) -> float:
         return 0.0
-
-    @property
-    def ground_rate(self) -> float:
-        return 1.0
-
-    @property
-    def kink_times(self) -> Floats:
-        return np.empty(0)
-
-    def jump_times(self, record: Record) -> Floats:
-        del record
-        return np.empty(0)
 
     def ground_acceleration(self, tau: Floats) -> Floats:
         return np.zeros(tau.size)

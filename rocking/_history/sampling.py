@@ -1,9 +1,9 @@
 """Time histories from the flights of the solver: samples of each flight, then of free rocking, impact by impact.
 
-The event loop of the solver, for a pulse or for samples of the ground motion, follows one flight after the other; each
-is then repeated from its start, by the same pieces or Taylor steps, and evaluated at the times inside it. So a
-history has the events of the response, and samples do not change them. Under a pulse the flights are those
-that the kernel of the responses has written, so that a history does not compile its event loop again.
+Given: the flights that the event loop has followed, and times. Each flight is repeated from its start, by the same
+pieces or Taylor steps, and evaluated at the times inside it. No event is decided here: a history has those of the
+response, and its samples do not change them. Under a pulse the kernel of the responses has written the flights, so that
+a history does not compile its event loop again.
 
 In all functions `history` is a float array (3, times): the rows `TAU`, ascending times from the start of the ground
 motion [-], `ROTATION` theta/alpha and `VELOCITY` theta'/(p alpha), the last two zero on entry. `filled` is the number
@@ -57,7 +57,8 @@ def sample_flights(
         start = (flight.phase - first) / omega
         going = k + 1 < len(followed) or flight.end_sign == 0.0  # whether the flight ended in an impact
         end = (flight.next_phase - first) / omega if going else start + flight.length
-        if not going and end < pulse_end:  # overturning is certain before the pulse ends: the last flight continues
+        # overturning was certain before the end of the pulse, where the solver stopped: the flight goes on to there
+        if not going and end < pulse_end:
             flight.length, end = pulse_end - start, pulse_end
         filled = pass_times(history, filled, start)  # at rest
         limit = math.inf if going else max_rotation
@@ -97,6 +98,7 @@ def sample_record(
         else:
             ended, k, s, z, w = flight_by_taylor_steps(block, samples, steps)
         going = end_flight(block, samples, ended, k, s, z, w)
+        # once the end of the flight is known it is repeated, and sampled up to there
         end = cell.rate * samples[TIME, k] + s if ended == IMPACT else last
         if ended == IMPACT and written < len(impact_times):
             impact_times[written] = end
@@ -141,6 +143,7 @@ def sample_steps(
     steps.omega[0], steps.strength[0], steps.phase[0] = flight.omega, flight.strength, flight.phase
     steps.z0[0], steps.w0[0], steps.starts_at_uplift[0] = 0.0, flight.w0, flight.starts_at_uplift
     elapsed, z, w = 0.0, 0.0, flight.w0
+    # no segments: the events are known, so that steps may pass the places where q changes its sign
     while elapsed < flight.length and z < max_rotation:
         steps.limit[0] = flight.length - elapsed
         take_step(steps)
@@ -181,6 +184,7 @@ def sample_pieces(
         left, h = start.h * samples[TIME, k], interval_length(start, samples, k)
         q0, q1 = restoring_at(start, samples, k), restoring_at(start, samples, k + 1)
         r = (q1 - q0) / h
+        # q is 0 at an uplift without rounding, as when the flight was followed
         at = 0.0 if start.starts_at_uplift == 1 and k == start.interval else q0 + r * s
         right = min(end, start.h * samples[TIME, k + 1])
         while filled < history.shape[1] and history[TAU, filled] < right:
@@ -245,8 +249,9 @@ def sample_free_rocking(
 ) -> int:
     """Continue from the state that the solver left at the end of the ground motion; returns the impacts written.
 
-    Without ground motion z has one maximum in a flight, after which it falls to the next impact: each Taylor step holds
-    at most one impact, which `impact_in_step` finds. The restitution ends the motion at `REST_VELOCITY`.
+    Given: z, w and sgn(theta) when the ground stops. Decided: the impacts that follow. None is missed: without ground
+    motion q = 1, so that z has one maximum in a flight and then falls, and each Taylor step holds at most one impact,
+    which `impact_in_step` finds. The motion ends where it overturns, at the horizon, or at `REST_VELOCITY`.
 
     `z`, `w`, `sign`: |theta|/alpha, its rate, and sgn(theta) there: the fields `end_rotation`, `end_velocity` and
     `end_sign`; `body`: record `BLOCK_STATE` with the fields `BODY_FIELDS`; `steps`: solver state of `step_state`;
@@ -268,7 +273,7 @@ def sample_free_rocking(
         filled = sample_step(steps, sign, time, time + h, history, filled)
         time += h
         starts_at_ground = impact >= 0.0
-        if not starts_at_ground:
+        if not starts_at_ground:  # the flight goes on
             steps.z0[0], steps.w0[0] = steps.z1[0], steps.w1[0]
             continue
         if written < len(impact_times):

@@ -26,7 +26,7 @@ MAX_SAMPLES = 1_000_000  # largest number of uniform samples of a history
 DEFAULT_SAMPLES = 400  # uniform samples of a history under a pulse
 
 MIN_CONTINUED = 10_000
-"""Samples after the end of a motion up to which they have its step [-], whatever its own number of samples."""
+"""So many samples after the end of a motion keep its step [-], even if the motion has fewer."""
 
 
 def time_history(
@@ -80,6 +80,12 @@ def time_history(
         For an argument out of range, missing, or without meaning for the kind of motion.
     StoppedError
         If `stop` was set.
+
+    Examples
+    --------
+    >>> history = time_history("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.9)
+    >>> history.attrs["outcome"], history.impact_time.values.round(4).tolist()
+    ('OVERTURNED_AFTER_IMPACT', [1.8387])
     """
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)

@@ -117,28 +117,14 @@ def interpolate_many(
 ) -> int:
     """Fill `found` where some slices determine the response within the tolerance; the number of these points.
 
-    Parameters
-    ----------
-    slenderness, frequency_ratio, restitution, alpha : float arrays (points,)
-        The points [-], [-], [-], [rad].
-    groups : int64 array (points,)
-        Groups of the points by their restitutions.
-    group : int
-        The group whose points are interpolated from these slices.
-    mesh, axis : Mesh, AngleAxis
-        The nodes and the angles of the slices.
-    slices : tuple of four arrays (angles, n, m) of `NODE`
-        Ascending; those beyond the number of `levels` are not read.
-    levels : float array (slices,)
-        The restitutions of the slices [-]; one for points on a slice.
-    lower : int
-        The slice at or below the restitutions of the points.
-    tolerance : float
-        Largest error bound [-].
-    safety, solver_error : float
-        The bound is `safety` times the sum of the measured errors, plus `solver_error` [-].
-    found : Found
-        Responses of all points.
+    Given: points, and the nodes around them. Decided: whether all cells around a point are of one kind, and whether the
+    bound of the error meets the tolerance; all other points are left open, for the solver.
+
+    `slenderness`, `frequency_ratio`, `restitution`, `alpha` (points,) [-, -, -, rad]; `groups` (points,): of `prepare`;
+    `group`: whose points are interpolated here; `mesh`, `axis`: nodes and angles of the slices; `slices`: ascending,
+    beyond the number of `levels` they are not read; `levels` (slices,): their restitutions, one for points on a slice
+    [-]; `lower`: the slice at or below the points; `tolerance`: largest error bound [-], which is `safety` times the
+    sum of the measured errors plus `solver_error` [-]; `found`: responses of all points.
     """
     given = 0
     for k in range(len(slenderness)):
@@ -147,7 +133,7 @@ def interpolate_many(
         s, w, angle = slenderness[k], frequency_ratio[k], alpha[k]
         i, j, a = cell_of(mesh.rows, s), cell_of(mesh.columns, w), _group_of(axis.angles, angle)
         if i < 0 or j < 0 or a < 0 or s >= 1.0:
-            continue
+            continue  # outside of the axes, or without uplift, which `prepare` has filled
         first, count = axis.windows[a, 0], axis.windows[a, 1]
         by_angle = _level_weights(axis.squares, first, count, angle * angle)
         by_level = _level_weights(levels, 0, len(levels), restitution[k])
@@ -155,7 +141,7 @@ def interpolate_many(
         kind, error = _judge(slices, len(levels), lower, (a >> 1) - first, place, by_angle, by_level)
         if kind == NO_STENCIL or np.isnan(error):
             continue
-        if kind == OVERTURNS:
+        if kind == OVERTURNS:  # in the same way at all nodes: nothing is interpolated
             found.peak_rotation[k] = found.error_bound[k] = np.nan
             found.outcome[k] = slices[0][first, i, j].outcome
             found.exceeded_alpha[k] = True

@@ -31,8 +31,7 @@ def slice_window(count: int, lower: int) -> tuple[int, int]:
 
 
 def windows_of(count: int, first: int, last: int) -> tuple[int, int]:
-    """First slice, and the one after the last, of those from which the intervals above the slices `first` to `last` - 1
-    are interpolated.
+    """First slice, and the one after the last, from which the intervals above slices `first` to `last` - 1 are made.
 
     The last slice of all has no interval above it.
     """

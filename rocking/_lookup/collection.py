@@ -187,7 +187,7 @@ def _cube_name(pulse: str, restitution: float) -> str:
 
 
 def _restitution_of(stem: str) -> float:
-    """Restitution in the name of a file; nan, which equals no restitution, if the name has none."""
+    """Restitution in the name of a file; nan if the name has none."""
     try:
         return float(stem.removeprefix("eta-"))
     except ValueError:

@@ -84,7 +84,7 @@ class Window(NamedTuple):
     levels: Array  # their restitutions [-]
 
     def arguments(self, alpha: Array, may_read: bool) -> tuple[Any, ...]:
-        """What the kernel needs for points at some angles [rad], which are read if they are not."""
+        """What the kernel needs for points at some angles [rad]: it reads the nodes of these angles if necessary."""
         own, nodes = self.slices[self.lower], []
         angles = () if all(one.layers.complete for one in self.slices) else own.angles.needed(alpha)
         for one in self.slices:
@@ -192,7 +192,7 @@ class Cube:
             return solve_checked(as_pulse(self.pulse), *groups, None, threads, stop), []
         found, used, unknown = self._interpolated(points, limit, threads, stop)
         result = _response(found)
-        if unknown:
+        if unknown:  # the solver takes what the cubes leave open
             left = np.flatnonzero(~found.known)
             if method == "cube":
                 self._refuse(points[left[:1]], limit)
@@ -232,6 +232,7 @@ class Cube:
         groups, present = np.empty(size, np.int64), np.zeros(2 * self.restitutions.size + 1, np.bool_)
         arrays = points.slenderness, points.frequency_ratio, points.restitution, points.alpha, groups
         found = Found.zeros(size)
+        # points on one slice, or between the same two, are one group: each is interpolated from one window of slices
         no_uplift = prepare(points.slenderness, points.restitution, self.restitutions, groups, present, found)
         windows: list[tuple[int, Window, tuple[Any, ...]]] = [
             (group, window, window.arguments(points.alpha, self.may_read))

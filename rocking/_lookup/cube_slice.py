@@ -67,7 +67,7 @@ class Layers:
         return not self._kept[1].isdisjoint(angles)
 
     def at(self, angles: Collection[int]) -> Nodes:
-        """The nodes (angles, n, m), of which those of some angles are read; the others are undefined.
+        """The nodes (angles, n, m), read for some angles; nodes of other angles may be undefined.
 
         Raises `DatasetError` if the file was replaced or removed.
         """
@@ -76,6 +76,7 @@ class Layers:
             return nodes
         with self._lock:
             nodes, missing = self._kept
+            # beyond the limit start anew, with the angles that are wanted now
             many = len(nodes) - len(missing.difference(angles))
             if many * nodes[0].nbytes > MAX_LAYER_BYTES and many > len(angles):  # others keep the former array
                 nodes, missing = self._kept = np.empty(nodes.shape, NODE), set(range(len(nodes)))
@@ -121,7 +122,7 @@ def open_slice(path: Path | str) -> CubeSlice:
 def decode_slice(content: bytes, name: Path | str, path: Path, version: FileVersion | None) -> CubeSlice:
     """`open_slice` from the bytes of a version of a file; messages have its `name`.
 
-    The digest at the end of the file covers all bytes: that of the values is not compared as well.
+    The digest at the end of the file covers all bytes: the digest of the values is not compared as well.
     """
     with open_checked(content, name) as cube:
         check_spectrum(cube, name)
@@ -185,7 +186,7 @@ def _layer(cube: xr.Dataset, angle: int) -> Nodes:
 
 
 def counted_cells(cube: xr.Dataset) -> NDArray[np.bool_]:
-    """Cells, by their lower nodes, in which the number of impacts is certain to be that of the node.
+    """Cells, by their lower nodes, in which every block has certainly as many impacts as the node.
 
     All 4 x 8 nodes around the cell have this number: four are not enough, as bands of another number, which lie along
     the columns, may end in the cell. And it is certain that the impacts of none of them accumulate to rest while the
@@ -200,7 +201,7 @@ def counted_cells(cube: xr.Dataset) -> NDArray[np.bool_]:
 
     impacts, mode = cube["impacts"].values, cube["peak_mode"].values
     most = int(cube.attrs.get(IMPACTS_BEFORE_REST, 0)) // 2
-    numbers = np.where((impacts <= most) | (mode >> 1 == impacts), impacts, -1)
+    numbers = np.where((impacts <= most) | (mode >> 1 == impacts), impacts, -1)  # -1: not certain
     least = largest = numbers
     for axis, size in ((1, 4), (2, 8)):  # one node more above than below
         least = minimum_filter1d(least, size, axis, mode="nearest", origin=-1)

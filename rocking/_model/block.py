@@ -22,10 +22,10 @@ Number = Any  # a float; of an array of blocks an array of them
 
 @dataclass(frozen=True, init=False, eq=False)
 class AbstractBlock(AbstractBody):
-    """What rocks like a rectangular block; its properties are those of the rectangle unless a subclass has others.
+    """What rocks like a rectangular block; a subclass overrides properties in which it differs from the rectangle.
 
     `width`, `height`: 2b and 2h of the rectangular block of this alpha and p [m]. All arguments may be arrays, which
-    broadcast: an array of blocks, of which the properties are arrays.
+    broadcast: the properties of an array of blocks are arrays.
     """
 
     width: Number

@@ -34,7 +34,7 @@ class Edge:
     restitution: Array
     # R p^2/g, (0, 1): 3/4 for a rectangle. Nan: the contact forces do not follow from the motion [-]
     inertia_ratio: Array
-    # whether by a wall; its other values are then those of the other edge
+    # whether a wall blocks it; its other values are then equal to the other edge's
     blocked: bool | NDArray[np.bool_] = False
 
     @property
@@ -162,8 +162,7 @@ class PolygonProperties:
 
 
 def polygon_properties(vertices: ArrayLike) -> PolygonProperties:
-    """Mass properties of an outline, by Green's theorem; `vertices` (vertices, 2) are corners x, y [m] in order, y
-    upwards.
+    """Mass properties of an outline by Green's theorem, from its corners (vertices, 2): x, y [m] in order, y upwards.
 
     At least three, either way round; the outline is closed by the first one and does not cross itself. Raises
     `InvalidArgumentError` if the vertices are not so, enclose no area, or do not stand: the base is the part of the

@@ -36,7 +36,7 @@ def check_window(
 ) -> tuple[float, float]:
     """The ends of a window of a parameter, low < high, in its range.
 
-    `names` are those of the error message; by default that of the parameter with the endings `_min` and `_max`.
+    `names`: for the error message; by default the name of the parameter with the endings `_min` and `_max`.
     """
     first, last = names or (f"{parameter.name}_min", f"{parameter.name}_max")
     lower = parameter.number(low, first)
@@ -73,11 +73,10 @@ def check_one_alpha(alpha: ArrayLike | WithUnit | None) -> float:
 
 
 def known_restitution(restitution: Any, alpha: Any) -> Any:
-    """The restitution as it is; for "momentum" (2.4) of the angles [rad], 0 where that is negative; for
-    "kalliontzis(k=...)" `spread_impact` of it.
+    """The restitution as it is given; "momentum" and "kalliontzis(k=...)" become numbers, from the angles [rad].
 
-    Raises `InvalidArgumentError` for these without an angle, or with an angle of 0, the slender limit, in which they
-    lose no energy.
+    "momentum" is (2.4), 0 where that is negative, and the other one `spread_impact` of it. Raises
+    `InvalidArgumentError` for these without an angle, or with 0, the slender limit, in which they lose no energy.
     """
     share = impact_share(restitution)
     if share is None:

@@ -35,7 +35,7 @@ def residual_energy(
 
 
 def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
-    """Excess of the energy at the end of the pulse, or after the next impact, over that of the barrier [-].
+    """Energy at the end of the pulse, or after the next impact, less the energy of the barrier, over the latter [-].
 
     `z`, `w`: |theta|/alpha and its rate with respect to tau at the end of the pulse [-]; `alpha`: slenderness angle
     [rad], 0: slender. Positive where the block overturns: the larger of (w - X)/X(0), see

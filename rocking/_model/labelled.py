@@ -124,7 +124,7 @@ def labelled_response(
 
 @contextmanager
 def without_place() -> Iterator[None]:
-    """Errors of arguments inside have no index: that of a part is not that of the whole array."""
+    """Errors of arguments inside have no index: the index in a part is wrong in the whole array."""
     try:
         yield
     except InvalidArgumentError as error:

@@ -78,9 +78,7 @@ class MasonryArch:
         return [Link(mass, cmath.rect(distance, self.angle(n + 0.5)), inertia) for n in range(self.voussoirs)]
 
     def mechanism(self) -> Mechanism:
-        """The mechanism of least uplift acceleration that opens under a ground acceleration of one direction, if
-        any.
-        """
+        """The mechanism that opens at the smallest ground acceleration in one direction; an error if none opens."""
         quadruples = itertools.combinations(range(self.voussoirs + 1), 4)
         found = [one for joints in quadruples for face in (-1, 1) if (one := self._opening(joints, face))]
         if not found:

@@ -21,10 +21,10 @@ INERTIA_RATIO = 0.75  # R p^2/g = 3/4 for a rectangle that rotates about its cor
 
 @dataclass(frozen=True)
 class ContactGeometry:
-    """What reactions need beside alpha of the right edge; the defaults are those of a rectangular block."""
+    """What reactions need beside alpha of the right edge; the defaults hold for a rectangular block."""
 
-    ratio: float = 1.0  # alpha of the left edge over that of the right one [-]
-    speed: float = 1.0  # p of the left edge over that of the right one [-]
+    ratio: float = 1.0  # alpha of the left edge over alpha of the right one [-]
+    speed: float = 1.0  # p of the left edge over p of the right one [-]
     inertia_ratio: tuple[float, float] = (INERTIA_RATIO, INERTIA_RATIO)  # R p^2/g of the right and the left edge [-]
     tilt: float = 0.0  # angle by which the base is inclined towards the right [rad]
 

@@ -159,7 +159,7 @@ def axis_names(
 def along_own_axes(
     value: NDArray[np.float64], names: Sequence[Hashable]
 ) -> tuple[tuple[Hashable, ...], NDArray[np.float64]]:
-    """The `names` of the axes along which an argument of a response varies, of those of all axes, and its values."""
+    """The axes along which an argument of a response varies, out of the `names` of all axes, and its values."""
     first = len(names) - value.ndim
     axes = [axis for axis, size in enumerate(value.shape) if size != 1]
     return tuple(names[first + axis] for axis in axes), value.reshape([value.shape[axis] for axis in axes])

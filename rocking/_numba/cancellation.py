@@ -48,13 +48,7 @@ class StopFlag:
         return bool(self.array[0])
 
     def check(self) -> None:
-        """Raise if the flag is set.
-
-        Raises
-        ------
-        StoppedError
-            If the flag is set.
-        """
+        """Raise `StoppedError` if the flag is set."""
         if self.array[0]:
             raise StoppedError("the work was cancelled")
 
@@ -107,4 +101,4 @@ def _flag_is_set(_: Any, flag: Any) -> Any:
 
 
 is_stopped: Any = intrinsic(_flag_is_set)
-"""stopped(array): whether the flag is set, for kernels; an atomic load, which the compiler leaves in the loop."""
+"""is_stopped(array): whether the flag is set, for kernels: an atomic load stays in the loop when it is optimised."""

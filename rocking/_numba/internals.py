@@ -212,12 +212,12 @@ class PackageCacheLocator(UserProvidedCacheLocator):
 
     @classmethod
     def get_suitable_cache_subpath(cls, py_file: str) -> str:
-        """None: numba's own is a digest of the path, which fails for a path that the locale cannot express."""
+        """None: numba's own, a digest of the path, fails for a path that the locale cannot express."""
         del py_file
         return ""
 
     def get_source_stamp(self) -> str:
-        """The same at any time: the folder is that of the sources."""
+        """The same at any time: the name of the folder depends on the sources."""
         return ""
 
     @classmethod

@@ -58,7 +58,7 @@ _WARNED = threading.Event()
 
 
 class Make(Protocol):
-    """Makes the compiled form of a function, which is compiled when it is called."""
+    """Makes the compiled form of a function; it compiles when it is called."""
 
     def __call__(self, *, cache: bool) -> Any:
         """With `cache`, its machine code is kept in `numba.config.CACHE_DIR`."""
@@ -88,7 +88,7 @@ def cache_folder() -> str | None:
 def kernel_digest(sources: SourceTree) -> str:
     """Digest of what compiled code depends on: processor, Python, `MADE_WITH`, kernel files with what they import here.
 
-    The processor is that of the machine, or the one that NUMBA_CPU_NAME and NUMBA_CPU_FEATURES name: the folder is then
+    The processor is the machine's, or the one that NUMBA_CPU_NAME and NUMBA_CPU_FEATURES name: the folder is then
     found on every machine.
     """
     collecting = gc.isenabled()
@@ -201,7 +201,7 @@ def _digest(sources: SourceTree, files: Iterable[Path]) -> str:
 
 
 def _is_writable(folder: Path, marker: str | None = None) -> bool:
-    """Whether files can be made in a folder, which is made if it is missing, as is an empty file `marker` in it."""
+    """Whether files can be made in a folder; a missing folder is made, and an empty file `marker` in it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()

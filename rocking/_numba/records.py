@@ -1,4 +1,4 @@
-"""Assignment of all fields of records at once: kernels do not list the fields, which are declared elsewhere."""
+"""Assignment of all fields of records at once: kernels do not list fields that are declared elsewhere."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -31,7 +31,7 @@ copy_fields: Any = intrinsic(_copy_fields)
 
 
 def constant_fields(numbers: Mapping[str, float]) -> Any:
-    """An intrinsic that sets those of the named fields that a record has to constants."""
+    """An intrinsic that sets fields of a record to constants; names that it does not have are passed over."""
 
     @intrinsic
     def set_constants(_: Any, target: Any) -> Any:

@@ -22,8 +22,7 @@ latencies of two units of eight overlap, which saves a tenth to a fifth of the t
 VECTOR_BYTES = 8 * LANES
 """Size of a vector and alignment of the rows of an array: a row that crosses a cache line takes two accesses."""
 
-FLOAT_LANES = 2 * LANES
-"""Single-precision numbers of a vector, which is as long."""
+FLOAT_LANES = 2 * LANES  # single-precision numbers of a vector, which is as long
 
 _LLVM_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _LLVM_FLOATS = ir.VectorType(ir.FloatType(), FLOAT_LANES)
@@ -54,6 +53,10 @@ def _constant(value: float) -> Any:
     return ir.Constant(_LLVM_VECTOR, [value] * LANES)
 
 
+def _bits(value: int) -> Any:
+    return ir.Constant(_LLVM_BITS, [value] * LANES)
+
+
 def _splat(builder: Any, value: Any, vector: Any = _LLVM_VECTOR) -> Any:
     undefined, number = ir.Constant(vector, ir.Undefined), ir.IntType(32)
     value = builder.fptrunc(value, vector.element) if value.type != vector.element else value
@@ -76,8 +79,8 @@ def _row_address(builder: Any, array: Any, row: Any) -> Any:
 
 
 def _absolute(builder: Any, x: Any) -> Any:
-    without_sign = ir.Constant(_LLVM_BITS, [2**63 - 1] * LANES)
-    return builder.bitcast(builder.and_(builder.bitcast(x, _LLVM_BITS), without_sign), _LLVM_VECTOR)
+    without_sign = builder.and_(builder.bitcast(x, _LLVM_BITS), _bits(2**63 - 1))
+    return builder.bitcast(without_sign, _LLVM_VECTOR)
 
 
 def _approx_log2(builder: Any, x: Any) -> Any:
@@ -93,29 +96,16 @@ def _approx_exp2(builder: Any, x: Any) -> Any:
 def _power_of_two(builder: Any, x: Any) -> Any:
     # in the sum the last bits of the mantissa hold the biased exponent
     whole = builder.bitcast(builder.fadd(x, _constant(1.5 * 2.0**52 + 1023.0)), _LLVM_BITS)
-    return builder.bitcast(builder.shl(whole, ir.Constant(_LLVM_BITS, [52] * LANES)), _LLVM_VECTOR)
+    return builder.bitcast(builder.shl(whole, _bits(52)), _LLVM_VECTOR)
 
 
-def _quadrant(builder: Any, turns: Any, offset: int) -> tuple[Any, Any]:
-    # in the sum the last bits of the mantissa hold the integer; bit 0: exchange, bit 1, moved to the sign: negate
+def _of_quadrant(builder: Any, turns: Any, even: Any, odd: Any, offset: int) -> Any:
+    # in the sum the last bits of the mantissa hold the integer; bit 0 chooses, bit 1 of it plus `offset`, moved to the
+    # sign, negates
     bits = builder.bitcast(builder.fadd(turns, _constant(1.5 * 2.0**52)), _LLVM_BITS)
-    odd = builder.icmp_unsigned(
-        "!=", builder.and_(bits, ir.Constant(_LLVM_BITS, [1] * LANES)), ir.Constant(_LLVM_BITS, [0] * LANES)
-    )
-    moved = builder.add(bits, ir.Constant(_LLVM_BITS, [offset] * LANES))
-    half = builder.and_(moved, ir.Constant(_LLVM_BITS, [2] * LANES))
-    return odd, builder.shl(half, ir.Constant(_LLVM_BITS, [62] * LANES))
-
-
-def _sine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any:
-    odd, sign = _quadrant(builder, turns, 0)
-    value = builder.bitcast(builder.select(odd, cosine, sine), _LLVM_BITS)
-    return builder.bitcast(builder.xor(value, sign), _LLVM_VECTOR)
-
-
-def _cosine_of_quadrant(builder: Any, turns: Any, sine: Any, cosine: Any) -> Any:
-    odd, sign = _quadrant(builder, turns, 1)
-    value = builder.bitcast(builder.select(odd, sine, cosine), _LLVM_BITS)
+    is_odd = builder.icmp_unsigned("!=", builder.and_(bits, _bits(1)), _bits(0))
+    sign = builder.shl(builder.and_(builder.add(bits, _bits(offset)), _bits(2)), _bits(62))
+    value = builder.bitcast(builder.select(is_odd, odd, even), _LLVM_BITS)
     return builder.bitcast(builder.xor(value, sign), _LLVM_VECTOR)
 
 
@@ -180,6 +170,10 @@ def _scatter_rows(builder: Any, source: Any, places: Any, target: Any) -> Any:
         builder.store(row, _row_address(builder, target, place_of(builder, places, i)), align=8)
 
 
+def _store_where(builder: Any, address: Any, mask: Any, x: Any) -> Any:
+    return builder.store(builder.select(mask, x, builder.load(address, align=8)), address, align=8)
+
+
 def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> Any:
     """An intrinsic compiled by `generate`; a parameter None is an array, which is passed as its address.
 
@@ -209,6 +203,7 @@ def instruction(generate: Callable[..., Any], result: Any, *parameters: Any) -> 
         1: lambda _, x: typed(x),
         2: lambda _, x, y: typed(x, y),
         3: lambda _, x, y, z: typed(x, y, z),
+        4: lambda _, w, x, y, z: typed(w, x, y, z),
     }
     return intrinsic(forms[len(parameters)])
 
@@ -230,6 +225,12 @@ store = instruction(
 )
 """store(array, row, x): set a row."""
 
+store_where = instruction(
+    lambda builder, array, row, mask, x: _store_where(builder, _row_address(builder, array, row), mask, x),
+    *(types.void, None, types.intp, _MASK_TYPE, _VECTOR_TYPE),
+)
+"""store_where(array, row, mask, x): set the lanes of a row in which the mask is true."""
+
 splat = instruction(_splat, _VECTOR_TYPE, types.float64)  # splat(number): the number in every lane
 absolute = instruction(_absolute, _VECTOR_TYPE, _VECTOR_TYPE)  # absolute(x), lane by lane
 
@@ -249,10 +250,10 @@ approx_exp2 = instruction(_approx_exp2, _VECTOR_TYPE, _VECTOR_TYPE)
 square_root = instruction(_square_root, _VECTOR_TYPE, _VECTOR_TYPE)  # square_root(x), lane by lane, correctly rounded
 power_of_two = instruction(_power_of_two, _VECTOR_TYPE, _VECTOR_TYPE)  # 2**x of integers x from -1022 to 1023
 
-sine_of_quadrant = instruction(_sine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+sine_of_quadrant = instruction(lambda builder, n, s, c: _of_quadrant(builder, n, s, c, 0), *[_VECTOR_TYPE] * 4)
 """sine_of_quadrant(n, s, c): sin(r + n pi/2) of integers n from s = sin(r) and c = cos(r)."""
 
-cosine_of_quadrant = instruction(_cosine_of_quadrant, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE, _VECTOR_TYPE)
+cosine_of_quadrant = instruction(lambda builder, n, s, c: _of_quadrant(builder, n, c, s, 1), *[_VECTOR_TYPE] * 4)
 """cosine_of_quadrant(n, s, c): cos(r + n pi/2), as `sine_of_quadrant`."""
 
 select = instruction(

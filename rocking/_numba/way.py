@@ -6,7 +6,7 @@ from types import ModuleType
 import numba
 
 TRIED = (0, 68)
-"""Newest numba with which the faster way was tried; with a newer one the kernels compile by the public interface.
+"""The newest numba tried with the faster way; with a newer one the kernels compile by the public interface.
 
 To try another: install it, run `pytest tests/base tests/solver`, and change this number and the remark at the
 requirement in `pyproject.toml`.

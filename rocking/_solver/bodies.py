@@ -42,7 +42,7 @@ def solve_motion(
 
 
 def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np.void]) -> Array:
-    """Excess of the energy at the end of the motion, or after one of the next two impacts, over that of the barrier.
+    """Energy at the end of the motion, or after one of the next two impacts, less the energy of the barrier.
 
     As `rocking._model.energy.outcome_margin`, for bodies with two edges: the largest of three margins, since a
     body that does not escape about its present edge can do so about the other one after an impact, and about the
@@ -52,7 +52,7 @@ def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np
     right = edges[:, 2] >= 0.0
     ones = np.ones(cells.size)
     ratio, stiffness = np.stack([ones, cells["ratio"]]), np.stack([ones, cells["stiffness"]])
-    order = np.where(right, [[0], [1]], [[1], [0]])  # the present edge, and that of the next flight
+    order = np.where(right, [[0], [1]], [[1], [0]])  # the present edge, then the edge of the next flight
     order[1] = np.where(np.isinf(cells["slenderness"]).any(axis=1), order[0], order[1])
     ratio, stiffness = np.take_along_axis(ratio, order, 0), np.take_along_axis(stiffness, order, 0)
     eta = np.take_along_axis(cells["eta"].T, order, 0)

@@ -24,9 +24,9 @@ def refine_crossings(
 ) -> Any:
     """The phases between `low` and `high` at which f equals `level`, where the mask `wanted` is true.
 
-    `rise` is the sign of f' on the piece of the pulse, which has the given ends; `phase` is a first guess. The last
-    step is the one after which the next, at most its square over the distance to the nearest extremum, is below
-    rounding.
+    `rise` is the sign of f' on the piece of the pulse, which has the given ends; `phase` is a first guess. f is
+    monotone between the ends, so that the bracket holds one crossing. The iteration ends where its next step would be
+    below rounding: near an extremum, where f' vanishes, that is the square of the last one over the distance from it.
     """
     left, right = ends
     going = wanted
@@ -52,7 +52,7 @@ def refine_crossings(
 def find_crossings(below: float, above: float, flight: Record) -> None:
     """Set `crossing_phase` to the phases at which f = -`below` and f = `above` on the pieces that contain them.
 
-    The crossing with sgn(f) opposite to f' on a piece precedes the other one. The first guess is that of a cosine
+    The crossing with sgn(f) opposite to f' on a piece precedes the other one. The first guess is a cosine
     between the ends of the piece.
     """
     for row in range((2 * flight.pieces + LANES - 1) // LANES):

@@ -3,7 +3,7 @@
 With z = |theta|/alpha and w = dz/dtau let X(z) = (2/alpha) sin(alpha (1 - z)/2), which is 1 - z in the slender limit.
 (2.2) without ground motion conserves X^2 - w^2 between impacts, with the barrier at X = 0 (theta = alpha). The block
 escapes when w >= X, which is (3.8) in the slender limit; otherwise it returns. `rocking._solver.rules.final_outcome`
-says which impacts after the motion can matter. The functions are those of a block in its own time p t and angle alpha;
+says which impacts after the motion can matter. The functions hold for a block in its own time p t and angle alpha;
 edges that differ are scaled by the caller.
 """
 
@@ -33,11 +33,12 @@ def release(z: float, w: float, alpha: float) -> tuple[bool, float, float]:
         x, squared = slender_energy(z, w)
     else:
         x = 2.0 * math.sin(0.5 * alpha * (1.0 - z)) / alpha
+        # X(0)^2 - X(z)^2 as a product: for small z the difference of the squares would lose its digits
         climbed = 4.0 * math.sin(0.5 * alpha * z) * math.sin(0.5 * alpha * (2.0 - z)) / (alpha * alpha)
         squared = w * w + climbed if x > 0.0 else barrier * barrier - (x - w) * (x + w)
     if w >= x:  # (3.8): B >= 0
         return True, math.inf, math.inf
-    if w > 0.0:  # z increases first
+    if w > 0.0:  # z increases first, to where the velocity is used up: X(z)^2 = X^2 - w^2
         return False, highest_rotation(squared, math.sqrt((x - w) * (x + w)), barrier, alpha), squared
     return False, z, squared
 

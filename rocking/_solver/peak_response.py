@@ -49,7 +49,7 @@ TRUNCATION_FRACTION = 1e-4
 """Truncation error allowed in one Taylor step, as a fraction of the tolerance [-]: steps and impacts amplify it."""
 
 NEAR_BOUNDARY_MARGIN = 1e-3
-"""Outcome margin [-] below which a block is solved again at full precision, whatever the tolerance."""
+"""A block with a smaller outcome margin [-] is solved again at full precision, whatever the tolerance."""
 
 
 NO_EDGES = np.empty((0, EDGE_COLUMNS))  # for blocks with equal edges
@@ -158,6 +158,13 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         broadcast; labelled arguments (xarray, pandas) whose dimensions or indexes differ.
     StoppedError
         If `stop` was set.
+
+    Examples
+    --------
+    >>> peak_response("sine", slenderness=0.75, frequency_ratio=3.0, restitution=0.9)
+    <rocking.Response under sine: rocks and comes to rest: peak rotation 0.537221 alpha, 1 impact>
+    >>> peak_response("sine", slenderness=[0.2, 0.5, 0.75], frequency_ratio=3.0, restitution=0.9).overturned
+    array([ True,  True, False])
     """
     restitution = known_restitution(restitution, alpha)
     arguments = {

@@ -35,7 +35,7 @@ from rocking._solver.free_rocking import barrier_of, highest_rotation, release
 from rocking._solver.state import set_empty_response
 
 IMPACT_LIMIT = 200_000
-"""Number of impacts after which a block that neither rests nor overturns is set to rest and flagged as chatter."""
+"""After so many impacts a block that neither rests nor overturns is set to rest and flagged as chatter."""
 
 MODES_PER_UPLIFT = 65536  # number of peak modes reserved for the motion between two uplifts from rest
 MAX_UPLIFT_MODE = 32_767  # largest number of uplifts that the mode of a peak counts: it is an int32
@@ -56,7 +56,9 @@ def set_edge(state: Record, side: int, slenderness: float, eta: float, ratio: fl
 def set_body(state: Record, cell: Record, each_side: bool) -> None:
     """Set the body of a `BODY_CELL`; `each_side`: peaks are wanted for each edge, as always where the edges differ."""
     differ = cell.ratio != 1.0 or cell.stiffness != 1.0 or cell.eta[0] != cell.eta[1]
+    # pull 0: not known yet, `pulls_of` computes it at the first impact that needs it
     state.alpha, state.pull[0], state.each_side = cell.alpha, 0.0, int(each_side or differ)
+    # an edge of infinite slenderness is a wall: the body rebounds, and sgn(theta) stays
     state.turn = -1.0 if max(cell.slenderness[0], cell.slenderness[1]) < math.inf else 1.0
     set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
     set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
@@ -99,13 +101,11 @@ def peak_mode(uplifts: Any, impacts: Any, impacts_before: Any, free: Any) -> Any
 
 @kernel
 def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> None:
-    """Update the largest peak. Of two peaks that differ by rounding the mode of the earlier one is kept.
-
-    The mode counts the impacts since the last uplift from rest.
-    """
+    """Take a peak z into the response if it is the largest so far; `impacts`: before it, `free`: 1 in free rocking."""
     if z <= state.side_peak[side]:
         return
-    peak = z / state.ratio[side]
+    peak = z / state.ratio[side]  # over the angle of the edge itself; z is over the angle of the right edge
+    # of two peaks that differ by rounding the earlier one gives the mode, which would else depend on the last digit
     if peak > state.peak_rotation * (1.0 + 1e-12):
         uplifts = min(state.uplifts, MAX_UPLIFT_MODE)
         state.peak_mode = peak_mode(uplifts, impacts, state.impacts_before_uplift, free)
@@ -117,7 +117,7 @@ def update_peak(state: Record, side: int, z: float, impacts: int, free: int) -> 
 def count_impact(state: Record, time: float, w: float) -> float:
     """Count an impact with velocity w < 0 at `time` since the first uplift; returns the velocity after it.
 
-    sgn(theta) after it is `state.turn` times that before.
+    It multiplies sgn(theta) by `state.turn`.
     """
     if state.impacts == 0:
         state.first_impact_time, state.first_impact_velocity = time, state.sign * w
@@ -132,6 +132,7 @@ def overturn(state: Record, further_impacts: int) -> None:
     state.outcome = DIRECTLY if state.impacts == 0 else AFTER_IMPACT
     state.peak_rotation, state.peak_mode = math.nan, -1
     state.side_peak[0], state.side_peak[1] = math.nan, math.nan
+    # each impact takes the body to its other edge; against a wall `turn` is 1 and there is no other one
     state.final_sign = state.sign if further_impacts % 2 == 0 else state.turn * state.sign
 
 
@@ -139,27 +140,29 @@ def overturn(state: Record, further_impacts: int) -> None:
 def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
     """Set the outcome from z and w at the end of the motion, or where overturning is certain before it.
 
-    Free rocking loses energy at impacts only, by the factor eta_s^2 <= 1 at those that leave the edge s. A body that
-    does not escape about the present edge overturns after the next impact, about the other edge, or else after the one
-    after that, about the present edge: later flights about an edge start with less than the energy that did not suffice
-    there. Equal edges: the second impact decides nothing, and neither does the first if w > 0, since the energy was
-    below the barrier already. One edge only: the same, the next impact decides at most.
+    Given: z and w on the present edge, and whether overturning is certain. Decided: whether the body overturns, after
+    how many more impacts, and its highest peak. No impact that matters is left out: free rocking loses energy at
+    impacts only, by the factor eta_s^2 <= 1 where the body leaves the edge s. So the second flight about an edge starts
+    with less energy than the first one, which did not suffice. Two impacts show each edge once.
     """
     side = state.side
     state.end_rotation, state.end_velocity, state.end_sign = z, w, state.sign
     if overturns:
         overturn(state, 0)
         return
+    # in the units of the edge: z over alpha_s, w over alpha_s p_s
     escapes, top, squared = release(z / state.ratio[side], w / state.speed[side], state.alpha * state.ratio[side])
     if escapes:
         overturn(state, 0)
         return
     update_peak(state, side, top * state.ratio[side], state.impacts, 1)
+    # Edges that differ: the next impact leads to the other edge, the one after it back to the present one. Equal edges:
+    # the next impact decides, unless the body rises (w > 0): then its energy was below the barrier before the impact.
     further = 2 if state.each_side == 1 else (1 if w <= 0.0 else 0)
     for impact in range(1, further + 1):
         other = 1 - side if state.turn < 0.0 else side
         change = state.eta[side] * (state.speed[side] / state.speed[other])
-        squared *= change * change  # of the velocity after the impact, in the units of the other edge
+        squared *= change * change  # (2.3): of the velocity after the impact, in the units of the other edge
         edge_alpha = state.alpha * state.ratio[other]
         barrier = barrier_of(edge_alpha)
         left = barrier * barrier - squared
@@ -176,7 +179,7 @@ def pulls_of(state: Record) -> tuple[float, float]:
     """-z'' at z = 0 over q on both edges, (p_s/p)^2 sin(alpha_s)/alpha [-]; sets `softening`, too.
 
     `softening` bounds |dz''/dz| over V on both edges while |F| <= V, (p_s/p)^2 (1 + tan(alpha_s)) [-]. Both are
-    computed once for a body, where they are first needed.
+    computed once for a body, where they are first needed: most bodies never ask.
     """
     pull, alpha = state.pull, state.alpha
     if pull[0] == 0.0:
@@ -201,30 +204,26 @@ def impacts_accumulate(
 ) -> bool:
     """Whether impacts from velocity w > 0 just after an impact certainly accumulate to rest within a time `window`.
 
+    Given: the velocity w, and bounds of the ground acceleration during the window. Decided: whether all further impacts
+    can be replaced by rest at the end of the window. The response does not change by it: True only if the times of all
+    flights add up to less than the window, and none of the flights can exceed the peak so far.
+
     Near the ground -z'' lies within pull_s q +- k z, k = V (p_s/p)^2 (1 + tan(alpha_s)), with the restoring
     acceleration q of the edge, which lies in [q1, q2] during the window. A flight from w rises to
     z_m <= w^2/(2 (pull q1 - k z_m)), lasts at most 2 w/(pull q1 - k z_m), and its impact velocity is at most
-    w sqrt((pull q2 + k z_m)/(pull q1 - k z_m)). With the restitution this bounds a geometric series. True only if its
-    sum fits into the window and no flight can exceed the peak so far. Against a wall all flights are about one edge;
-    with those of the other one, where q = V, the bounds are wider.
+    w sqrt((pull q2 + k z_m)/(pull q1 - k z_m)). With the restitution this bounds a geometric series. Against a wall all
+    flights are about one edge; the other one, where q = V, only widens the bounds.
 
-    Parameters
-    ----------
-    pulls : (float, float)
-        Of `pulls_of`.
-    window : float
-        Time [tau].
-    right, left : (float, float)
-        Smallest and largest q of both edges during the window; all positive, else no series of impacts is bounded.
-    vertical : float
-        Largest V during the window.
+    `pulls`: of `pulls_of`; `window`: time [tau]; `right`, `left`: smallest and largest q of both edges during it;
+    `vertical`: largest V during it.
     """
     right_pull, left_pull = pulls
     weakest = min(right_pull * right[0], left_pull * left[0])
-    if weakest <= 0.0:
+    if weakest <= 0.0:  # the ground lifts the body within the window
         return False
     height = w * w / weakest  # above z_m while k z_m stays below weakest/2
     softening = vertical * state.softening * height
+    # the peak that a flight of the series may not exceed, on whichever edge it takes place
     known = state.side_peak[state.side]
     if state.turn < 0.0:
         known = min(state.side_peak[0], state.side_peak[1]) if state.each_side == 1 else state.peak_rotation
@@ -241,8 +240,10 @@ def series_fits(w: Any, window: Any, eta: Any, weakest: Any, softening: Any, rig
     `right`, `left`: smallest and largest -z'' at z = 0 on both edges, `weakest` the smallest of both; `softening`:
     largest change of -z'' during a flight.
     """
+    # most by which a flight can raise the squared velocity: it rises under the weakest pull, falls under the strongest
     spread = maximum((right[1] + softening) / (right[0] - softening), (left[1] + softening) / (left[0] - softening))
-    ratio = eta * square_root(spread)
+    ratio = eta * square_root(spread)  # of the velocities after two impacts in succession
+    # the first flight lasts 2 w/(weakest - softening) at most, each one after it `ratio` times the one before
     return (ratio < 1.0) & (2.0 * w <= window * (weakest - softening) * (1.0 - ratio))
 
 

@@ -140,11 +140,11 @@ FLIGHT_STATE = _flight_layout()  # layout of the record of an excitation and a c
 
 FOLLOWED_FLIGHT = np.dtype(
     [
-        ("phase", np.float64),  # fields of `FLIGHT_STATE`: those of the start,
+        ("phase", np.float64),  # fields of `FLIGHT_STATE`: at the start,
         ("w0", np.float64),
         ("sign", np.float64),
         ("starts_at_uplift", np.int64),
-        ("length", np.float64),  # and of the end
+        ("length", np.float64),  # and at the end
         ("next_phase", np.float64),
     ]
 )
@@ -168,51 +168,56 @@ AT_REST = ("slender", "alpha", "ratio", "stiffness", "sine_alpha", "cosine_alpha
 """Lanes that are 1 while unused: a block at rest, which produces no infinities."""
 
 
-def _steps_layout() -> np.dtype[np.void]:
-    lanes, series = (LANES,), (MAX_ORDER + 1, LANES)
-    return np.dtype(
-        [
-            ("z", np.float64, series),  # coefficients of z,
-            ("rate", np.float64, series),  # of dz/dtau,
-            ("f", np.float64, series),  # of F = sgn(theta) a f,
-            ("gauss", np.float64, series),  # of the wavelet's Gaussian,
-            ("s", np.float64, series),  # of sin(alpha (1 - z))/sin(alpha)
-            ("c", np.float64, series),  # and of cos(alpha (1 - z))/cos(alpha)
-            # start of the step
-            ("phase", np.float64, lanes),
-            ("z0", np.float64, lanes),
-            ("w0", np.float64, lanes),
-            ("starts_at_uplift", np.float64, lanes),  # 1 if it starts with an uplift through |a f| = 1, else 0
-            ("limit", np.float64, lanes),  # largest step size [tau]
-            ("reach", np.float64, lanes),  # the same, up to which the expansion of the excitation is exact
-            ("in_use", np.float64, lanes),  # 1 if the lane follows a block, else 0
-            ("destabilised", np.float64, lanes),  # 1 if the block is destabilised up to the end of the segment, else 0
-            ("restoring_phase", np.float64, lanes),  # otherwise, phase from which the acceleration is restoring
-            ("at_ground", np.float64, lanes),  # 1 if the flight starts here, else 0
-            ("known", np.float64, lanes),  # largest z of the response so far: smaller peaks do not count
-            # the block and the strength of the pulse
-            ("strength", np.float64, lanes),  # sgn(theta) a
-            ("omega", np.float64, lanes),
-            *EDGE_LANES,
-            # the step
-            ("h", np.float64, lanes),  # step size [tau]
-            ("z1", np.float64, lanes),  # z at its end
-            ("w1", np.float64, lanes),  # w there
-            ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
-            ("impact", np.float64, lanes),  # see `rocking._solver.taylor.lane_events`
-            ("impact_w", np.float64, lanes),
-            ("peak", np.float64, lanes),
-            ("taken", np.int64, lanes),  # number of steps of the flight
-            # the excitation, as in `FLIGHT_STATE`
-            *EXCITATION_FIELDS,
-            # accuracy
-            ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
-            ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
-        ]
-    )
+_SERIES, _LANES = (MAX_ORDER + 1, LANES), (LANES,)
 
+STEP_FIELDS = [
+    ("z", np.float64, _SERIES),  # coefficients of z,
+    ("rate", np.float64, _SERIES),  # of dz/dtau,
+    ("s", np.float64, _SERIES),  # of sin(alpha (1 - z))/sin(alpha)
+    ("c", np.float64, _SERIES),  # and of cos(alpha (1 - z))/cos(alpha)
+    # start of the step
+    ("z0", np.float64, _LANES),
+    ("w0", np.float64, _LANES),
+    ("limit", np.float64, _LANES),  # largest step size [tau]
+    ("omega", np.float64, _LANES),
+    *EDGE_LANES,
+    # the step
+    ("h", np.float64, _LANES),  # step size [tau]
+    ("z1", np.float64, _LANES),  # z at its end
+    ("w1", np.float64, _LANES),  # w there
+    ("second_derivative_bound", np.float64, _LANES),  # bound of |w''| on it
+    ("taken", np.int64, _LANES),  # number of steps of the flight
+]
+"""Fields of `LANES` Taylor steps under any motion; the fields of one kind of motion, then `ACCURACY_FIELDS` follow."""
 
-STEP_STATE = _steps_layout()
+ACCURACY_FIELDS = [
+    ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
+    ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
+]
+
+STEP_STATE = np.dtype(
+    [
+        *STEP_FIELDS,
+        ("f", np.float64, _SERIES),  # coefficients of F = sgn(theta) a f,
+        ("gauss", np.float64, _SERIES),  # of the wavelet's Gaussian
+        # start of the step
+        ("phase", np.float64, _LANES),
+        ("starts_at_uplift", np.float64, _LANES),  # 1 if it starts with an uplift through |a f| = 1, else 0
+        ("reach", np.float64, _LANES),  # step size up to which the expansion of the excitation is exact [tau]
+        ("in_use", np.float64, _LANES),  # 1 if the lane follows a block, else 0
+        ("destabilised", np.float64, _LANES),  # 1 if the block is destabilised up to the end of the segment, else 0
+        ("restoring_phase", np.float64, _LANES),  # otherwise, phase from which the acceleration is restoring
+        ("at_ground", np.float64, _LANES),  # 1 if the flight starts here, else 0
+        ("known", np.float64, _LANES),  # largest z of the response so far: smaller peaks do not count
+        ("strength", np.float64, _LANES),  # sgn(theta) a
+        # events, see `rocking._solver.taylor.lane_events`
+        ("impact", np.float64, _LANES),
+        ("impact_w", np.float64, _LANES),
+        ("peak", np.float64, _LANES),
+        *EXCITATION_FIELDS,  # the excitation, as in `FLIGHT_STATE`
+        *ACCURACY_FIELDS,
+    ]
+)
 """Layout of the record of `LANES` Taylor steps. Scalars come last, so that the rows of lanes are aligned."""
 
 

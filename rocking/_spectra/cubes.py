@@ -32,25 +32,26 @@ from rocking._spectra.level_interval import LevelInterval
 Array = NDArray[np.float64]
 
 PROBES = (CELL_CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
-"""Fractions of a cell along rows and columns at which interpolation is compared with the solver [-]. No two share a row
-or a column: no crease along one passes between them, and errors of rows and columns cannot cancel at all of them."""
+"""Where in a cell interpolation is compared with the solver, as fractions along rows and columns [-]. No two share a
+row or a column: no crease along one passes between them, and errors of rows and columns cannot cancel at all of them.
+"""
 
 FIRST_PROBES = 2
 """Probe points used in every cell: the error of a smooth function has one shape along rows and one along columns."""
 
 REFINE_TOL = 1e-6
-"""Error at the first probes, in a cell or one next to it, above which the other probes are used as well [-]."""
+"""Above this error at the first probes of a cell, or of one next to it, the other probes are used as well [-]."""
 
 MAX_ERROR = 5e-5  # largest measured error of a cell that is interpolated [-]
 
 PROBE_TOLERANCE = 1e-8
-"""Relative error of the peaks with which interpolation is compared [-]: small compared with errors that matter."""
+"""Relative error of the solver at the probes [-]: small compared with errors that matter."""
 
 MIDDLE, BESIDE = 0.5, (0.25, 0.75)
-"""Shares of an interval between two slices at which interpolation is compared with the solver [-].
+"""Where between two slices interpolation is compared with the solver, as shares of the interval [-].
 
 All cells are probed in the middle. The error of a crease at one eighth of the interval vanishes there, so cells in
-which the peak has a crease are probed beside it too.
+which the peak has a crease are probed beside the middle too.
 """
 
 MAX_SPACING = {"restitution": 0.1, "alpha": np.radians(25.0)}
@@ -131,7 +132,7 @@ def with_restitution_errors(
 ) -> Iterator[xr.Dataset]:
     """Some of the cubes of `solve_cubes` in turn, in memory, with the errors of interpolation up to the next one.
 
-    `pulse`: as for `solve_cubes`. `cubes`: cubes of ascending restitutions; those of
+    `pulse`: as for `solve_cubes`. `cubes`: cubes of ascending restitutions; the cubes of
     `rocking._interpolation.slices.windows_of` (first, last) suffice. One angle at a time is read. `first`, `last`:
     first of the cubes that are wanted, and the one after the last of them; by default all. `threads`, `stop`: as for
     `solve_cubes`.
@@ -224,6 +225,7 @@ class _Grid:
             mine = smooth[k][cells]
             own = cells[0][mine], cells[1][mine]
             errors[k][own] = _largest_error(layer, own, PROBES[:FIRST_PROBES], peaks[:, mine, k])
+        # cells with an error that matters, or beside one: the other probes too, since a crease cuts corners
         refined = smooth & ~(largest_in_neighbourhood(errors) <= REFINE_TOL) & (errors <= MAX_ERROR)
         for k, layer in enumerate(layers):
             # one restitution at a time: hardly two layers have such blocks, which impact often, in the same cells
@@ -290,6 +292,7 @@ class _Grid:
         found = self._solve(x, np.exp(y), etas, angle, PROBE_TOLERANCE)
         codes = outcome_codes(found.outcome, found.impacts)
         for k, interval in enumerate(intervals):
+            # the block between the slices must be of the kind of the cell, or the cell has no bound
             same = asked[k][cells] & (interval.kind[cells] == codes[:, k])
             errors[k][cells[0][same], cells[1][same]] = 0.0
             survive = same & (codes[:, k] == SURVIVES)

@@ -40,7 +40,7 @@ DIRECT = int(Outcome.OVERTURNED_DIRECTLY)
 """Kind of a cell in which all blocks overturn without impact: they do so for every restitution."""
 
 FEW_IMPACTS = 1
-"""Number of impacts up to which the regions of one way of overturning have boundaries that are traced one by one."""
+"""Regions of overturning after at most so many impacts have boundaries that are traced one by one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +72,8 @@ class GridLayer:
             one.name: np.ascontiguousarray(getattr(nodes, one.name)[..., k]) for one in CUBE_FIELDS
         }
         outcome, impacts, mode = (stored[one.name] for one in (OUTCOME, IMPACTS, PEAK_MODE))
+        # each form where all 16 nodes of a cell allow it: the peak if they survive; (1 - peak)^2 if all peaks are of
+        # free rocking; the outcome where all nodes overturn alike
         survives = outcome == Outcome.RECOVERS
         codes = np.where(interpolated_cells(survives), PEAK, NO_STENCIL)
         codes = np.where(interpolated_cells(survives & (mode % 2 == 1)), SQUARED, codes)

@@ -37,7 +37,7 @@ class LevelInterval:
     def of(
         cls, layers: Sequence[GridLayer], kinds: Sequence[NDArray[np.int64]], levels: Array, power: int, lower: int
     ) -> LevelInterval:
-        """The interval above slice `lower` of all layers, of which `kinds` and `levels` are given."""
+        """The interval above slice `lower` of all layers; `kinds`, `levels`: of each layer."""
         first, size = slice_window(len(layers), lower)
         window = slice(first, first + size)
         kind = np.where(np.all([one == kinds[lower] for one in kinds[window]], axis=0), kinds[lower], UNKNOWN)

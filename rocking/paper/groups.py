@@ -2,6 +2,9 @@
 
 Two blocks with equal groups have the same scaled response: exactly for slender blocks with (4.10) and (4.11), exactly
 for geometrically similar blocks with (5.3), approximately with (6.1).
+
+The parameters of a block and a pulse are described at `Problem`, those of groups at `Groups`; `group_set` is the set to
+which they belong.
 """
 
 from dataclasses import dataclass
@@ -126,15 +129,7 @@ class Groups(EqualByValue):
 
 
 def groups_of(problem: Problem, group_set: GroupSet) -> Groups:
-    """Groups of a dimensional problem.
-
-    Parameters
-    ----------
-    problem : Problem
-        Block and pulse in SI units.
-    group_set : GroupSet
-        Set of groups.
-    """
+    """Groups of a dimensional problem."""
     alpha = problem.alpha
     omega = problem.pulse_frequency / problem.frequency_parameter  # (3.6)
     slope = alpha if group_set.is_slender else np.tan(alpha)
@@ -150,25 +145,10 @@ def problem_of_block(
     frequency_parameter: ArrayLike,
     gravity: float = STANDARD_GRAVITY,
 ) -> Problem:
-    """Problem with given groups and a given block; determines the pulse.
+    """Problem with given groups and a given block, `alpha` and `frequency_parameter`: it determines the pulse.
 
-    Parameters
-    ----------
-    groups : Groups
-        Control groups; with (5.3) `cos_alpha` must be that of the block.
-    group_set : GroupSet
-        Set to which they belong.
-    alpha : array_like
-        Slenderness angle [rad], (0, pi/2).
-    frequency_parameter : array_like
-        p [rad/s], (0, inf).
-    gravity : float
-        g [m/s2], (0, inf).
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an argument is out of range or `alpha` contradicts `groups.cos_alpha`.
+    With (5.3) `groups.cos_alpha` must be that of the block. Raises `InvalidArgumentError` otherwise, and for an
+    argument out of range.
     """
     alpha = in_range("alpha", alpha, 0.0, np.pi / 2, closed="neither", unit="rad")
     p = in_range("frequency_parameter", frequency_parameter, 0.0, np.inf, closed="neither", unit="rad/s")
@@ -201,25 +181,10 @@ def problem_of_pulse(
     pulse_frequency: ArrayLike,
     gravity: float = STANDARD_GRAVITY,
 ) -> Problem:
-    """Problem with given groups and a given pulse; determines the block.
+    """Problem with given groups and a given pulse, `peak_acceleration` and `pulse_frequency`: it determines the block.
 
-    Parameters
-    ----------
-    groups : Groups
-        Control groups; in (5.3) alpha follows from the slenderness and must agree with `cos_alpha`.
-    group_set : GroupSet
-        Set to which they belong.
-    peak_acceleration : array_like
-        a_g [m/s2], (0, inf).
-    pulse_frequency : array_like
-        omega_g [rad/s], (0, inf).
-    gravity : float
-        g [m/s2], (0, inf).
-
-    Raises
-    ------
-    InvalidArgumentError
-        If no block has these groups: alpha is pi/2 or more, or contradicts `groups.cos_alpha`.
+    alpha follows from the slenderness, in (5.3) it must agree with `groups.cos_alpha`. Raises `InvalidArgumentError` if
+    no block has these groups: alpha is pi/2 or more, or contradicts `cos_alpha`.
     """
     a = in_range("peak_acceleration", peak_acceleration, 0.0, np.inf, closed="neither", unit="m/s2")
     frequency = in_range("pulse_frequency", pulse_frequency, 0.0, np.inf, closed="neither", unit="rad/s")
@@ -240,18 +205,8 @@ def problem_of_pulse(
 def rotation_scale(problem: Problem, group_set: GroupSet) -> Array:
     """Angle by which rotations are divided [rad].
 
-    Parameters
-    ----------
-    problem : Problem
-        Block and pulse in SI units.
-    group_set : GroupSet
-        Set of groups.
-
-    Returns
-    -------
-    ndarray
-        alpha in (4.10), a_g/g in (4.11) and (5.3), (a_g/g) cos(alpha) in (6.1). Times are divided by 1/p, and angular
-        velocities by p times this angle, (4.1).
+    alpha in (4.10), a_g/g in (4.11) and (5.3), (a_g/g) cos(alpha) in (6.1). Times are divided by 1/p, and angular
+    velocities by p times this angle, (4.1).
     """
     alpha = problem.alpha
     by_pulse = np.asarray(problem.peak_acceleration / problem.gravity)

@@ -137,10 +137,9 @@ VARIABLES: Mapping[str, Quantity] = {
 _FUNCTIONS: Mapping[str, Callable[[float], float]] = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
 
 _SIGN = "sgn"
-
-MAX_COMBINATIONS = 1_000_000
-"""Most combinations of exponents that are tried [-]."""
 """The sign of an angle, theta/|theta|: angle and magnitude have the same orientation, their quotient has none."""
+
+MAX_COMBINATIONS = 1_000_000  # most combinations of exponents that are tried [-]
 
 
 def quantity_of(expression: str) -> Quantity:

@@ -91,8 +91,8 @@ def limit_amplitude(frequency_ratio: ArrayLike) -> Array:
     """Amplitude at which the first impact coincides with the end of the pulse, the curve of (3.31).
 
     a [-], > 1, of the shape of `frequency_ratio`. Above it the first impact is after the pulse (case 1.2, up to
-    `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 the curve and that of
-    case 2 agree in all printed digits.
+    `case_2_amplitude`), below it within the pulse (case 1.1). Below frequency ratios of about 0.2 it agrees with the
+    curve of case 2 in all printed digits.
     """
     omega = ANY_FREQUENCY_RATIO.convert(frequency_ratio)
     psi = find_root(_limit, np.zeros_like(omega), np.full_like(omega, np.pi / 2), omega)
@@ -421,6 +421,11 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     1.1) there are islands in which the block overturns after three, five or more impacts (always an odd number), all
     within the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000
     random blocks with eta from 0.3 to 1.
+
+    Examples
+    --------
+    >>> [round(float(a), 5) for a in overturning_amplitudes(3.0, 0.9)]
+    [1.40357, 3.48466, 3.63115]
     """
     during = case_1_1_amplitudes(frequency_ratio, restitution)
     after = case_1_2_amplitudes(frequency_ratio, restitution)

@@ -1,6 +1,6 @@
 """Roots: of I1 e^-tau + I2 e^tau + I3 = 0 in closed form, appendix A of the paper, (A 1) to (A 4), and by bracketing.
 
-The bracketed roots and maxima are those of many scalar functions at once; nan where there is none.
+By bracketing, roots and maxima of many scalar functions are found at once; nan where there is none.
 """
 
 from collections.abc import Callable

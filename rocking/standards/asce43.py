@@ -5,7 +5,8 @@ formulas missing. Step 2 of A.2 follows a secondary description. Both steps can 
 at theta the work against gravity m g h f_1, and loses per cycle what two impacts with C_R take. The design rule of
 section 7 multiplies the best estimate by a factor of safety, which is not applied here.
 
-The body rotates by theta; a = b/h; C_3 = I_O/(m h^2), 4/3 (1 + a^2) for a uniform rectangle.
+The body rotates by theta; a = b/h; C_3 = I_O/(m h^2), 4/3 (1 + a^2) for a uniform rectangle. Arguments that all clauses
+share: `rocking.standards`.
 
 References
 ----------
@@ -30,8 +31,7 @@ from rocking.standards.arguments import checked, checked_body, checked_number
 
 Array = NDArray[np.float64]
 
-ANGLES = 400
-"""Angles between 1e-4 alpha and alpha at which spectrum and capacity are compared, in equal ratios [-]."""
+ANGLES = 400  # angles between 1e-4 alpha and alpha at which spectrum and capacity are compared, in equal ratios [-]
 
 FREQUENCIES = 0.02, 100.0, 800
 """Lowest and highest frequency [Hz] at which the sliding coefficient is looked for, and their number [-]."""
@@ -50,8 +50,6 @@ def asce43_capacity(
     ----------
     rotation : array_like
         theta [rad], (0, pi/2].
-    half_width, mass_height
-        See `rocking.standards`.
     vertical_ratio : array_like
         SA_V/SA_H at the effective frequency and damping [-], [0, 100]; 0 without vertical motion.
     """
@@ -73,8 +71,6 @@ def asce43_effective_frequency(
     ----------
     rotation : array_like
         theta [rad], (0, pi/2].
-    half_width, mass_height, gyration
-        See `rocking.standards`.
     """
     b, h, inertia = checked_body(half_width, mass_height, gyration)
     (theta,) = checked(rotation=rotation)
@@ -86,11 +82,6 @@ def asce43_effective_damping(half_width: ArrayLike, mass_height: ArrayLike, gyra
     """Effective damping ratio (A.2 step 2): beta_e = gamma/sqrt(4 pi^2 + gamma^2), gamma = -2 ln C_R [-].
 
     C_R = 1 - 2 a^2/C_3 is (2.4) of the paper, the restitution "momentum"; nan where it is not positive.
-
-    Parameters
-    ----------
-    half_width, mass_height, gyration
-        See `rocking.standards`.
     """
     b, _, inertia = checked_body(half_width, mass_height, gyration)
     restitution = 1.0 - 2.0 * b**2 / inertia  # C_R, A.2 step 2; = (2.4)
@@ -118,8 +109,6 @@ def asce43_rocking_angle(
     spectrum : callable
         Horizontal spectral acceleration [m/s2] of frequencies, an array [Hz], and a damping ratio [-]; of a record from
         `rocking.elastic_spectrum`.
-    half_width, mass_height, gyration : float
-        See `rocking.standards`.
     vertical_spectrum : callable, optional
         The same of the vertical motion, which lowers the capacity.
     """

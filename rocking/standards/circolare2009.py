@@ -3,7 +3,8 @@
 The text was not seen: formulas after secondary sources, by section and not by equation number; compare them with it
 before use. For one block the mass ratio e* is 1, the multiplier of collapse b/h, and the horizontal displacement of the
 centre of mass at which the block is in equilibrium without a force is d_0 = b. The Circolare of 21 January 2019, n. 7,
-changes periods and limits (C8.7.1.2.1); its text was not seen either, and nothing of it is stated here.
+changes periods and limits (C8.7.1.2.1); its text was not seen either, and nothing of it is stated here. Arguments that
+all clauses share: `rocking.standards`.
 
 References
 ----------
@@ -23,8 +24,7 @@ from rocking.standards.static import west_acceleration
 
 Array = NDArray[np.float64]
 
-CAPACITY = 0.4
-"""d_u over d_0, and d_s over d_u [-]."""
+CAPACITY = 0.4  # d_u over d_0, and d_s over d_u [-]
 
 
 def circolare2009_activation(
@@ -34,8 +34,6 @@ def circolare2009_activation(
 
     Parameters
     ----------
-    half_width, mass_height
-        See `rocking.standards`.
     confidence_factor : array_like
         FC [-], [1, 2].
     """
@@ -58,8 +56,6 @@ def circolare2009_linear_check(
     acceleration : array_like
         At the ground a_g S, the peak acceleration with the soil factor; on a floor `circolare2009_floor_acceleration`
         [m/s2], >= 0.
-    half_width, mass_height
-        See `rocking.standards`.
     behaviour_factor : array_like
         q [-], [1, 10]: 2 for the limit state of life safety, 1 for that of damage.
     confidence_factor : array_like
@@ -91,25 +87,13 @@ def circolare2009_floor_acceleration(acceleration: ArrayLike, height_ratio: Arra
 
 
 def circolare2009_displacement_capacity(half_width: ArrayLike) -> Array:
-    """Ultimate displacement of the centre of mass (C8A.4.2.2): d_u = 0.4 d_0, d_0 = b [m].
-
-    Parameters
-    ----------
-    half_width
-        See `rocking.standards`.
-    """
+    """Ultimate displacement of the centre of mass (C8A.4.2.2): d_u = 0.4 d_0, d_0 = b [m]."""
     (b,) = checked(half_width=half_width)
     return CAPACITY * b  # C8A.4.2.2
 
 
 def circolare2009_secant_period(half_width: ArrayLike, mass_height: ArrayLike) -> Array:
-    """Secant period (C8A.4.2.3): T_s = 2 pi sqrt(d_s/a_s), d_s = 0.4 d_u, a_s = a_0 (1 - d_s/d_0) [s].
-
-    Parameters
-    ----------
-    half_width, mass_height
-        See `rocking.standards`.
-    """
+    """Secant period (C8A.4.2.3): T_s = 2 pi sqrt(d_s/a_s), d_s = 0.4 d_u, a_s = a_0 (1 - d_s/d_0) [s]."""
     b, h = checked(half_width=half_width, mass_height=mass_height)
     secant = CAPACITY * circolare2009_displacement_capacity(b)  # d_s, C8A.4.2.3
     acceleration = west_acceleration(b, h) * (1.0 - secant / b)  # capacity curve, C8A.4.2.2
@@ -123,8 +107,6 @@ def circolare2009_nonlinear_check(displacement: ArrayLike, half_width: ArrayLike
     ----------
     displacement : array_like
         At the ground S_De(T_s) at 5 % damping; on a floor `circolare2009_floor_displacement` [m], >= 0.
-    half_width
-        See `rocking.standards`.
     """
     demand, b = checked(displacement=displacement, half_width=half_width)
     return circolare2009_displacement_capacity(b) >= demand  # C8A.4.2.3

@@ -2,7 +2,7 @@
 
 The source was not seen beyond its summary, which says that both are needed; the formulas follow secondary sources. For
 a slender rectangle B wide and H high the second one is v = 10.2 B/sqrt(H) in cm and s, the rule that is often quoted
-as 10 B/sqrt(H).
+as 10 B/sqrt(H). Arguments that all clauses share: `rocking.standards`.
 
 References
 ----------
@@ -19,8 +19,7 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking.standards.arguments import checked, checked_body
 from rocking.standards.static import west_acceleration
 
-SHARE = 0.4
-"""Of the velocity that overturns a body when the ground stops at once: the lower bound of observed ones [-]."""
+SHARE = 0.4  # of the velocity that overturns a body when the ground stops at once: the lower bound of observed ones [-]
 
 
 def ishiyama_velocity(
@@ -31,10 +30,10 @@ def ishiyama_velocity(
     v = 0.4 sqrt((2 g I_O/(m R)) (1 - cos alpha)/cos^2 alpha), for a uniform rectangle
     0.4 sqrt((8 g R/3) (1 - cos alpha)/cos^2 alpha).
 
-    Parameters
-    ----------
-    half_width, mass_height, gyration
-        See `rocking.standards`.
+    Examples
+    --------
+    >>> round(float(ishiyama_velocity(half_width=0.2, mass_height=0.8)), 4)
+    0.3308
     """
     b, h, inertia = checked_body(half_width, mass_height, gyration)
     radius, alpha = np.hypot(b, h), np.arctan2(b, h)
@@ -56,8 +55,6 @@ def ishiyama_check(
     ----------
     acceleration, velocity : array_like
         PGA [m/s2] and PGV [m/s], >= 0.
-    half_width, mass_height, gyration
-        See `rocking.standards`.
     """
     a, v, b, h = checked(acceleration=acceleration, velocity=velocity, half_width=half_width, mass_height=mass_height)
     passes: NDArray[np.bool_] = (a < west_acceleration(b, h)) | (v < ishiyama_velocity(b, h, gyration))

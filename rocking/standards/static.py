@@ -1,6 +1,7 @@
 """Statics: the acceleration at which a body at rest starts to tilt (West's formula; Milne 1881).
 
 Textbook statics, derived in one line: moments about the edge of the weight, m g b, and of the inertia force, m a h.
+Arguments that all clauses share: `rocking.standards`.
 
 References
 ----------
@@ -19,10 +20,10 @@ from rocking.standards.arguments import checked
 def west_acceleration(half_width: ArrayLike, mass_height: ArrayLike) -> NDArray[np.float64]:
     """Peak ground acceleration from which a body uplifts, and that it needs to overturn: g b/h [m/s2].
 
-    Parameters
-    ----------
-    half_width, mass_height
-        See `rocking.standards`.
+    Examples
+    --------
+    >>> float(west_acceleration(half_width=0.2, mass_height=0.8))
+    2.4516625
     """
     b, h = checked(half_width=half_width, mass_height=mass_height)
     return STANDARD_GRAVITY * b / h  # West
@@ -35,8 +36,6 @@ def static_check(acceleration: ArrayLike, half_width: ArrayLike, mass_height: Ar
     ----------
     acceleration : array_like
         Peak ground acceleration a_g [m/s2], >= 0.
-    half_width, mass_height
-        See `rocking.standards`.
     """
     a, b, h = checked(acceleration=acceleration, half_width=half_width, mass_height=mass_height)
     return a < west_acceleration(b, h)  # static check

@@ -1,6 +1,5 @@
 """Smooth pulses of one's own: their polynomials and extremes, equality, and what is refused."""
 
-import doctest
 import math
 from dataclasses import dataclass
 
@@ -8,7 +7,6 @@ import numpy as np
 import pytest
 
 from rocking._base.errors import InvalidArgumentError
-from rocking._excitation import smooth
 from rocking._excitation.polynomials import DEGREE, MAX_POLYNOMIALS
 from rocking._excitation.shapes import MAX_PIECES
 from rocking._excitation.smooth import SmoothPulse
@@ -130,9 +128,3 @@ def test_equality_and_mirror_image():
     assert CHIRP.shape(1.0).shape == ()
     # curves that differ in what is no field of the pulse are different pulses
     assert Given("given", 0.0, 1.0, np.sin).digest != Given("given", 0.0, 1.0, np.cos).digest
-
-
-def test_the_example_of_the_docstring():
-    found = doctest.testmod(smooth)
-    assert found.attempted > 0
-    assert found.failed == 0

@@ -12,8 +12,7 @@ from rocking import Outcome
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._solver.kernels.chatter import chatter_ends_in_rest
 from rocking._solver.state import IMPACT, step_state
-from rocking._solver.taylor.flight import flight_by_steps
-from tests.kernels import cell, flight_from
+from tests.kernels import cell, flight_by_steps, flight_from
 from tests.sampling import number
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES if name != "rectangular" for sign in ("", "-"))

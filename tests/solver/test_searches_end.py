@@ -11,7 +11,6 @@ from rocking._solver.peak_response import SolverState
 from rocking._solver.rules import IMPACT_LIMIT
 from rocking._solver.state import step_state
 from rocking._solver.taylor.events import first_crossing
-from rocking._solver.taylor.flight import flight_by_steps
 from tests.kernels import first_flight
 
 ALPHA = 0.3
@@ -53,18 +52,10 @@ def test_zeros_beyond_the_end_are_not_found(beyond):
         assert first_crossing(series, 0, 22, 0.0, 1.0 + 2 * beyond, True, 4 * bend) == pytest.approx(1.0 + beyond)
 
 
-def test_a_flight_ends():
-    flight = first_flight("sine", 0.5, 3.0, ALPHA)
-    steps = step_state(flight)
-    steps["log_precision"] = -3000.0  # step size 0
-    with pytest.raises(SearchError, match="flight"):
-        flight_by_steps(flight, steps)
-
-
-def test_flights_side_by_side_end(monkeypatch):
+def test_flights_end(monkeypatch):
     def without_length(flight, precision):
         steps = step_state(flight, precision)
-        steps["log_precision"] = -3000.0
+        steps["log_precision"] = -3000.0  # step size 0
         return steps
 
     monkeypatch.setattr("rocking._solver.peak_response.step_state", without_length)

@@ -39,7 +39,7 @@ def fill_polynomials(record: Record, series: PolynomialSeries) -> None:
 
 @kernel
 def locate_pieces(pulse: Record, phases: FloatArray) -> None:
-    """Set `places` to the pieces that hold phases (LANES,), from those of the last call, which are near."""
+    """Set `places` to the pieces that hold phases (LANES,): the search starts at the pieces of the last call."""
     places, ends, last = pulse.places, pulse.ends, pulse.polynomials - 1
     for lane in range(LANES):
         phase, place = phases[lane], places[lane]
@@ -86,11 +86,13 @@ def expand_polynomials(steps: Record) -> None:
     x = (phase - gather(steps.middles, places)) * inverse
     for k in range(DEGREE + 1):
         store(f, k, gather(steps.coefficients[k], places))
+    # synthetic division by x, DEGREE times: the coefficients about x
     for first in range(DEGREE):
         carried = load(f, DEGREE)
         for k in range(1, DEGREE + 1 - first):
             carried = load(f, DEGREE - k) + x * carried
             store(f, DEGREE - k, carried)
+    # from powers of the piece's variable to powers of tau; the polynomial ends, so do its coefficients
     rate, power = omega * inverse, load(steps.strength, 0)
     for n in range(DEGREE + 1):
         store(f, n, power * load(f, n))

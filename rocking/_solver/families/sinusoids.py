@@ -87,6 +87,7 @@ def expand_sinusoids(steps: Record) -> None:
     for k in range(steps.terms):
         sine, cosine = sine_and_cosine(phase * steps.multiple[k] + steps.shift[k])
         rate = omega * steps.multiple[k]
+        # cos(x + r tau) = cos x (1 - r^2 tau^2/2 + ...) - sin x (r tau - ...): even and odd powers apart
         scale, rate_squared = strength * steps.amplitude[k], rate * rate
         even, odd = scale * cosine, scale * rate * sine * -1.0
         for n in range(0, steps.order + 1, 2):

@@ -89,6 +89,7 @@ def expand_gaussian_product(
     for n in range(order + 1):
         store(gauss, n, here)
         before, here = here, (phase * here + before) * (decay / (n + 1.0))
+    # the polynomial about the phase, of third degree, times the series of the Gaussian, in powers of tau
     constant = p[0] + phase * (p[1] + phase * (p[2] + phase * p[3]))
     linear = p[1] + phase * (2.0 * p[2] + phase * (3.0 * p[3]))
     square = p[2] + 3.0 * p[3] * phase

@@ -1,7 +1,8 @@
 """Many blocks by Taylor steps, `LANES` at a time.
 
-A SIMD lane takes the next cell as soon as its cell is finished. Consecutive cells that differ in eta only share the
-first flight, which is computed once. Slender blocks are solved in `rocking._solver.stages` where they have exact arcs.
+A SIMD lane takes the next cell as soon as its cell is finished, so that no lane waits for the longest motion. Cells in
+succession that differ in eta only share the first flight. Slender blocks that have exact arcs are solved in
+`rocking._solver.stages` instead.
 """
 
 from rocking._base.errors import SearchError
@@ -12,7 +13,7 @@ from rocking._numba.simd import LANES
 from rocking._solver.kernels.event_loop import end_flight, init_state, repeat_first_flight, start_flight
 from rocking._solver.rules import set_body, write_edges, write_response
 from rocking._solver.state import IN_FLIGHT
-from rocking._solver.taylor.flight import MAX_STEPS, free_lanes, process_step, start_steps
+from rocking._solver.taylor.flight import MAX_STEPS, process_step, start_steps
 from rocking._solver.taylor.lane_events import locate_events
 from rocking._solver.taylor.step import take_step
 
@@ -38,6 +39,7 @@ def continue_with_next_eta(flight: Record, cells: Record, responses: Record, edg
         write_edges(flight, edges, flight.cell)
         if flight.cell == flight.last_cell:
             return False
+        # the next cell has the same first flight, and differs from its impact on
         flight.cell += 1
         eta = cells[flight.cell].eta
         flight.eta[0], flight.eta[1] = eta[0], eta[1]
@@ -67,6 +69,7 @@ def next_cell(
         flight.last_cell = following - 1
         set_body(flight, cells[flight.cell], len(edges) > 0)
         init_state(flight, cells[flight.cell].rate)
+        # a block that does not uplift takes no lane: its response is written at once, and the next cell is tried
         if start_flight(flight):
             steps.omega[lane] = flight.omega
             start_steps(flight, steps, lane)
@@ -88,25 +91,15 @@ def solve_batch(
 ) -> int:
     """Follow bodies from rest to their final outcome, by Taylor steps; returns the number of flights written.
 
-    Parameters
-    ----------
-    cells : array (cells,) of `BODY_CELL`
-        The bodies.
-    flights, steps
-        Solver state: an array (LANES,) of records of `pulse_state`, and `step_state`.
-    stop : uint8 array (1,)
-        Once another thread sets it to 1, the function returns within a flight or a Taylor step; responses are missing.
-    responses : array (cells,) of `state.RESPONSE_RECORD`
-        Filled.
-    edges : float array (cells, EDGE_COLUMNS), or (0, EDGE_COLUMNS)
-        Filled, see `rocking._solver.state.EDGE_COLUMNS`; without rows for equal edges where it is not wanted.
-    followed : array of `rocking._solver.state.FOLLOWED_FLIGHT`
-        Filled with the flights in the order of their ends, as many as fit: of one cell, for its history.
+    `cells` (cells,): the bodies, `BODY_CELL`. `flights` (LANES,), `steps`: solver state, records of `pulse_state`, and
+    `step_state`. `stop` (1,): once another thread sets it to 1, the function returns within a flight or a Taylor step;
+    responses are missing. Filled: `responses` (cells,), `RESPONSE_RECORD`; `edges` (cells, EDGE_COLUMNS), without rows
+    for equal edges where it is not wanted; `followed`, `FOLLOWED_FLIGHT`: the flights in the order of their ends, as
+    many as fit, of one cell for its history. The names are of `rocking._solver.state`.
     """
     following, busy, taken, written = 0, 0, steps.taken, 0
-    free_lanes(steps)
     for lane in range(LANES):
-        taken[lane] = 0
+        taken[lane], steps.in_use[lane] = 0, 0.0
     for lane in range(LANES):
         following = next_cell(flights[lane], steps, lane, following, cells, stop, responses, edges)
         if flights[lane].cell >= 0:
@@ -124,17 +117,19 @@ def solve_batch(
                 if taken[lane] >= MAX_STEPS:
                     raise SearchError("a flight does not end")
                 continue
+            # the flight has ended: with an impact, with the pulse, or where overturning is certain
             taken[lane] = 0
             flight.length = flight.elapsed
             going = end_flight(flight, ended, w, z, flight.largest_z)
             if written < len(followed):
                 copy_fields(flight, followed[written])
                 written += 1
+            # the lane goes on with the next flight of its cell, with the next eta, or with another cell, in this order
             if (going and start_flight(flight)) or continue_with_next_eta(flight, cells, responses, edges):
                 start_steps(flight, steps, lane)
                 continue
             following = next_cell(flight, steps, lane, following, cells, stop, responses, edges)
-            if flight.cell < 0:
+            if flight.cell < 0:  # no cell is left: the lane idles until the others are done
                 steps.in_use[lane] = 0.0
                 busy -= 1
     return written

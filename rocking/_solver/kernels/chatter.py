@@ -9,12 +9,14 @@ from rocking._solver.rules import impacts_accumulate, pulls_of
 def chatter_ends_in_rest(flight: Record, w: float, phase: float, end: float) -> bool:
     """Whether chatter from velocity w just after an impact at `phase` certainly ends in rest before the phase `end`.
 
-    f is monotone up to `end` and both edges are held down there, so that q takes its extremes at the ends of the
-    window.
+    Given: an impact in an interval of level 0 that lasts to `end`. Decided: whether the impacts that follow accumulate
+    to rest in it. The window is four times as long as the series of flights would be under the present q. f is monotone
+    up to `end`, so that q on both edges takes its extremes at the two ends of the window: no value between is missed.
     """
     stiffest = max(1.0, flight.stiffness[1])
     loss = 1.0 - max(flight.eta[0], flight.eta[1])
-    if not phase + flight.omega * (8.0 * w / (stiffest * loss)) <= end:  # the window is longer: most impacts end here
+    # q <= 1 on one of the edges, and sin(alpha_s) <= alpha_s: the window is at least this long, whatever f is
+    if not phase + flight.omega * (8.0 * w / (stiffest * loss)) <= end:
         return False
     f0 = shape_at(phase, flight)
     pulls = pulls_of(flight)
@@ -22,6 +24,7 @@ def chatter_ends_in_rest(flight: Record, w: float, phase: float, end: float) -> 
     window = 8.0 * w / (first * loss)
     if not phase + flight.omega * window <= end:
         return False
+    # the pulse at the end of the window; the extremes of q on the right edge and on the left one
     f1 = shape_at(phase + flight.omega * window, flight)
     least, most = min(f0, f1), max(f0, f1)
     right = 1.0 + flight.a[0] * least, 1.0 + flight.a[0] * most

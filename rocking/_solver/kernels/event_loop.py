@@ -1,8 +1,15 @@
 """The event loop of one body under a pulse, from rest to the final outcome; `rocking._solver.rules` has the rules.
 
-Between events the motion is a sequence of Taylor steps (`rocking._solver.taylor`), with restitution (2.3) at each
-impact. The intervals of the pulse (`rocking._solver.kernels.intervals`) decide for each stretch whether it holds an
-impact. The first flight does not depend on the restitution: it is stored and reused for each eta.
+Given: the body, and the pulse divided into intervals (`rocking._solver.kernels.intervals`). On an interval the ground
+acceleration holds both edges down (level 0) or destabilises the body about one edge (level +-1), and f is monotone.
+
+Decided: when a body at rest uplifts, what follows each impact, and what is known when the pulse has ended.
+
+No uplift is missed, since |a f| = 1 at ends of intervals only. No impact is missed, since each flight between two
+events is followed by Taylor steps that end where q changes its sign (`rocking._solver.taylor.flight`). The loop ends:
+at most three impacts take place in a destabilising interval, and elsewhere at most `IMPACT_LIMIT`.
+
+The first flight does not depend on the restitution: it is stored and reused for each eta.
 """
 
 from rocking._base.errors import SearchError
@@ -30,7 +37,7 @@ def init_state(flight: Record, omega: float) -> None:
     flight.first_flight_known = 0
     flight.interval, flight.interval_count = 0, 0
     if flight.slenderness[0] >= 1.0 and flight.slenderness[1] >= 1.0:
-        return
+        return  # |a f| <= 1 throughout: no uplift, without a look at the pulse
     flight.omega = omega
     flight.interval_count = split_into_intervals(flight)
 
@@ -38,7 +45,7 @@ def init_state(flight: Record, omega: float) -> None:
 @kernel
 def next_uplift(flight: Record) -> bool:
     """Advance from rest to the next uplift; False if there is none."""
-    # intervals end where |a f| = 1: a body at rest uplifts at the start of one with |a f| > 1, nowhere inside one
+    # a body at rest uplifts where |a f| rises through 1, and that is the start of an interval with level +-1
     while flight.interval < flight.interval_count and flight.interval_level[flight.interval] == 0.0:
         flight.interval += 1
     if flight.interval == flight.interval_count:
@@ -53,11 +60,10 @@ def next_uplift(flight: Record) -> bool:
 def on_impact(flight: Record, w: float) -> None:
     """Impact with velocity w < 0 at the end of the flight: set the start of the next flight, or rest.
 
-    Decided here: in which interval the next flight starts, and whether it is a flight, an uplift, or rest. Where the
-    ground acceleration holds the body down (level 0), impacts that accumulate end in rest. Where it destabilises the
-    body about one edge (level +-1), a flight about that edge does not end in the interval, since z'' >= 0; so that at
-    most three impacts take place there, and an impact of a flight about that edge means that it started within rounding
-    of an end of the interval.
+    Given: the flight that has ended, and the interval in which it started. Decided: the interval of the impact, and
+    what follows there: a flight about the next edge, an uplift, or rest. In a destabilising interval a flight about the
+    edge of its level does not end, since z'' >= 0. So at most three impacts take place there: a flight from an earlier
+    interval ends, then one about the other edge, and one within rounding of an end of the interval.
     """
     phase = flight.phase + flight.omega * flight.length
     flight.next_w = count_impact(flight, flight.length, w)
@@ -68,29 +74,30 @@ def on_impact(flight: Record, w: float) -> None:
         flight.interval_level[flight.interval] * flight.sign < 0.0
         and flight.phase >= flight.interval_phase[flight.interval]
     ):
-        # at the start of the interval, where |f| grows: uplift from rest there; at its end: to the next interval
+        # the flight started in this interval about the edge that is destabilised here, and should not have ended: it
+        # has no length but for rounding, at one end of the interval or the other
         if flight.interval_level[flight.interval] * flight.interval_slope[flight.interval] > 0.0 and (
             flight.starts_at_uplift == 0
         ):
-            flight.at_rest = 1
+            flight.at_rest = 1  # |f| grows: at the start of the interval, where the body uplifts from rest
             return
-        flight.interval += 1
+        flight.interval += 1  # |f| falls: at its end, so that the next interval decides
         flight.next_phase = phase = flight.interval_phase[flight.interval]
-    if flight.interval == flight.interval_count:
+    if flight.interval == flight.interval_count:  # the pulse has ended with this impact
         flight.at_rest = 1
         return
     flight.at_rest = 0
-    if flight.interval_level[flight.interval] == 0.0:
+    if flight.interval_level[flight.interval] == 0.0:  # both edges are held down: without velocity the body rests
         if flight.next_w <= 0.0:  # eta = 0
             flight.at_rest = 1
         elif flight.impacts >= IMPACT_LIMIT or chatter_ends_in_rest(
             flight, flight.next_w, phase, flight.interval_phase[flight.interval + 1]
         ):
             flight.at_rest = flight.chatter = 1
-    else:
+    else:  # one edge is destabilised: the body does not rest
         if flight.impacts > IMPACT_LIMIT + 3 * flight.interval_count:
             raise SearchError("impacts do not end")
-        if flight.next_w <= 0.0:  # eta = 0 in a destabilising interval: immediate uplift
+        if flight.next_w <= 0.0:  # eta = 0: it uplifts at once, about the edge that the ground destabilises
             flight.next_sign, flight.next_w = -flight.interval_level[flight.interval], 0.0
 
 
@@ -101,7 +108,7 @@ def start_flight(flight: Record) -> bool:
         return False
     flight.phase, flight.w0 = flight.next_phase, flight.next_w
     set_sign(flight, flight.next_sign)
-    # through |a f| = 1, unless the pulse starts with a jump beyond it
+    # an uplift passes through |a f| = 1, where q = 0 without rounding, unless the pulse starts with a jump beyond it
     through = flight.interval > 0 or (
         flight.interval_slope[0] * flight.end_shape[0] > 0.0
         and flight.a[flight.side] * abs(flight.end_shape[0]) <= 1.0 + ROUNDING

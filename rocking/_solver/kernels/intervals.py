@@ -50,9 +50,10 @@ def crossing_of_sinusoid(flight: Record, piece: int, target: float, width: float
 def split_into_intervals(flight: Record) -> int:
     """Fill `flight.interval_*` (intervals + 1) for the body of the cell; returns the number of intervals.
 
-    Levels of f: above 1/a_1 the body is destabilised on the left edge (level 1), below -1/a_0 on the right one (level
-    -1), between them on neither (level 0). On a monotone piece each of them is crossed at most once, so that a crossing
-    exists if and only if the level lies between the values at the ends; the one with sgn(f) opposite to f' comes first.
+    Given: the monotone pieces of the pulse with f at their ends, and the slenderness of both edges. Decided: which ends
+    of intervals lie on each piece. Above f = 1/a_1 the body is destabilised on the left edge (level 1), below -1/a_0 on
+    the right one (level -1), between them on neither (level 0). No crossing is missed: on a monotone piece f takes the
+    value 1/a_1, or -1/a_0, once if it lies between the values at the ends, and otherwise never.
 
     Worked example: the sine, a = 2 on both edges. Its pieces end at 0, pi/2, 3 pi/2 and 2 pi. On the first f rises from
     0 to 1 and crosses 1/2 at pi/6: intervals from 0 (level 0) and pi/6 (level 1). On the second it falls through 1/2 at
@@ -74,12 +75,14 @@ def split_into_intervals(flight: Record) -> int:
         level = 1.0 if f_left > above else (-1.0 if f_left < -below else 0.0)
         set_interval(flight, count, flight.end_phase[piece], level, rise)
         count += 1
+        # a piece that rises passes -1/a_0 first, where the right edge is held down again, then 1/a_1, where the left
+        # one is destabilised; a piece that falls passes them in the other order
         for turn in (-rise, rise):
             target = above if turn > 0.0 else -below
-            entered = f_left == target and turn == rise  # where the pulse starts at |a f| = 1 and |f| grows
+            entered = f_left == target and turn == rise  # the pulse starts at |a f| = 1, and |f| grows
             if not (entered or min(f_left, f_right) < target < max(f_left, f_right)):
                 continue
-            level += rise
+            level += rise  # either crossing of a rising piece raises the level by one
             if single:
                 phase = crossing_of_sinusoid(flight, piece, target, width_above if turn > 0.0 else width_below)
             elif entered:
@@ -89,5 +92,5 @@ def split_into_intervals(flight: Record) -> int:
                 phase = flight.crossing_phase[crossing // LANES, crossing % LANES]
             set_interval(flight, count, phase, level, rise)
             count += 1
-    set_interval(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)
+    set_interval(flight, count, flight.end_phase[flight.pieces], 0.0, 0.0)  # the end of the last interval
     return count

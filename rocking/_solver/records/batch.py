@@ -29,8 +29,7 @@ def end_flight(block: Record, samples: FloatArray, ended: int, k: int, s: float,
 
 @entry
 def solve_slender(samples: FloatArray, cells: Record, block: Record, stop: FloatArray, responses: Record) -> int:
-    """Follow slender blocks from rest to their final outcome, without vertical motion; returns the sample intervals
-    followed.
+    """Solve slender blocks without vertical motion; returns the number of sample intervals followed.
 
     `samples` are `sample_rows`, `cells` (cells,) blocks with equal edges and alpha = 0, `block` is a record
     `BLOCK_STATE`. Once another thread sets `stop` (1,) to 1, the function returns within a flight, and responses are
@@ -73,7 +72,7 @@ def next_cell(
         write_response(block, responses[cell])
         write_edges(block, edges, cell)
     block.cell = -1
-    # the lane continues with a block at rest
+    # no cell is left: the lane goes on with a block at rest, which makes no infinities
     steps.z0[lane], steps.w0[lane], steps.force[lane], steps.force_rate[lane] = 0.0, 0.0, -1.0, 0.0
     steps.vertical[lane], steps.vertical_rate[lane], steps.limit[lane] = 1.0, 0.0, 1.0
     return following
@@ -89,8 +88,7 @@ def solve_by_steps(
     responses: Record,
     edges: FloatArray,
 ) -> int:
-    """Follow bodies from rest to their final outcome by Taylor steps, under any motion; returns the sample intervals
-    followed.
+    """Solve bodies by Taylor steps, under any motion; returns the number of sample intervals followed.
 
     As `solve_slender`, with solver state for each lane: `blocks` (LANES,), and `steps` of `step_state`. `edges` (cells,
     EDGE_COLUMNS) is filled, see `rocking._solver.state.EDGE_COLUMNS`; without rows where it is not wanted, for equal
@@ -113,7 +111,7 @@ def solve_by_steps(
             ended, s, z, w = process_step(block, samples, steps, lane)
             taken[lane] += 1
             if ended == IN_FLIGHT:
-                if taken[lane] >= MAX_STEPS + 8 * len(samples[0]):
+                if taken[lane] >= MAX_STEPS + 8 * len(samples[0]):  # a record has many intervals, of a few steps each
                     raise SearchError("a flight does not end")
                 continue
             taken[lane] = 0

@@ -1,8 +1,12 @@
 """Events of a body under samples: where it uplifts, and what follows an impact; `rocking._solver.rules` has the rules.
 
-The motion is linear between its samples and zero after the last. The restoring acceleration q = V + F of an edge
-(`rocking._solver.rules`) is linear on a sample interval. Each interval is cut where q = 0; the cut is computed by one
-expression, so that it has one value wherever it is used.
+Given: the body, and samples of the motion, which is linear between them and zero after the last. Decided: when a body
+at rest uplifts, and what follows each impact. No uplift is missed, since the restoring acceleration q = V + F of an
+edge is linear on a sample interval: it is negative at one of the ends or nowhere.
+
+Flights are followed in `arc_flight` (slender) and `taylor_flight` (rigid). They cut an interval where q = 0, and on
+each of its two pieces q keeps its sign. One expression, `cut_time`, computes the cut, so that it has one value wherever
+it is used.
 """
 
 import math
@@ -76,13 +80,14 @@ def start_flight(block: Record, samples: FloatArray) -> bool:
     k, s = block.interval, block.s
     jump = False
     if k == 0 and s == 0.0:
+        # before the first sample the ground is still: a first sample beyond the level uplifts the body at once
         lifted = lifting_sign(block, samples[SHAPE, 0], vertical_at(block, samples, 0))
         set_sign(block, lifted if lifted != 0.0 else 1.0)
         jump = restoring_at(block, samples, 0) < 0.0
     if not jump:
         k = next_exceedance(block, samples, k)
         if k == samples.shape[1] - 1:
-            return False
+            return False  # no sample lifts the body: it rests to the end
         set_sign(block, lifting_sign(block, samples[SHAPE, k + 1], vertical_at(block, samples, k + 1)))
     q0, q1, _, _ = ground_on(block, samples, k)
     if q0 < 0.0:
@@ -90,7 +95,7 @@ def start_flight(block: Record, samples: FloatArray) -> bool:
     else:
         cut = cut_time(q0, q1, interval_length(block, samples, k))
         block.starts_at_uplift = 1
-    block.s = max(cut, s) if k == block.interval else cut
+    block.s = max(cut, s) if k == block.interval else cut  # not before the time at which it came to rest
     block.interval, block.w0, block.at_rest = k, 0.0, 0
     count_uplift(block, block.h * samples[TIME, k] + block.s)
     return True
@@ -98,12 +103,7 @@ def start_flight(block: Record, samples: FloatArray) -> bool:
 
 @kernel
 def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) -> None:
-    """Impact with velocity w < 0 at time `s` in the interval `k`: set the start of the next flight, or rest.
-
-    Where both edges are held down the body rests if it has no velocity, or if the impacts accumulate. Where one is
-    lifted, a body without velocity uplifts at once, unless the flight had no length: then q = 0 within rounding, and
-    the body rests until it changes.
-    """
+    """Impact with velocity w < 0 at time `s` in the interval `k`: set the start of the next flight, or rest."""
     h = interval_length(block, samples, k)
     time = block.h * samples[TIME, k] + s - block.uplift_time
     block.w0 = count_impact(block, time, w)
@@ -112,33 +112,38 @@ def on_impact(block: Record, samples: FloatArray, k: int, s: float, w: float) ->
     set_sign(block, block.turn * block.sign)
     f, vertical = ground_at(block, samples, k, s)
     lifted = lifting_sign(block, f, vertical)
-    if lifted == 0.0:
-        if block.w0 <= 0.0:
+    if lifted == 0.0:  # both edges are held down
+        if block.w0 <= 0.0:  # eta = 0
             block.at_rest = 1
         elif block.impacts >= IMPACT_LIMIT or chatter_ends_in_rest(block, samples):
             block.at_rest, block.chatter = 1, 1
     elif block.w0 <= 0.0 and stuck:
+        # eta = 0, one edge is lifted, but the flight had no length: q = 0 within rounding. The body rests for a moment,
+        # or the same flight would start again and again
         block.at_rest, block.s = 1, s + ROUNDING * h
-    elif block.w0 <= 0.0:  # eta = 0
+    elif block.w0 <= 0.0:  # eta = 0, one edge is lifted: uplift at once
         set_sign(block, lifted)
         block.w0 = 0.0
+    # with a velocity the body continues about the next edge, whichever the ground lifts
 
 
 @kernel
 def chatter_ends_in_rest(block: Record, samples: FloatArray) -> bool:
     """Whether chatter from the start of the next flight certainly ends in rest: `impacts_accumulate`.
 
-    The window is four times the sum of the series for constant q, the extremes of q are those of the samples in it.
-    They are not searched for where the impacts do not accumulate under the q of the moment.
+    Given: an impact where both edges are held down. Decided: whether the impacts that follow accumulate to rest in a
+    window, which is four times as long as the series of flights would be under the present q. No extreme of q is
+    missed: q is linear between samples, so that the samples in the window and its two ends have them all.
     """
     w, eta = block.w0, max(block.eta[0], block.eta[1])
-    if eta == 1.0:
+    if eta == 1.0:  # no impact takes energy
         return False
     f, vertical = ground_at(block, samples, block.interval, block.s)
     pulls = pulls_of(block)
     q_right, q_left = vertical + block.a[0] * f, vertical - block.a[1] * f
     first = min(pulls[0] * q_right, pulls[1] * q_left)
     window = 8.0 * w / (first * (1.0 - eta))
+    # cheaper first: under the q of the moment alone. Where that fails, no other q in the window makes it hold
     if not impacts_accumulate(block, w, pulls, window, (q_right, q_right), (q_left, q_left), vertical):
         return False
     # where q varies more, 1 - eta sqrt(spread) is below 0.24 (1 - eta): a quarter is needed for the sum of the series

@@ -1,18 +1,19 @@
 """Motion of the slender block on a piece of a sample interval, exact: (3.1) with a ground acceleration linear in time.
 
-In the mirror image of a flight z'' = z - q, and q = q0 + r s is its own particular solution. From z, w at s = 0
+z = |theta|/alpha obeys z'' = z - q, and q = q0 + r s is its own particular solution. From z, w at s = 0
 
     z(s) = z + w s + C (cosh s - 1) + D (sinh s - s),   C = z - q0,   D = w - r
     w(s) = w + C sinh s + D (cosh s - 1)
 
-increments that keep their digits on short flights. A piece does not contain a change of the sign of q inside:
+increments that keep their digits on short flights. `follow_piece` decides whether a piece holds an impact and a peak.
+None is missed, since q does not change its sign inside a piece:
 
-- q >= 0: what has gone below zero stays below, by the maximum principle for z'' - z = -q: z has a zero if and only if
-  it is not positive at the right end, and then exactly one.
-- q <= 0: z'' >= 0 where z >= 0. A zero needs w < 0 at the left end; z has at most one minimum, and its sign at the
-  right end or at the minimum decides. There is no maximum inside.
-- w - r = C sinh s + D cosh s has at most one zero of its derivative, so w has at most two zeros. If w has equal signs
-  at the ends, two zeros require a minimum (maximum) of w inside, where z'' changes its sign: tanh s = -C/D.
+- q >= 0, restored: what has gone below zero stays below, by the maximum principle for z'' - z = -q. z has a zero if and
+  only if it is not positive at the right end, and then exactly one.
+- q <= 0, destabilised: z'' >= 0 where z >= 0. A zero needs w < 0 at the left end; z has at most one minimum, and its
+  sign at the right end or at the minimum decides. There is no maximum inside.
+- Peaks: w - r = C sinh s + D cosh s has at most one zero of its derivative, so w has at most two zeros. If w has equal
+  signs at the ends, two zeros require a minimum (maximum) of w inside, where z'' changes its sign: tanh s = -C/D.
 """
 
 import math
@@ -61,7 +62,7 @@ def next_time(
     Returns the next time and whether its error is below rounding: a step of length d leaves an error of
     d^3 |(second/(2 rate))^2 - third/(6 rate)|, whose two terms are added here.
     """
-    halley, error = lo - 1.0, 0.0
+    halley, error = lo - 1.0, 0.0  # outside of the bracket: halve it
     if rate != 0.0:
         inverse = 1.0 / rate
         newton = -value * inverse
@@ -82,6 +83,7 @@ def impact_time(z: float, w: float, q0: float, r: float, length: float, z1: floa
     starts from that with z, w and z'', and is on z/s, which removes the zero at the start.
     """
     from_ground = z == 0.0
+    # the zero of z + w s + curvature s^2, by the form of the quadratic formula that does not cancel
     curvature = -0.5 * q0 if from_ground and q0 > 0.0 else (z1 - z - w * length) / (length * length)
     root = math.sqrt(max(w * w - 4.0 * curvature * z, 0.0))
     s = 2.0 * z / (root - w) if w < 0.0 else -0.5 * (root + w) / curvature
@@ -91,7 +93,7 @@ def impact_time(z: float, w: float, q0: float, r: float, length: float, z1: floa
     for _ in range(MAX_ITERATIONS):
         value, rate = piece_state(z, w, q0, r, s)
         second, third = value - (q0 + r * s), rate - r
-        if from_ground:
+        if from_ground:  # z/s and its derivatives
             inverse = 1.0 / s
             value *= inverse
             rate = (rate - value) * inverse
@@ -132,16 +134,17 @@ def highest_in_piece(z: float, w: float, q0: float, r: float, length: float, w1:
     if (w > 0.0) == (w1 > 0.0):
         # w has two zeros or none: both lie on different sides of its extremum
         if (w > 0.0) != (c < 0.0) or abs(c) >= abs(d) or c * d >= 0.0:
-            return 0.0
+            return 0.0  # w moves away from zero at first, or has no extremum
         turn = math.atanh(-c / d)
         if turn >= length or (piece_state(z, w, q0, r, turn)[1] > 0.0) == (w > 0.0):
-            return 0.0
+            return 0.0  # the extremum lies beyond the piece, or w does not reach zero there
+        # of the two zeros the one at which w falls is the peak: before a minimum of w, after a maximum
         if w > 0.0:
             hi = turn
         else:
             lo = turn
         guess = 0.5 * (lo + hi)
-    elif w1 > 0.0:
+    elif w1 > 0.0:  # the only zero is a minimum of z
         return 0.0
     top = velocity_zero(z, w, q0, r, lo, hi, guess, True)
     return float(piece_state(z, w, q0, r, top)[0])
@@ -161,15 +164,15 @@ def follow_piece(
     if restoring:
         if z1 <= 0.0:
             impact = impact_time(z, w, q0, r, length, z1)
-    elif w < 0.0:
+    elif w < 0.0:  # destabilised, but it still falls
         if z1 <= 0.0:
             impact = impact_time(z, w, q0, r, length, z1)
-        elif w1 > 0.0:
+        elif w1 > 0.0:  # it has turned inside: the minimum decides
             bottom = velocity_zero(z, w, q0, r, 0.0, length, length * (w / (w - w1)), False)
             lowest = piece_state(z, w, q0, r, bottom)[0]
             if lowest <= 0.0:
                 impact = impact_time(z, w, q0, r, bottom, lowest)
-    if impact >= 0.0:
+    if impact >= 0.0:  # the piece ends here; rounding must not make w positive
         z1, w1, length = 0.0, min(piece_state(z, w, q0, r, impact)[1], 0.0), impact
     top = 0.0
     if restoring:

@@ -31,7 +31,7 @@ MAX_INTERVAL = 50.0
 """Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
 
 MAX_DIVIDED = 200_000
-"""Most intervals into which the samples of a pulse are divided where they are longer than `MAX_INTERVAL`."""
+"""Most intervals of a pulse after those longer than `MAX_INTERVAL` are divided [-]."""
 
 MIN_CHUNK, MAX_CHUNK = 64, 512
 """Cells given to a thread at a time: at least a millisecond of work, with full SIMD lanes for most of it; more in
@@ -50,10 +50,10 @@ def record_response(
     stop: StopFlag | None = None,
     body: Any = None,
 ) -> Response:
-    """`rocking.peak_response` under a record, whose arguments and errors it has, for arguments that are not labelled.
+    """`rocking.peak_response` under a record, for arguments without labels; `body` as of `Response`.
 
     "pulse" in the descriptions of the fields stands for the motion. Impacts are counted until the outcome and the peak
-    are certain. `body` as of `Response`.
+    are certain.
     """
     cores = AVAILABLE_CORES if threads is None else integer("threads", threads, 1, math.inf)
     given = {
@@ -93,9 +93,7 @@ def record_cells(
 
 
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
-    """The groups of a response under a record by name, as `check_groups`, beside it frequency parameter and factor.
-
-    The factor of the vertical component is 0 for a record without one.
+    """The checked groups of a response under a record by name; the vertical factor is 0 without such a component.
 
     Raises `InvalidArgumentError` if `motion` is not a record, or a value is out of range.
     """
@@ -108,7 +106,7 @@ def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
 
 
 def frequency_parameter_range(motion: Record) -> tuple[float, float]:
-    """Smallest and largest frequency parameter p of a block under this record, which is checked to be one [rad/s]."""
+    """Smallest and largest frequency parameter p of a block under a record [rad/s]; an error if it is no record."""
     if not isinstance(motion, Record):
         raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
     return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
@@ -117,9 +115,7 @@ def frequency_parameter_range(motion: Record) -> tuple[float, float]:
 def solve_pulse(
     pulse: AbstractPulse, cells: list[Array], threads: int | None, stop: StopFlag | None
 ) -> NDArray[np.void]:
-    """Response records (size,) of blocks under a sampled pulse; `cells` and errors as for `solve_cells` of
-    `peak_response`.
-    """
+    """Response records (size,) of blocks under a sampled pulse; arguments as for `peak_response.solve_cells`."""
     slenderness, omega, eta = cells[:3]
     alpha = cells[3] if len(cells) == 4 else np.zeros(omega.size)
     return solve_bodies_under_pulse(pulse, block_cells(omega, slenderness, eta, alpha), threads, stop)[0]
@@ -141,7 +137,7 @@ def solve_bodies_under_pulse(
 def _each_kind(
     kinds: NDArray[np.int64], solve: Callable[[NDArray[np.bool_], int], tuple[NDArray[np.void], Array]], each_side: bool
 ) -> tuple[NDArray[np.void], Array]:
-    """The result of `solve_bodies` for cells of several kinds (size,), those of each kind solved together."""
+    """The result of `solve_bodies` for cells of several kinds (size,): `solve` takes the cells of one kind together."""
     records, edges = np.empty(kinds.size, RESPONSE_RECORD), np.empty((kinds.size if each_side else 0, EDGE_COLUMNS))
     for kind in np.unique(kinds):
         own = kinds == kind
@@ -170,7 +166,7 @@ def interval_parts(pulse: AbstractPulse, frequency_ratio: Array) -> NDArray[np.i
             "frequency_ratio", lowest, f"at least {least:.3g} for this pulse of {phases.size} samples"
         )
     needed = np.log2(np.maximum(longest / (MAX_INTERVAL * frequency_ratio), 1.0))
-    # powers of two, so that an array needs few divisions; each is the cell's own, not that of the lowest ratio
+    # powers of two, so that an array needs few divisions; each cell has its own, whatever the others need
     return np.left_shift(1, np.ceil(needed).astype(np.int64)).clip(max=most)
 
 
@@ -180,12 +176,12 @@ def solve_bodies(
     """Response records (size,) of bodies `BODY_CELL` (size,) under `sample_rows`, and what differs from edge to edge.
 
     `each_side`: whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size,
-    EDGE_COLUMNS); else the second result has no rows. Errors are those of `rocking._solver.peak_response.solve_cells`.
+    EDGE_COLUMNS); else the second result has no rows. Errors as of `rocking._solver.peak_response.solve_cells`.
     """
     by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
     kinds = np.full(cells.size, -1)
     if by_steps.any():
-        # what sets the rounding of a cell is its own, not that of the cells beside it in the array or the thread
+        # the degree sets the rounding of a cell: it must not depend on the cells beside it in the array or the thread
         kinds[by_steps] = 2 * taylor_orders(samples, cells[by_steps]) + (cells["vertical"][by_steps] != 0.0)
     if cells.size and (kinds != kinds[0]).any():
         return _each_kind(kinds, lambda own, _: solve_bodies(samples, cells[own], threads, stop, each_side), each_side)

@@ -1,6 +1,6 @@
 """The samples of a ground motion as the kernels read them, and searches in them.
 
-The motion is linear between its samples and zero after the last. Samples of a record are equidistant; those of a
+The motion is linear between its samples and zero after the last. Samples of a record are equidistant; samples of a
 sampled pulse need not be.
 """
 
@@ -18,7 +18,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel
 SHAPE, LATER, BLOCKS, TIME, VERTICAL, LATER_LOW, BLOCKS_LOW = range(7)
 """Rows of the array of a motion, see `sample_rows`."""
 
-BLOCK = 32  # sample intervals of which the rows `BLOCKS` and `BLOCKS_LOW` hold one extreme
+BLOCK = 32  # sample intervals for each extreme in the rows `BLOCKS` and `BLOCKS_LOW`
 
 
 def sample_rows(
@@ -102,7 +102,8 @@ def ground_at(block: Record, samples: FloatArray, k: int, s: float) -> tuple[flo
 def next_exceedance(block: Record, samples: FloatArray, first: int) -> int:
     """The first interval from `first` on at whose right end q < 0 on an edge; the number of intervals if none.
 
-    At rest the body uplifts in this interval, where q crosses 0, or at its left end.
+    At rest the body uplifts in this interval, where q crosses 0, or at its left end. None is missed: a block of
+    intervals is passed only if its largest |f| and its smallest V hold both edges down.
     """
     f, blocks, lows = samples[SHAPE], samples[BLOCKS], samples[BLOCKS_LOW]
     right, left = block.a[0], block.a[1]
@@ -130,9 +131,8 @@ def extremes_in_window(
     """Bounds of q from the position of the body on, over a time `window` [tau].
 
     Returns a lower and an upper bound of q on the right edge, the same on the left edge, and the largest V, from the
-    extremes of both components: without vertical motion the bounds are the extremes of q. After the last sample
-    q = V = 1. The search ends early, with the extremes so far, once q <= 0 on an edge, or q varies by more than the
-    factor `spread`.
+    extremes of both components: without vertical motion the bounds are the extremes of q. The search ends early, with
+    the extremes so far, once q <= 0 on an edge, or q varies by more than the factor `spread`: the answer is no then.
     """
     right, left = block.a[0], block.a[1]
     count, k = samples.shape[1] - 1, block.interval
@@ -162,6 +162,7 @@ def extremes_in_window(
             return least_right, heaviest + right * high, least_left, heaviest - left * low, heaviest
         end -= h
         k += 1
+    # the window goes on beyond the last sample, where q = V = 1
     least_right, least_left = lightest + right * low, lightest - left * high
     most_right, most_left = heaviest + right * high, heaviest - left * low
     return min(least_right, 1.0), max(most_right, 1.0), min(least_left, 1.0), max(most_left, 1.0), max(heaviest, 1.0)

@@ -9,12 +9,13 @@ from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES
 from rocking._solver.records.samples import TIME
 from rocking._solver.state import (
+    ACCURACY_FIELDS,
     AT_REST,
     BODY_FIELDS,
-    EDGE_LANES,
     FULL_PRECISION,
     MAX_ORDER,
     PROGRESS_FIELDS,
+    STEP_FIELDS,
     aligned_record,
 )
 
@@ -50,41 +51,20 @@ def body_states(samples: NDArray[np.float64], count: int) -> NDArray[np.void]:
     return states
 
 
-def _steps_layout() -> np.dtype[np.void]:
-    lanes, series = (LANES,), (MAX_ORDER + 1, LANES)
-    return np.dtype(
-        [
-            ("z", np.float64, series),  # coefficients of z,
-            ("rate", np.float64, series),  # of dz/dtau,
-            ("s", np.float64, series),  # of sin(alpha (1 - z))/sin(alpha)
-            ("c", np.float64, series),  # and of cos(alpha (1 - z))/cos(alpha)
-            # start of the step
-            ("z0", np.float64, lanes),
-            ("w0", np.float64, lanes),
-            ("force", np.float64, lanes),  # F there,
-            ("force_rate", np.float64, lanes),  # and its rate
-            ("vertical", np.float64, lanes),  # V there,
-            ("vertical_rate", np.float64, lanes),  # and its rate
-            ("limit", np.float64, lanes),  # largest step size [tau]
-            # the edges
-            ("omega", np.float64, lanes),
-            *EDGE_LANES,
-            # the step
-            ("h", np.float64, lanes),  # step size [tau]
-            ("z1", np.float64, lanes),  # z at its end
-            ("w1", np.float64, lanes),  # w there
-            ("second_derivative_bound", np.float64, lanes),  # bound of |w''| on it
-            ("steady", np.float64, lanes),  # 1 if it contains neither an impact nor a peak, 0 if not known
-            ("taken", np.int64, lanes),  # number of steps of the flight
-            ("has_vertical", np.int64),  # whether V is not 1 everywhere
-            # accuracy
-            ("order", np.int64),  # degree of the steps, `MIN_ORDER` to `MAX_ORDER`
-            ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
-        ]
-    )
-
-
-STEP_STATE = _steps_layout()  # layout of the record of `LANES` Taylor steps
+STEP_STATE = np.dtype(
+    [
+        *STEP_FIELDS,
+        # start of the step
+        ("force", np.float64, (LANES,)),  # F there,
+        ("force_rate", np.float64, (LANES,)),  # and its rate
+        ("vertical", np.float64, (LANES,)),  # V there,
+        ("vertical_rate", np.float64, (LANES,)),  # and its rate
+        ("steady", np.float64, (LANES,)),  # 1 if the step contains neither an impact nor a peak, 0 if not known
+        ("has_vertical", np.int64),  # whether V is not 1 everywhere
+        *ACCURACY_FIELDS,
+    ]
+)
+"""Layout of the record of `LANES` Taylor steps; their degree is `MIN_ORDER` to `MAX_ORDER`."""
 
 
 def taylor_orders(samples: NDArray[np.float64], cells: NDArray[np.void]) -> NDArray[np.int64]:

@@ -1,10 +1,13 @@
 """A flight of the rigid block under a recorded motion, by Taylor steps on pieces of the sample intervals.
 
-A piece ends at a sample and where q = V + F changes its sign. At z = 0 the acceleration is -pull q
-(`rocking._solver.rules`), so that the argument of `rocking._solver.taylor.flight` holds on each piece: where q > 0, z =
-0 is crossed downwards only, once, and the sign of z at the end of a step decides; where q <= 0, F <= -V and S <= C, so
-that V S + F C <= V (S - C) <= 0: z'' >= 0 for all z >= 0 up to |theta| = pi/2, and z has at most one minimum and no
-maximum.
+Given: the start of the flight, and the samples. Decided for each step: whether it holds an impact or a peak, and
+whether the body certainly overturns. No event is missed: a piece ends at a sample and where q = V + F changes its sign,
+and no step passes the end of its piece. At z = 0 the acceleration is -pull q (`rocking._solver.rules`), so that the
+argument of `rocking._solver.taylor.flight` holds on each piece:
+
+- q > 0: z = 0 is crossed downwards only, once. The sign of z at the end of a step decides.
+- q <= 0: F <= -V and S <= C, so that V S + F C <= V (S - C) <= 0. z'' >= 0 for all z >= 0 up to |theta| = pi/2, and z
+  has at most one minimum and no maximum.
 """
 
 import math
@@ -26,8 +29,8 @@ def start_piece(block: Record, samples: FloatArray, steps: Record, lane: int, at
     q0, q1, v0, v1 = ground_on(block, samples, k)
     slope, vertical_slope = (q1 - q0) / h, 0.0 if v0 == v1 else (v1 - v0) / h
     block.length = block.piece_end = h
-    restoring = q0 + q1 > 0.0
-    if q0 < 0.0 < q1 or q1 < 0.0 < q0:
+    restoring = q0 + q1 > 0.0  # where q keeps its sign, its sign at the middle
+    if q0 < 0.0 < q1 or q1 < 0.0 < q0:  # two pieces, before and after the cut
         cut = cut_time(q0, q1, h)
         if s < cut and not at_cut:
             block.piece_end = cut
@@ -38,6 +41,7 @@ def start_piece(block: Record, samples: FloatArray, steps: Record, lane: int, at
     vertical = v0 + vertical_slope * s
     if steps.has_vertical == 1:
         steps.vertical[lane], steps.vertical_rate[lane] = vertical, vertical_slope
+    # at the cut q = 0 exactly: F = -V without rounding, or the body would uplift with an acceleration of its own
     steps.force[lane] = -vertical if at_cut else (q0 - v0) + (slope - vertical_slope) * s
     steps.force_rate[lane] = slope - vertical_slope
     steps.limit[lane] = max(block.piece_end - s, 0.0)
@@ -62,9 +66,9 @@ def never_returns(block: Record, samples: FloatArray, z: float, w: float) -> boo
     """
     alpha, ratio = block.alpha, block.ratio[block.side]
     beyond = z - ratio
-    if w <= 0.0 or beyond <= 0.0:
+    if w <= 0.0 or beyond <= 0.0:  # it can still come back
         return False
-    if alpha * z >= 0.5 * math.pi:
+    if alpha * z >= 0.5 * math.pi:  # it lies on its side
         return True
     k = block.interval
     strongest = block.a[block.side] * samples[LATER, k] / (1.0 + block.vertical * samples[LATER_LOW, k])
@@ -81,7 +85,7 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
     w.
     """
     h, z, w = steps.h[lane], steps.z1[lane], steps.w1[lane]
-    if steps.steady[lane] == 0.0:
+    if steps.steady[lane] == 0.0:  # events are possible; most steps hold none
         destabilised = block.destabilised == 1
         impact = impact_in_step(steps, lane, destabilised, block.from_ground == 1)
         if impact >= 0.0:
@@ -105,9 +109,9 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
         steps.limit[lane] -= h
         return IN_FLIGHT, block.s, z, w
     at_cut = block.piece_end < block.length
-    if at_cut:
+    if at_cut:  # the second piece of the interval
         block.s = block.piece_end
-    else:
+    else:  # the next interval
         block.stepped += 1
         block.interval, block.s = block.interval + 1, 0.0
         if never_returns(block, samples, z, w):

@@ -11,7 +11,7 @@ from rocking._solver.taylor.step import choose_step_size, evaluate_step, start_s
 
 @kernel
 def expand_motion(steps: Record) -> None:
-    """Fill `z` and `rate` from z0, w0, the force and V."""
+    """Fill `z` and `rate` from z0, w0, the force and V: as `rocking._solver.taylor.step.expand_motion`."""
     z, rate, s, c = steps.z, steps.rate, steps.s, steps.c
     force, force_rate = load(steps.force, 0), load(steps.force_rate, 0)
     has_vertical = steps.has_vertical == 1

@@ -12,7 +12,7 @@ A, B of (3.4) would lose all digits on short flights. Of a particular solution p
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.simd import any_lane, load, select, splat, store
+from rocking._numba.simd import any_lane, load, select, splat, store, store_where
 from rocking._numba.simd_exponentials import cosh_minus_one_and_sinh
 from rocking._solver.families.sinusoids import SERIES_LENGTH
 from rocking._solver.stages import columns as column
@@ -26,14 +26,15 @@ from rocking._solver.stages.excitation import (
 
 @kernel
 def start_arcs(pulse: Record, group: Record, sign: float) -> None:
-    """Set the coefficients of the flights, all with sgn(theta) = `sign`, from the columns of `flight`."""
+    """Set the coefficients of the flights, all with sgn(theta) = `sign`, from the columns of the group."""
     a = 1.0 / load(group.columns, column.SLENDERNESS)
     store(group.a, 0, a)
     group.expanded = 0
     store(group.reciprocal_omega, 0, 1.0 / load(group.columns, column.OMEGA))
     start_particular_solution(pulse, group, sign, a)
     at_uplift = load(group.columns, column.AT_UPLIFT) > 0.0
-    store(group.q0, 0, select(at_uplift, splat(0.0), load(group.q0, 0)))
+    # q = 0 at an uplift: what rounding leaves there would be an acceleration of its own
+    store_where(group.q0, 0, at_uplift, 0.0)
 
 
 @kernel
@@ -49,7 +50,7 @@ def states_at(pulse: Record, group: Record, h: SimdVector) -> Any:
     w += x0 * sinh + y0 * cosh1
     near = h <= load(group.reach, 0)
     if any_lane(near):
-        if not group.expanded:
+        if not group.expanded:  # once for a flight, and only if a time near its start is asked for
             expand_start(pulse, group)
         near_z, near_w = series_states(pulse, group, h)
         z, w = select(near, near_z, z), select(near, near_w, w)
@@ -79,6 +80,7 @@ def expand_start(pulse: Record, group: Record) -> None:
     store(series, 1, load(group.columns, column.W0))
     store(series, 2, q0 * -0.5)
     expand_at_start(pulse, group)  # row n + 2 becomes F_n
+    # two loops for one recurrence: the first has a fixed length, and is all that sinusoids need
     for n in range(1, SERIES_LENGTH - 2):
         store(series, n + 2, (load(series, n) - load(series, n + 2)) * (1.0 / ((n + 1.0) * (n + 2.0))))
     for n in range(SERIES_LENGTH - 2, pulse.series_length - 2):
@@ -91,7 +93,7 @@ def series_states(pulse: Record, group: Record, h: SimdVector) -> Any:
     """z and w a time h after the start, by the series."""
     series, last = group.series, pulse.series_length - 1
     z, w = splat(0.0), splat(0.0)
-    for i in range(pulse.series_length - SERIES_LENGTH):  # 0 for sinusoids: their loop has a fixed length
+    for i in range(pulse.series_length - SERIES_LENGTH):  # none for sinusoids: the loop below has a fixed length
         coefficient = load(series, last - i)
         z = z * h + coefficient
         w = w * h + coefficient * float(last - i)

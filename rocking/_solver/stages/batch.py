@@ -35,6 +35,7 @@ def leave_rest(which: int, pulse: Record, group: Record) -> None:
     for lane in range(LANES):
         if group.next[lane] != float(REST):
             continue
+        # a block at rest waits for |f| = 1/a, on this piece of the pulse or on a later one
         piece, sign = uplift_piece(pulse, columns[column.SLENDERNESS, lane], columns[column.PHASE, lane])
         if sign == 0.0:
             group.next[lane] = float(FINISHED)
@@ -42,6 +43,7 @@ def leave_rest(which: int, pulse: Record, group: Record) -> None:
         columns[column.W0, lane], columns[column.AT_UPLIFT, lane], columns[column.PIECE, lane] = 0.0, 1.0, piece
         columns[column.UPLIFTS, lane] += 1.0
         columns[column.IMPACTS_BEFORE, lane] = columns[column.IMPACTS, lane]
+        # a list holds one sign of rotation: the cell joins the same list again, or the list of the other sign
         group.next[lane] = float(REPEATED if (sign > 0.0) == (which % 2 == 1) else LONG)
 
 
@@ -71,6 +73,7 @@ def distribute(which: int, pulse: Record, group: Record, cells: Record, response
 @kernel
 def share_flights(which: int, eta: FloatArray, pulse: Record, group: Record, cells: Record, responses: Record) -> None:
     """End the flights for the other cells that share them; `shared` and `leader` hold the group as it was before."""
+    # the flight is the same for all eta; only its end, at the impact, differs
     members, most = cells.members, 1
     for lane in range(LANES):
         most = max(most, members[group.leader[lane]])
@@ -134,24 +137,13 @@ def solve_by_arcs(
     stop: FloatArray,
     responses: Record,
 ) -> int:
-    """Follow slender blocks from rest to their final outcome, under sinusoids or a wavelet.
+    """Follow slender blocks from rest to their final outcome; returns the number of cells that no stage decides.
 
-    Parameters
-    ----------
-    slenderness, omega, eta : float arrays (cells,)
-        1/a > 0, frequency ratio > 0, restitution in [0, 1] [-].
-    pulse, group, cells
-        Solver state: a record of `pulse_state`, and `stage_state`.
-    stop : uint8 array (1,)
-        Once another thread sets it to 1, the function returns within a flight; responses are missing.
-    responses : array (cells,) of `rocking._solver.state.RESPONSE_RECORD`
-        Filled; of cells that no stage decides only the outcome, with `LEFT`, the impacts that were followed, and if
-        there are any the times of uplift and of the first impact with its velocity.
-
-    Returns
-    -------
-    int
-        Number of cells that no stage decides.
+    `slenderness`, `omega`, `eta` (cells,): 1/a > 0, frequency ratio > 0, restitution in [0, 1] [-]. `pulse`, `group`,
+    `cells`: solver state, a record of `pulse_state`, and `stage_state`. `stop` (1,): once another thread sets it to 1,
+    the function returns within a flight; responses are missing. `responses` (cells,), `RESPONSE_RECORD`, are filled: of
+    a cell that no stage decides only the outcome, `LEFT`, the impacts that were followed, and if there are any the
+    times of uplift and of the first impact with its velocity.
     """
     init_nodes(pulse, group)
     rows, lists, counts = cells.rows, cells.lists, cells.counts
@@ -165,6 +157,7 @@ def solve_by_arcs(
         block = responses[first:last]
         counts[:] = 0
         shared = start_cells(block_s, block_w, pulse, cells, block)
+        # the fullest list first: vectors are full as long as possible
         while not is_stopped(stop):
             fullest = 0
             for which in range(1, GENERAL_LIST):

@@ -1,4 +1,4 @@
-"""Columns of the row of a cell that waits for a stage, of which there are `LANES`."""
+"""The `LANES` columns of the row of a cell that waits for a stage."""
 
 # the cell and its next flight,
 SLENDERNESS, OMEGA, ETA = 0, 1, 2  # 1/a, omega, eta

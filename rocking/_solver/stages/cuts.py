@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.simd import LANES, any_lane, load, maximum, minimum, select, splat, store
+from rocking._numba.simd import LANES, any_lane, load, maximum, minimum, select, splat, store, store_where
 from rocking._numba.simd_exponentials import arccosine
 from rocking._solver.crossings import refine_crossings
 from rocking._solver.excitation import shapes_and_slopes
@@ -34,11 +34,11 @@ def cut_phases(pulse: Record, group: Record, piece: int, sign: float) -> Any:
     rising = g_right >= g_left
     lowest, highest = min(g_left, g_right), max(g_left, g_right)
     inside = (s > lowest) & (s < highest)
-    # g < 1/a on the whole piece, or above
+    # no cut: g < 1/a on the whole piece, which is restored, or g > 1/a, and it is destabilised
     ends = select(s >= highest, splat(right if rising else left), splat(left if rising else right))
     if not any_lane(inside):
         return ends
-    if is_unit_sinusoid(pulse):
+    if is_unit_sinusoid(pulse):  # arccos(1/a) from the peak of g, at whichever end of the piece that lies
         half_width = load(group.half_width, 0)
         peak_at_left = -sign * pulse.amplitude[0] * pulse.half_period_cosine[piece] > 0.0
         distance = half_width if peak_at_left else math.pi - half_width
@@ -75,6 +75,7 @@ def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, 
     low = splat(left)
     f_low, slope_low = splat(shapes[0]), splat(slopes[0])
     f_high, slope_high = splat(shapes[1]), splat(slopes[1])
+    # move the bracket on, node by node, as long as the level lies beyond: lanes differ in it and cannot branch
     for node in range(1, LANES - 1):
         beyond = (level > shapes[node]) if rising else (level < shapes[node])
         low = select(beyond, splat(left + node * spacing), low)
@@ -92,7 +93,8 @@ def cuts_by_newton(pulse: Record, group: Record, piece: int, level: SimdVector, 
 def uplift_piece(pulse: Record, slenderness: float, phase: float) -> tuple[int, float]:
     """Piece of the pulse with the first uplift of a block at rest at `phase`, and its sgn(theta), 0 if there is none.
 
-    |f| < 1/a at `phase`, so that |f| reaches 1/a on the first piece with |f| > 1/a at its right end.
+    |f| < 1/a at `phase`. f is monotone on a piece, so that |f| first reaches 1/a on the first piece with |f| > 1/a at
+    its right end: no uplift is missed.
     """
     for piece in range(pulse.pieces):
         f = pulse.end_shape[piece + 1]
@@ -129,5 +131,5 @@ def start_uplifts(pulse: Record, group: Record, sign: float) -> None:
     store(group.columns, column.PHASE, phase)
     first = (pieces >= 0.0) & (load(group.columns, column.UPLIFTS) == 1.0)
     time = (phase - pulse.end_phase[0]) / load(group.columns, column.OMEGA)
-    store(group.columns, column.UPLIFT_TIME, select(first, time, load(group.columns, column.UPLIFT_TIME)))
+    store_where(group.columns, column.UPLIFT_TIME, first, time)
     store(group.columns, column.PIECE, splat(-1.0))

@@ -1,6 +1,7 @@
 """Ends of flights of `LANES` blocks: impacts, chatter, rest, the outcome by energy after the pulse, and the response.
 
-The vector form of `rocking._solver.rules` for slender blocks.
+Given: how each flight has ended (`rocking._solver.stages.flight`). Decided: what follows, `FINISHED` to `UNDECIDED`.
+The rules are those of `rocking._solver.rules` for slender blocks with equal edges; a test compares both.
 """
 
 import math
@@ -8,7 +9,19 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.records import copy_lane
-from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
+from rocking._numba.simd import (
+    LANES,
+    absolute,
+    any_lane,
+    load,
+    maximum,
+    minimum,
+    select,
+    splat,
+    square_root,
+    store,
+    store_where,
+)
 from rocking._solver.free_rocking import slender_energy, slender_top
 from rocking._solver.rules import AFTER_IMPACT, DIRECTLY, RECOVERS, peak_mode, series_fits
 from rocking._solver.stages import columns as column
@@ -43,7 +56,7 @@ def update_peaks(group: Record, where: Any, peak: SimdVector, impacts: SimdVecto
     before = load(group.columns, column.PEAK)
     mode = peak_mode(load(group.columns, column.UPLIFTS), impacts, load(group.columns, column.IMPACTS_BEFORE), free)
     higher = where & (peak > before * (1.0 + 1e-12))
-    store(group.columns, column.MODE, select(higher, mode, load(group.columns, column.MODE)))
+    store_where(group.columns, column.MODE, higher, mode)
     store(group.columns, column.PEAK, select(where, maximum(peak, before), before))
 
 
@@ -61,15 +74,15 @@ def final_outcomes(group: Record, over: Any) -> None:
     top = select(increases, slender_top(squared, square_root((x - w) * (x + w))), z)
     update_peaks(group, survives, top, impacts, 1.0)
     update_peaks(group, survives & ~increases, slender_top(rebound, square_root(1.0 - rebound)), impacts + 1.0, 1.0)
-    store(group.columns, column.PEAK, select(overturned, splat(math.nan), load(group.columns, column.PEAK)))
-    store(group.columns, column.MODE, select(overturned, splat(-1.0), load(group.columns, column.MODE)))
+    store_where(group.columns, column.PEAK, overturned, math.nan)
+    store_where(group.columns, column.MODE, overturned, -1.0)
     directly = escapes & (impacts == 0.0)
     outcome = select(directly, splat(float(DIRECTLY)), splat(float(AFTER_IMPACT)))
-    store(group.outcome, 0, select(overturned, outcome, load(group.outcome, 0)))
+    store_where(group.outcome, 0, overturned, outcome)
     store(group.columns, column.IMPACTS, select(over & escapes_later, impacts + 1.0, impacts))
     store(group.free_z, 0, select(over, z, splat(0.0)))
     store(group.free_w, 0, select(over, w, splat(0.0)))
-    store(group.next, 0, select(over, splat(float(FINISHED)), load(group.next, 0)))
+    store_where(group.next, 0, over, float(FINISHED))
 
 
 @kernel
@@ -78,32 +91,35 @@ def on_impacts(pulse: Record, group: Record, sign: float, hits: Any) -> None:
     length, w = load(group.length, 0), load(group.end_w, 0)
     eta, omega = load(group.columns, column.ETA), load(group.columns, column.OMEGA)
     impacts = load(group.columns, column.IMPACTS)
+    # the impact: count it, and keep time and velocity of the first one
     first = hits & (impacts == 0.0)
-    store(group.columns, column.FIRST_TIME, select(first, length, load(group.columns, column.FIRST_TIME)))
-    store(group.columns, column.FIRST_VELOCITY, select(first, sign * w, load(group.columns, column.FIRST_VELOCITY)))
+    store_where(group.columns, column.FIRST_TIME, first, length)
+    store_where(group.columns, column.FIRST_VELOCITY, first, sign * w)
     store(group.columns, column.IMPACTS, select(hits, impacts + 1.0, impacts))
     phase = load(group.columns, column.PHASE) + omega * length
     w0 = eta * w * -1.0  # (2.3)
     a = load(group.a, 0)
     set_angles(pulse, group, phase)
     u = a * excitation_at_angles(pulse, group)
-    quiet = absolute(u) < 1.0
-    still = w0 <= 0.0
+    quiet = absolute(u) < 1.0  # both edges are held down
+    still = w0 <= 0.0  # eta = 0
     chatters = quiet & ~still & chatter_ends_in_rest(pulse, group, u, w0, phase)
-    # next flight
+    # with a velocity it continues about the other edge. Under its q0 it would fly for 2 w0/q0: short, if the series at
+    # the start reaches a quarter beyond that
     q0 = 1.0 - sign * u
     short = (q0 > 0.0) & (2.5 * w0 <= load(group.reach, 0) * q0)
     following = select(short, splat(float(SHORT)), splat(float(LONG)))
-    # eta = 0 where the ground acceleration exceeds the level: immediate uplift
+    # without velocity, where one edge is destabilised: it uplifts at once, about the same edge if u pushes it there
     same = sign * u < 0.0
     following = select(still & ~quiet, select(same, splat(float(REPEATED)), splat(float(LONG))), following)
     following = select(impacts >= MOST_IMPACTS, splat(float(UNDECIDED)), following)
+    # without velocity where both edges are held down, or after impacts that accumulate: rest
     following = select((still & quiet) | chatters, splat(float(REST)), following)
-    store(group.next, 0, select(hits, following, load(group.next, 0)))
-    store(group.columns, column.PHASE, select(hits, phase, load(group.columns, column.PHASE)))
-    store(group.columns, column.W0, select(hits, maximum(w0, splat(0.0)), load(group.columns, column.W0)))
-    store(group.columns, column.AT_UPLIFT, select(hits, splat(0.0), load(group.columns, column.AT_UPLIFT)))
-    store(group.columns, column.CHATTER, select(hits & chatters, splat(1.0), load(group.columns, column.CHATTER)))
+    store_where(group.next, 0, hits, following)
+    store_where(group.columns, column.PHASE, hits, phase)
+    store_where(group.columns, column.W0, hits, maximum(w0, splat(0.0)))
+    store_where(group.columns, column.AT_UPLIFT, hits, 0.0)
+    store_where(group.columns, column.CHATTER, hits & chatters, 1.0)
 
 
 @kernel
@@ -117,9 +133,10 @@ def piece_ends(pulse: Record, phase: SimdVector) -> Any:
 
 @kernel
 def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVector, phase: SimdVector) -> Any:
-    """Whether chatter certainly ends in rest; `rocking._solver.kernels.chatter` gives the inequality.
+    """Whether chatter certainly ends in rest, as in `rocking._solver.kernels.chatter`.
 
-    |a f| < 1 up to the end of the window since f is monotone on the piece and |a f| < 1 at both ends.
+    The window must end on the piece of the pulse that holds the impact: f is monotone there, so that |a f| < 1 at both
+    ends holds between them.
     """
     eta, omega = load(group.columns, column.ETA), load(group.columns, column.OMEGA)
     window = 8.0 * w / ((1.0 - absolute(u0)) * (1.0 - eta))

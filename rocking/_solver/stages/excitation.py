@@ -85,7 +85,7 @@ def start_particular_solution(pulse: Record, group: Record, sign: float, a: Simd
         offset_z, offset_w = splat(0.0), w0
         for k in range(pulse.terms):
             sine, cosine = sine_and_cosine(phase * pulse.multiple[k] + pulse.shift[k])
-            if unit:  # at uplift |f| = 1/a, and |f| increases; the phase would lose the digits of the sine near 1/a = 1
+            if unit:  # at uplift |f| = 1/a, and |f| increases; near a = 1 the phase would lose digits of the sine
                 root = square_root(maximum((1.0 - slenderness) * (1.0 + slenderness), splat(0.0)))
                 cosine = select(at_uplift, slenderness * (-sign * pulse.amplitude[0]), cosine)
                 sine = select(at_uplift, root * (sign * pulse.amplitude[0]), sine)
@@ -114,7 +114,7 @@ def start_particular_solution(pulse: Record, group: Record, sign: float, a: Simd
 
 @kernel
 def particular_increments(pulse: Record, group: Record) -> Any:
-    """Change of the particular solution of z, and that of w plus w0, from the start of the flight to the angles."""
+    """Changes of the particular solution from the start of the flight to the angles: of z, and of w with w0 added."""
     z, w = load(group.offset_z, 0), load(group.offset_w, 0)
     if pulse.family == WAVELET:
         at_phase, rate = particular_solution(pulse, group)

@@ -1,7 +1,9 @@
 """One flight of `LANES` blocks with the same sign of rotation, from its start to its impact or the end of the pulse.
 
-On each monotone piece of the pulse q keeps its sign up to the cut and changes it there (`rocking._solver.stages.cuts`).
-The parts of the pulse are visited in their order, all cells at once; a cell ignores the parts before its flight.
+Given: the starts of the flights, and the monotone pieces of the pulse. Decided: how each flight ends, and its largest
+rotation. The parts of the pulse are visited in their order, all cells at once; a cell ignores the parts before its
+flight. No event is missed, since q keeps its sign on a part: it changes at the cut of a piece only
+(`rocking._solver.stages.cuts`).
 
 - Restored, q >= 0: z <= 0 at the right end is necessary and sufficient for an impact, since negative z stays negative.
   f' keeps its sign, so that a peak exists if w > 0 at the left end and w < 0 at the right. Two more zeros of w are
@@ -15,14 +17,14 @@ The parts of the pulse are visited in their order, all cells at once; a cell ign
 Worked example: the sine, 1/a = 0.6, omega = 2. The first flight starts at the uplift, phi = 0.644 (f = 0.6), about the
 left edge. On the parts to pi/2 and to the cut at phi = 2.498 (f = 0.6 again) q <= 0 and w >= 0 at the left end: no
 event, and neither state is computed. The part to 3 pi/2 is restored: z = 0.226 and w = -0.933 at its right end, and
-w = 0.460 at its left end, which is computed now: one peak, which is kept for later, and no impact. On the last part, to
-2 pi, z < 0 at the right end: one impact, which is located at phi = 5.099 with w = -1.416, and the peak with it.
+w = 0.460 at its left end, computed only now: one peak, kept for later, and no impact. On the last part, to
+2 pi, z < 0 at the right end: one impact, located at phi = 5.099 with w = -1.416, and the peak with it.
 """
 
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel, specialised_kernel
-from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store
+from rocking._numba.simd import absolute, any_lane, fill_mask, load, select, splat, store, store_where
 from rocking._solver.stages import columns as column
 from rocking._solver.stages.arcs import start_arcs, states_at
 from rocking._solver.stages.cuts import cut_phases, init_cuts
@@ -60,8 +62,10 @@ def follow_flights(pulse: Record, group: Record, sign: float) -> None:
     starts = load(group.columns, column.PHASE) + load(group.columns, column.AT_UPLIFT) * UPLIFT_SLACK
     for piece in range(pulse.pieces):
         right = pulse.end_phase[piece + 1]
+        # before all flights, or after the last has ended
         if not any_lane((load(group.followed, 0) > 0.0) & (starts < right)):
             continue
+        # g = -sign f destabilises where it exceeds 1/a: a piece on which g rises is restored first, then destabilised
         rising = -sign * pulse.end_shape[piece + 1] >= -sign * pulse.end_shape[piece]
         never_cut = max(-sign * pulse.end_shape[piece + 1], -sign * pulse.end_shape[piece]) <= 0.0
         if not never_cut:
@@ -70,38 +74,26 @@ def follow_flights(pulse: Record, group: Record, sign: float) -> None:
         last = piece + 1 == pulse.pieces
         follow_part(pulse, group, splat(right), piece + 1, never_cut or not rising, rising, fill_mask(False), last)
     hits = load(group.ended, 0) == float(IMPACT)
+    # (3.8): a block that overturns has no peak
     escaped = ~hits & (load(group.end_z, 0) + load(group.end_w, 0) >= 1.0)
-    store(group.peak_pending, 0, select(escaped, zero, load(group.peak_pending, 0)))
+    store_where(group.peak_pending, 0, escaped, zero)
     if any_lane(load(group.peak_pending, 0) > 0.0):
         locate_peaks(pulse, group)
     if any_lane(hits):
         locate_impacts(pulse, group, hits)
     undecided = load(group.undecided, 0) > 0.0
-    store(group.ended, 0, select(undecided, splat(float(IN_FLIGHT)), load(group.ended, 0)))
+    store_where(group.ended, 0, undecided, float(IN_FLIGHT))
 
 
 @specialised_kernel
 def follow_part(
     pulse: Record, group: Record, right: SimdVector, end: int, restored: bool, rising: bool, before_cut: Any, last: bool
 ) -> None:
-    """Continue the flights to the phase `right` on a part of the pulse with one sign of q.
+    """Continue the flights to the phases `right` [rad] on a part of the pulse with one sign of q.
 
-    Parameters
-    ----------
-    pulse, group
-        Pulse and cells.
-    right : vector
-        Phases of the right ends [rad].
-    end : int
-        Number of the end of a piece of the pulse if all flights are continued to it, else 0.
-    restored : bool
-        Whether q >= 0 on the part, else q <= 0.
-    rising : bool
-        Whether q decreases on it.
-    before_cut : mask
-        Where a destabilised part follows.
-    last : bool
-        Whether the part ends with the pulse.
+    `end`: number of the end of a piece of the pulse if all flights are continued to it, else 0. `restored`: whether
+    q >= 0 on the part, else q <= 0; `rising`: whether q decreases on it. `before_cut`: mask of the cells for which a
+    destabilised part follows. `last`: whether the part ends with the pulse.
     """
     zero, one = splat(0.0), splat(1.0)
     # 1. Cells whose flight has a length on this part, and those for which an event is possible on it
@@ -115,10 +107,10 @@ def follow_part(
     falling_back = inside & known & (left_w < 0.0)
     if not last and not any_lane(inside if restored else falling_back):
         # destabilised and rising, all of them: no event, and the state at the right end is not needed yet
-        store(group.known, 0, select(inside, zero, load(group.known, 0)))
+        store_where(group.known, 0, inside, zero)
         store(group.left_h, 0, h)
         return
-    # 2. Their state at the right end; at the end of the pulse that of the others too, which was left open
+    # 2. Their state at the right end; at the end of the pulse also the states that were left open
     if end > 0:
         set_end_angles(pulse, group, end)
     else:
@@ -130,6 +122,7 @@ def follow_part(
     z, w = select(computed, z, left_z), select(computed, w, left_w)
     # 3. Events on the part
     if restored:
+        # overturning is certain: at the end of the pulse from z + w = 1 on, (3.8), before it from 1 + a on
         escapes = inside & (z > 0.0) & (z + w >= (one if last else 1.0 + load(group.a, 0)))
         if not last:
             escapes = escapes & before_cut
@@ -141,26 +134,26 @@ def follow_part(
         hits, undecided = destabilised_events(pulse, group, falling_back, (left_h, left_z, left_w), (h, z, w))
     if any_lane(hits):
         bracket_impacts(group, hits, (left_h, left_z, left_w), (h, z, w), q)
-    # 4. How each flight goes on
+    # 4. How each flight goes on: it has ended in an impact, overturns for certain, is left to the event loop, or stays
     ended = select(escapes, splat(float(PULSE_END)), load(group.ended, 0))
     ended = select(hits, splat(float(IMPACT)), ended)
-    store(group.undecided, 0, select(undecided, one, load(group.undecided, 0)))
+    store_where(group.undecided, 0, undecided, one)
     stays = followed & ~hits & ~undecided & ~escapes
     if last:
         ended = select(stays, splat(float(PULSE_END)), ended)
     finished = (escapes | stays) if last else escapes
-    store(group.length, 0, select(finished, h, load(group.length, 0)))
-    store(group.end_z, 0, select(finished, z, load(group.end_z, 0)))
-    store(group.end_w, 0, select(finished, w, load(group.end_w, 0)))
+    store_where(group.length, 0, finished, h)
+    store_where(group.end_z, 0, finished, z)
+    store_where(group.end_w, 0, finished, w)
     store(group.ended, 0, ended)
     store(group.followed, 0, zero if last else select(stays, one, zero))
     # where a block on a destabilised part does not fall back, its state at the right end is left open
     now_known = one if restored else select(falling_back, one, zero)
-    store(group.known, 0, select(inside, now_known, load(group.known, 0)))
+    store_where(group.known, 0, inside, now_known)
     store(group.left_h, 0, h)
     store(group.left_z, 0, z)
     store(group.left_w, 0, w)
-    store(group.left_q, 0, select(inside, q, load(group.left_q, 0)))
+    store_where(group.left_q, 0, inside, q)
 
 
 @specialised_kernel
@@ -169,7 +162,7 @@ def restored_events(
 ) -> Any:
     """Impacts and peaks on a part with q >= 0, from the times, z and w at its ends; on the left where it is `known`.
 
-    Returns the masks of the cells with an impact, which is where z <= 0 at the right end, and of those left undecided;
+    Returns the masks of the cells with an impact (z <= 0 at the right end) and of the cells left undecided;
     then z and w at the left end, computed where it was left open and w < 0 at the right end: without a fall there is
     neither a peak nor an impact, whatever the state at the left end was. The peak of a cell is kept as pending, with
     its bracket and first guess.
@@ -187,7 +180,8 @@ def restored_events(
         known = known | unknown
     left_slope, slope = left_z - left_q, z - q  # of w
     duration = h - left_h
-    # two more zeros of w are possible where it has one sign at both ends and turns inside
+    # Two more zeros of w are possible where it has one sign at both ends and turns inside. q decreases (rising):
+    # w'' = w - q' >= w, so that w is convex where it is positive. q increases: concave where it is negative
     if rising:
         turns = (left_w > 0.0) & (w >= 0.0) & (left_slope < 0.0) & (slope > 0.0)
     else:
@@ -200,7 +194,7 @@ def restored_events(
         up = 1.0 if rising else -1.0
         low_end, high_end = (left_h, left_w * up, left_slope * up), (h, w * up, slope * up)
         undecided, dips = find_dips(pulse, group, up, undecided, low_end, high_end)
-        # two zeros of w: the peak lies before the dip of w if w is positive at the ends, else after it
+        # two zeros of w: at the peak w falls, which is before the dip of a positive w and after that of a negative one
         peaks = peaks | dips
         dip, dip_z = load(group.impact_high, 0), load(group.impact_high_z, 0)
         dip_w, dip_slope = load(group.impact_high_w, 0), load(group.impact_high_slope, 0)
@@ -216,11 +210,11 @@ def restored_events(
         if any_lane(peaks & (load(group.peak_pending, 0) > 0.0)):
             flush_peaks(pulse, group, peaks)
         guess = low + quintic_roots(True, (low_z, low_w, low_slope), (high_z, high_w, high_slope), high - low)
-        store(group.peak_pending, 0, select(peaks, one, load(group.peak_pending, 0)))
-        store(group.peak_low, 0, select(peaks, low, load(group.peak_low, 0)))
-        store(group.peak_high, 0, select(peaks, high, load(group.peak_high, 0)))
-        store(group.peak_guess, 0, select(peaks, guess, load(group.peak_guess, 0)))
-    store(group.impact_after_peak, 0, select(hits, select(peaks, one, zero), load(group.impact_after_peak, 0)))
+        store_where(group.peak_pending, 0, peaks, one)
+        store_where(group.peak_low, 0, peaks, low)
+        store_where(group.peak_high, 0, peaks, high)
+        store_where(group.peak_guess, 0, peaks, guess)
+    store_where(group.impact_after_peak, 0, hits, select(peaks, one, zero))
     return hits, undecided, left_z, left_w
 
 
@@ -234,12 +228,12 @@ def destabilised_events(pulse: Record, group: Record, falling_back: Any, left: A
     left_h, left_z, left_w = left
     h, z, w = right
     hits = falling_back & (z <= 0.0)
-    turns = falling_back & (z > 0.0) & (w > 0.0)
+    turns = falling_back & (z > 0.0) & (w > 0.0)  # a minimum inside
     undecided = turns & ~are_apart(left_z, left_w, z, w, h - left_h)
     if any_lane(undecided):
         undecided, dips = find_dips(pulse, group, 0.0, undecided, left, right)
         hits = hits | dips
-    store(group.impact_after_peak, 0, select(hits, splat(0.0), load(group.impact_after_peak, 0)))
+    store_where(group.impact_after_peak, 0, hits, 0.0)
     return hits, undecided
 
 
@@ -248,23 +242,23 @@ def bracket_impacts(group: Record, hits: Any, left: Any, right: Any, q: SimdVect
     """Set the bracket of the impact: the part, or its left end and the dip that `find_dips` has set."""
     left_h, left_z, left_w = left
     h, z, w = right
-    store(group.impact_low, 0, select(hits, left_h, load(group.impact_low, 0)))
-    store(group.impact_low_z, 0, select(hits, left_z, load(group.impact_low_z, 0)))
-    store(group.impact_low_w, 0, select(hits, left_w, load(group.impact_low_w, 0)))
-    store(group.impact_low_slope, 0, select(hits, left_z - load(group.left_q, 0), load(group.impact_low_slope, 0)))
+    store_where(group.impact_low, 0, hits, left_h)
+    store_where(group.impact_low_z, 0, hits, left_z)
+    store_where(group.impact_low_w, 0, hits, left_w)
+    store_where(group.impact_low_slope, 0, hits, left_z - load(group.left_q, 0))
     at_end = hits & (z <= 0.0)  # otherwise at the dip
-    store(group.impact_high, 0, select(at_end, h, load(group.impact_high, 0)))
-    store(group.impact_high_z, 0, select(at_end, z, load(group.impact_high_z, 0)))
-    store(group.impact_high_w, 0, select(at_end, w, load(group.impact_high_w, 0)))
-    store(group.impact_high_slope, 0, select(at_end, z - q, load(group.impact_high_slope, 0)))
+    store_where(group.impact_high, 0, at_end, h)
+    store_where(group.impact_high_z, 0, at_end, z)
+    store_where(group.impact_high_w, 0, at_end, w)
+    store_where(group.impact_high_slope, 0, at_end, z - q)
 
 
 @kernel
 def find_dips(pulse: Record, group: Record, of_w: float, wanted: Any, low_end: Any, high_end: Any) -> Any:
-    """Whether v has a zero between two ends, each a time, v > 0 and its slope, which are < 0 and > 0.
+    """Whether v has a zero between two ends, each a time, v > 0 there and its slope, < 0 at the first and > 0 then.
 
-    v is z if `of_w` is 0, otherwise `of_w` w, which are convex where they keep their sign. The state is computed where
-    the tangents at both ends meet, which becomes the next end, until the tangents exclude a zero or v <= 0. Returns the
+    v is z if `of_w` is 0, otherwise `of_w` w; both are convex where they keep their sign. The state is computed where
+    the tangents at both ends meet. That is the next end, until the tangents exclude a zero or v <= 0. Returns the
     masks of the cells that remain undecided, and of those with a zero, whose `impact_high` is set to the time with
     v <= 0.
     """
@@ -272,6 +266,7 @@ def find_dips(pulse: Record, group: Record, of_w: float, wanted: Any, low_end: A
     high, v_high, slope_high = high_end
     todo, dips = wanted, fill_mask(False)
     for _ in range(MAX_DIP_ARCS):
+        # where the two tangents meet: v, convex, lies above both, so that their meeting above zero excludes a zero
         h = (v_high - v_low + slope_low * low - slope_high * high) / (slope_low - slope_high)
         h = select(todo, h, splat(FAR))
         set_angles(pulse, group, load(group.columns, column.PHASE) + load(group.columns, column.OMEGA) * h)
@@ -282,11 +277,11 @@ def find_dips(pulse: Record, group: Record, of_w: float, wanted: Any, low_end: A
             v, slope = w * of_w, second * of_w
         found = todo & (v <= 0.0)
         dips = dips | found
-        store(group.impact_high, 0, select(found, h, load(group.impact_high, 0)))
-        store(group.impact_high_z, 0, select(found, z, load(group.impact_high_z, 0)))
-        store(group.impact_high_w, 0, select(found, w, load(group.impact_high_w, 0)))
-        store(group.impact_high_slope, 0, select(found, second, load(group.impact_high_slope, 0)))
-        falls = slope < 0.0
+        store_where(group.impact_high, 0, found, h)
+        store_where(group.impact_high_z, 0, found, z)
+        store_where(group.impact_high_w, 0, found, w)
+        store_where(group.impact_high_slope, 0, found, second)
+        falls = slope < 0.0  # the minimum lies to the right of h: h becomes the left end, otherwise the right one
         low, high = select(falls, h, low), select(falls, high, h)
         v_low, v_high = select(falls, v, v_low), select(falls, v_high, v)
         slope_low, slope_high = select(falls, slope, slope_low), select(falls, slope_high, slope)

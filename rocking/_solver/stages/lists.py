@@ -29,6 +29,7 @@ def append_where(mask: Any, which: int, group: Record, cells: Record) -> None:
     if not chosen:
         return
     places, end = cells.lists[which], cells.counts[which]
+    # every lane writes its place at the end; the end moves on only for those that are chosen
     for lane in range(LANES):
         places[end] = group.place[lane]
         end += (chosen >> lane) & 1
@@ -56,7 +57,7 @@ def take_places(which: int, group: Record, cells: Record) -> None:
 def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells: Record, responses: Record) -> bool:
     """Put the cells of a block into the lists of first flights; True if some share a flight.
 
-    Consecutive cells that differ in eta only share the first flight, for which the first of them stands.
+    Consecutive cells that differ in eta only share the first flight: the first of them stands for all.
     """
     members = cells.members
     f_start, shared, place, count = pulse.end_shape[0], False, 0, len(slenderness)
@@ -66,7 +67,7 @@ def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells
         while following < count and slenderness[following] == s and omega[following] == w:
             following += 1
         sign = -math.copysign(1.0, f_start)
-        if abs(f_start) <= s:
+        if abs(f_start) <= s:  # no uplift by a jump at the start of the pulse
             _, sign = uplift_piece(pulse, s, pulse.end_phase[0])
         if s >= 1.0 or sign == 0.0:
             for one in range(place, following):
@@ -83,18 +84,20 @@ def start_cells(slenderness: FloatArray, omega: FloatArray, pulse: Record, cells
 
 @kernel
 def sort_by_slenderness(which: int, slenderness: FloatArray, cells: Record) -> None:
-    """Order a list by slenderness, on which the number of flights and of iterations mainly depends.
+    """Order a list by slenderness: the numbers of flights and of iterations mainly depend on it.
 
     Vectors of cells in random order wait for the slowest of their cells. A list remains as it is if most of its vectors
     hold cells of about the same slenderness.
     """
     places, ends, ordered, count = cells.lists[which], cells.ends, cells.ordered, cells.counts[which]
+    # vectors whose cells differ by more than a class
     varied = 0
     for first in range(0, count - LANES + 1, LANES):
         change = slenderness[places[first + LANES - 1]] - slenderness[places[first]]
         varied += abs(change) * BUCKETS > 1.0
     if 2 * varied * LANES <= count:
         return
+    # counting sort by classes of slenderness: the cells of a class, where each class starts, and the places in order
     ends[:] = 0
     for i in range(count):
         ends[int(slenderness[places[i]] * BUCKETS)] += 1

@@ -1,5 +1,7 @@
 """First guesses of zeros by polynomials, and peaks and impacts of `LANES` flights inside their brackets.
 
+Given: brackets that hold one zero each (`rocking._solver.stages.flight` has shown it). Found: the zero, to rounding.
+
 Each iteration evaluates the exact arc, and continues by reversion of the Taylor series of fourth order there. With
 y = -v/v', b_n = v^(n)/(n! v') the zero of v is y - b_2 y^2 + (2 b_2^2 - b_3) y^3 + (5 b_2 b_3 - 5 b_2^3 - b_4) y^4,
 with an error of about 14 r^4 y where r is the largest of |b_2 y| and the rate times |y|. The bracket shrinks in every
@@ -9,7 +11,7 @@ iteration; a step out of it is replaced by its middle.
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.simd import absolute, any_lane, load, maximum, select, splat, store
+from rocking._numba.simd import absolute, any_lane, load, maximum, select, splat, store, store_where
 from rocking._solver.stages import columns as column
 from rocking._solver.stages.arcs import motions_at
 from rocking._solver.stages.excitation import set_angles
@@ -22,6 +24,7 @@ def hermite_roots(f0: SimdVector, d0: SimdVector, f1: SimdVector, d1: SimdVector
 
     Two Newton steps from the secant.
     """
+    # in x = time/length: f0 + d0 x + c2 x^2 + c3 x^3
     d0 = d0 * length
     d1 = d1 * length
     c2 = 3.0 * (f1 - f0) - 2.0 * d0 - d1
@@ -43,6 +46,7 @@ def quintic_roots(of_w: bool, low: Any, high: Any, length: SimdVector) -> Any:
     (z0, w0, slope0), (z1, w1, slope1) = low, high
     w0, w1 = w0 * length, w1 * length
     slope0, slope1 = slope0 * (length * length), slope1 * (length * length)
+    # in x: z0 + w0 x + c2 x^2 + c3 x^3 + c4 x^4 + c5 x^5
     c2 = 0.5 * slope0
     rest, rest_w, rest_slope = (z1 - z0) - (w0 + c2), w1 - (w0 + slope0), 0.5 * (slope1 - slope0)
     c3 = 10.0 * rest - 4.0 * rest_w + rest_slope
@@ -82,6 +86,7 @@ def locate_peaks(pulse: Record, group: Record) -> None:
         set_angles(pulse, group, load(group.columns, column.PHASE) + load(group.columns, column.OMEGA) * h)
         z, w, second, third, fourth = motions_at(pulse, group, h)
         low, high = select(w > 0.0, h, low), select(w > 0.0, high, h)
+        # the reversed series of w to third order: z at the peak needs no more
         inverse = 1.0 / second
         y, b2, b3 = w * inverse * -1.0, 0.5 * third * inverse, fourth * inverse * (1.0 / 6.0)
         step = y * (1.0 - y * (b2 - y * (2.0 * b2 * b2 - b3)))
@@ -93,6 +98,7 @@ def locate_peaks(pulse: Record, group: Record) -> None:
         step = select(tight, splat(0.0), step)
         root = h + step
         done = done | tight
+        # z at the root by its Taylor series: the arc is not evaluated once more
         peak = z + step * (w + step * (0.5 * second + step * (third * (1.0 / 6.0) + step * fourth * (1.0 / 24.0))))
         found_h, found_z = select(done, root, found_h), select(done, peak, found_z)
         found_slope = select(done, second + step * third, found_slope)
@@ -103,8 +109,8 @@ def locate_peaks(pulse: Record, group: Record) -> None:
     store(group.found_peak_h, 0, found_h)
     store(group.found_peak_z, 0, found_z)
     store(group.found_peak_slope, 0, found_slope)
-    store(group.top, 0, select(pending, maximum(load(group.top, 0), found_z), load(group.top, 0)))
-    store(group.undecided, 0, select(todo, splat(1.0), load(group.undecided, 0)))
+    store_where(group.top, 0, pending, maximum(load(group.top, 0), found_z))
+    store_where(group.undecided, 0, todo, 1.0)
     store(group.peak_pending, 0, splat(0.0))
 
 
@@ -113,6 +119,7 @@ def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
     """Locate the impacts where the mask `wanted` is true: zeros of z, decreasing; set `length` and `end_w`."""
     low, high = load(group.impact_low, 0), load(group.impact_high, 0)
     after_peak = load(group.impact_after_peak, 0) > 0.0
+    # the impact follows the peak that has just been located: the bracket starts there, where w = 0
     low = select(after_peak, load(group.found_peak_h, 0), low)
     at_low = (
         select(after_peak, load(group.found_peak_z, 0), load(group.impact_low_z, 0)),
@@ -136,7 +143,7 @@ def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
         step = y * (1.0 - y * (b2 - y * ((2.0 * square - b3) + y * (5.0 * b2 * (b3 - square) - b4))))
         ratio = maximum(absolute(b2 * y), absolute(y) * max_rate)
         root = h + step
-        slack = 4e-16 * high
+        slack = 4e-16 * high  # a root at an end of the bracket may be rounded out of it
         inside = (root >= low - slack) & (root <= high + slack)
         fourth_power = ratio * ratio * (ratio * ratio)
         done = todo & inside & (fourth_power * absolute(y) <= 4e-18 * h) & (ratio < 1e-3)
@@ -155,4 +162,4 @@ def locate_impacts(pulse: Record, group: Record, wanted: Any) -> None:
         h = select(todo, select(inside & (ratio < 1.0), root, 0.5 * (low + high)), splat(FAR))
     store(group.length, 0, length)
     store(group.end_w, 0, end_w)
-    store(group.undecided, 0, select(todo, splat(1.0), load(group.undecided, 0)))
+    store_where(group.undecided, 0, todo, 1.0)

@@ -1,4 +1,8 @@
-"""Short flights of `LANES` blocks by the Taylor series at their start: the impact is the first zero of z/h."""
+"""Short flights of `LANES` blocks by the Taylor series at their start: the impact is the first zero of z/h.
+
+A flight that starts with little velocity lies within the reach of the series at its start, and needs neither arcs nor
+parts of the pulse. Impacts that accumulate end such flights.
+"""
 
 from typing import Any
 
@@ -32,8 +36,9 @@ def first_guesses(w0: SimdVector, c2: SimdVector, c3: SimdVector, c4: SimdVector
 def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     """Follow the flights; sets `ended` to `IMPACT`, with `length`, `end_w` and `top`, or to `IN_FLIGHT` if it is long.
 
-    q is positive at both ends of the flight and monotone between, on one piece of the pulse, so that z has one zero.
-    The peak is computed only if it can exceed the largest so far.
+    Given: flights that should be short. Decided: the impact, or that the flight is a long one after all. No event is
+    missed: a flight counts as short only if q > 0 at both its ends and both lie on one piece of the pulse. q is then
+    positive in between, and z has one zero and one peak, which is computed only if it can exceed the largest so far.
     """
     start_arcs(pulse, group, sign)
     expand_start(pulse, group)
@@ -42,6 +47,7 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     series = group.series
     h, time = first_guesses(w0, load(series, 2), load(series, 3), load(series, 4))
     todo, done = fill_mask(True), fill_mask(False)
+    # Newton on z/h, which has no zero at the start; a step out of the reach of the series ends the attempt
     for _ in range(MAX_STEPS):
         z, w = series_states(pulse, group, h)
         over_h = z / h
@@ -57,7 +63,7 @@ def follow_short_flights(pulse: Record, group: Record, sign: float) -> None:
     set_angles(pulse, group, end)
     done = done & (end <= piece_ends(pulse, phase)) & (restoring_acceleration(pulse, group) > 0.0)
     top = splat(0.0)
-    higher = done & (0.5 * w0 * h > load(group.columns, column.PEAK))
+    higher = done & (0.5 * w0 * h > load(group.columns, column.PEAK))  # a parabola rises to w0 h/4
     if any_lane(higher):
         todo = higher
         time = select((time > 0.0) & (time < h), time, 0.5 * h)

@@ -80,8 +80,10 @@ def refine_root(
 def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, falling: bool, bound: float) -> float:
     """The first zero between lo and hi with the given direction of crossing, or -1: interval exclusion, then Newton.
 
-    On an interval of length l about m the series has no zero if |v(m)| > |v'(m)| l/2 + M l^2/8 and at most one if
-    |v'(m)| > M l/2, where M = `bound` bounds |v''| on the whole of [0, hi]; else the interval is halved.
+    Given: a series v, and M = `bound` of |v''| on the whole of [0, hi]. Decided: where v first crosses zero in this
+    direction. None is missed: intervals are taken from left to right, and an interval is left only once it is shown to
+    have no such zero. One of length l about m has no zero if |v(m)| > |v'(m)| l/2 + M l^2/8, and at most one if
+    |v'(m)| > M l/2; otherwise it is halved. Zeros closer than 1e-9 of [lo, hi] are not told apart.
     """
     left, size = lo, hi - lo
     smallest = 1e-9 * size
@@ -94,11 +96,13 @@ def first_crossing(series: Series, lane: int, top: int, lo: float, hi: float, fa
         single = abs(rate) > bound * half
         if clear or single or size <= smallest:
             right = left + size
+            # at most one zero: the signs at both ends tell whether it is there
             if not clear and (rate < 0.0) == falling:
                 at_left, at_right = evaluate_series(series, lane, top, left), evaluate_series(series, lane, top, right)
                 if (at_left > 0.0 >= at_right) if falling else (at_left < 0.0 <= at_right):
                     found, _ = refine_root(series, lane, top, left, right, falling, False, left + half - value / rate)
                     return float(found)
+            # on to the next interval, twice as long: where the series is far from zero few are needed
             left = right
             size = min(2.0 * size, hi - left) if hi - left > smallest else hi - left
             if size <= 0.0:

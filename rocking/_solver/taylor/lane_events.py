@@ -1,7 +1,8 @@
-"""Impact and peak within a Taylor step of all lanes at once; see `rocking._solver.taylor.flight` for the conditions.
+"""Impact and peak within a Taylor step of all lanes at once.
 
-What needs a search, a minimum of z while the block is destabilised and peaks that the bound of |w''| does not single
-out, is left to the scalar functions of `rocking._solver.taylor.flight`.
+The conditions, and why they miss no event, are those of `rocking._solver.taylor.flight`. Left to its scalar functions
+is what needs a search: a minimum of z while the block is destabilised, and peaks of which the bound of |w''| does not
+show that there is one only.
 """
 
 from typing import Any
@@ -62,7 +63,7 @@ def refine_roots(
     """The decreasing zeros of series between `low` and `high` where the mask `wanted` is true, and the slopes there.
 
     The mask `deflated` tells where the series is divided by h, which removes the zero at the start of a flight. The
-    bracketed Newton iteration is that of `rocking._solver.taylor.events.refine_root`.
+    bracketed Newton iteration is the one of `rocking._solver.taylor.events.refine_root`.
     """
     h = select((guess > low) & (guess < high), guess, 0.5 * (low + high))
     going, before, slope, divides = wanted, splat(0.0), splat(0.0), any_lane(deflated & wanted)
@@ -95,6 +96,7 @@ def locate_events(steps: Record) -> None:
     at_ground = load(steps.at_ground, 0) > 0.0
     h, w0, z, w = load(steps.h, 0), load(steps.w0, 0), load(steps.z1, 0), load(steps.w1, 0)
     zero = splat(0.0)
+    # z <= 0 at the end is an impact, but for a destabilised block that rises: there it is rounding at the ground
     lands = in_use & (z <= 0.0) & ~(destabilised & (w0 >= 0.0))
     impact = splat(NO_IMPACT)
     if any_lane(lands):
@@ -106,7 +108,8 @@ def locate_events(steps: Record) -> None:
         impact = select(lands, h, impact)
     store(steps.impact, 0, impact)
     store(steps.impact_w, 0, w)
-    # peaks: the conditions of `highest_peak`
+    # peaks, by the conditions of `highest_peak`: none where w keeps its sign (steady), where z stays below the largest
+    # so far (low), or while the block is destabilised; for certain one where w falls through zero (turns)
     start = (load(steps.restoring_phase, 0) - load(steps.phase, 0)) / load(steps.omega, 0)
     bound = load(steps.second_derivative_bound, 0)
     sagitta = 0.125 * bound * h * h
@@ -123,7 +126,9 @@ def locate_events(steps: Record) -> None:
         tops = evaluate(steps.z, steps.order, top)
         single = turns & (2.0 * absolute(slope) > bound * reach)  # |w - slope (t - top)| <= bound (t - top)^2/2
         peak, undecided = select(single, tops, peak), undecided & ~single
-    if any_lane(undecided):  # with the bound up to the impact, and w where the acceleration becomes restoring
+    # the bound of the whole step was too wide: once more with the bound up to the impact, and with w at the place where
+    # the acceleration becomes restoring in place of w at the start of the step
+    if any_lane(undecided):
         bound = second_derivative_bounds(steps.rate, steps.order - 1, h)
         single = undecided & turns & (2.0 * absolute(slope) > bound * reach)
         peak = select(single, tops, peak)

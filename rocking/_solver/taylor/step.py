@@ -31,7 +31,7 @@ def set_edge_lane(steps: Record, lane: int, state: Record, side: int) -> None:
     ):
         return  # the edge of the flight before
     steps.slender[lane], steps.alpha[lane], steps.ratio[lane], steps.stiffness[lane] = slender, alpha, ratio, stiffness
-    # by the same function as S and C, so that these are exactly 1 at z = 0
+    # by the same function as the sines of S and C in `start_series`: the quotients are then exactly 1 at z = 0
     sines, cosines = sine_and_cosine(load(steps.alpha, 0) * load(steps.ratio, 0))
     store(steps.sine_alpha, 0, sines)
     store(steps.cosine_alpha, 0, cosines)
@@ -61,7 +61,11 @@ def start_series(steps: Record) -> None:
 
 @kernel
 def expand_motion(steps: Record) -> None:
-    """Fill `z` and `rate` from z0, w0 and `f`."""
+    """Fill `z` and `rate` from z0, w0 and `f`: the equation of motion, coefficient by coefficient.
+
+    (n + 1) w_{n+1} is the n-th coefficient of -factor (S + F C), (2.2). The sums are convolutions: F C, and S' and C'
+    as products of z' with C and with S. Each needs coefficients up to n only, which are there.
+    """
     z, rate, f, s, c = steps.z, steps.rate, steps.f, steps.s, steps.c
     at_uplift = load(steps.starts_at_uplift, 0)
     store(f, 0, (1.0 - at_uplift) * load(f, 0) - at_uplift)  # |a f| = 1 exactly at uplift
@@ -90,6 +94,7 @@ def choose_step_size(steps: Record) -> None:
     """
     z, order = steps.z, steps.order
     shortest = splat(900.0)
+    # |z_k| h^k <= precision |z_j| h^j for the j that allows the longest h, and for both k; `shortest` is log2 of this h
     for k in range(order - 1, order + 1):
         last = approx_log2(absolute(load(z, k)))
         longest = splat(-900.0)
@@ -106,6 +111,7 @@ def evaluate_step(steps: Record) -> None:
     z, rate, order = steps.z, steps.rate, steps.order
     h = load(steps.h, 0)
     rotation, velocity = load(z, order), load(rate, order - 1)
+    # the sum of n (n - 1) |w_n| h^(n-2) over the terms, by Horner's scheme as z and w
     bound = absolute(velocity) * ((order - 1.0) * (order - 2.0))
     for i in range(1, order):
         n = order - 1 - i
