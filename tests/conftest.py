@@ -10,11 +10,16 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.sampling import ALL
+from tests.sampling import ALL, number
 
 # Derandomized: a failure can be repeated. No deadline: the first call of a kernel compiles it.
 settings.register_profile(
-    "rocking", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
+    "rocking",
+    max_examples=number(30, 100),
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("rocking")
 

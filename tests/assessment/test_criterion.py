@@ -10,7 +10,7 @@ from rocking._assessment.objects import Bodies
 from rocking._assessment.search import factors_of, overturned_by
 from rocking._boundary.scan import RELATIVE_ERROR
 from rocking.suites import annual_rate
-from tests.sampling import sample
+from tests.sampling import number, sample
 from tests.suites.motions import noise
 
 RECORDS = [noise(seed, 800, 0.02) for seed in range(3)]
@@ -27,7 +27,8 @@ def test_no_pair_overturns_below_the_factor_in_other_scans() -> None:
     site = rocking.Site(pga=3.0, records=[noise(seed) for seed in range(4)])
     found = factors_of(body, site.motions)
     assert np.isfinite(found).all()
-    share = (np.arange(500) + 0.5) / 500
+    count = number(120, 500)
+    share = (np.arange(count) + 0.5) / count
     for motion, factor in zip(site.motions, found.T[:, :, None], strict=True):
         start = np.asarray(body.uplift_acceleration)[:, None] / motion.peak_acceleration
         for tried in (start * (factor / start) ** share, start + (factor - start) * share):
@@ -103,7 +104,7 @@ def test_the_base_that_suffices_is_not_overturned_and_no_wider_one() -> None:
             assert not over.any(), (height, share)
 
 
-@settings(max_examples=8, deadline=None, derandomize=True)
+@settings(max_examples=number(4, 8))
 @given(height=HEIGHT, share=SHARE, records=st.booleans())
 def test_verdict_factor_shares_and_samples_agree(height: float, share: float, records: bool) -> None:
     site = rocking.Site(2.5, records=RECORDS) if records else rocking.Site(3.0, 0.3, shapes=["sine", "ricker", "c2"])
@@ -130,7 +131,7 @@ def test_sampled_shares_of_a_tiny_tolerance_are_the_verdict(monkeypatch: pytest.
     rng = np.random.default_rng(3)
     objects = [
         rocking.Object(f"{k}", width=h * s, height=h, tolerance=1e-12)
-        for k, (h, s) in enumerate(zip(rng.uniform(0.4, 2.0, 8), rng.uniform(0.12, 0.4, 8), strict=True))
+        for k, (h, s) in enumerate(zip(rng.uniform(0.4, 2.0, 4), rng.uniform(0.12, 0.4, 4), strict=True))
     ]
     for site in (rocking.Site(3.0, 0.3), rocking.Site(2.5, records=RECORDS)):
         for row in rocking.assess(objects, site, sensitivity=False, samples=4).rows:
@@ -189,7 +190,7 @@ def test_the_rate_of_a_step_is_the_hazard_at_its_median(dispersion: float) -> No
         np.testing.assert_allclose(rate, expected, rtol=1e-7)
 
 
-@settings(max_examples=4, deadline=None, derandomize=True)
+@settings(max_examples=number(2, 4))
 @given(height=HEIGHT, share=SHARE)
 def test_a_body_with_equal_edges_a_block_and_a_mesh_of_it_agree(tmp_path_factory, height: float, share: float) -> None:
     trimesh = pytest.importorskip("trimesh")

@@ -7,15 +7,15 @@ import pytest
 
 import rocking
 from tests.cli.test_cli import refused, run
-from tests.cli.test_cli_records import NAPA, SIZES
+from tests.cli.test_cli_records import MOTION, SIZES
 
 
 def test_the_motion_of_a_floor_is_read_again(tmp_path):
     path = tmp_path / "floor.csv"
     modes = ["--period", "0.5s", "--period", "100 ms", "--participation", "1.3", "--participation", "-0.3"]
-    path.write_text(run("floor", NAPA, *modes, "--damping", "0.03"))
+    path.write_text(run("floor", MOTION, *modes, "--damping", "0.03"))
     expected = rocking.floor_motion(
-        rocking.read_record(NAPA), periods=[0.5, 0.1], damping=0.03, participation=[1.3, -0.3]
+        rocking.read_record(MOTION), periods=[0.5, 0.1], damping=0.03, participation=[1.3, -0.3]
     )
     found = rocking.read_record(path)
     np.testing.assert_array_equal(found.acceleration, expected.acceleration)
@@ -24,21 +24,21 @@ def test_the_motion_of_a_floor_is_read_again(tmp_path):
 
 def test_a_block_on_an_isolation(tmp_path):
     path = tmp_path / "isolated.csv"
-    path.write_text(run("floor", NAPA, "--period", "3s", "--damping", "0.2"))
-    motion = rocking.isolated_motion(rocking.read_record(NAPA), period=3.0, damping=0.2)
+    path.write_text(run("floor", MOTION, "--period", "3s", "--damping", "0.2"))
+    motion = rocking.isolated_motion(rocking.read_record(MOTION), period=3.0, damping=0.2)
     response = json.loads(run("record", str(path), *SIZES, "--no-thresholds", "--format=json"))
     assert response["peak_acceleration"] == pytest.approx(motion.peak_acceleration)
-    assert response["peak_acceleration"] < 0.5 * rocking.read_record(NAPA).peak_acceleration
+    assert response["peak_acceleration"] < 0.5 * rocking.read_record(MOTION).peak_acceleration
 
 
 def test_a_vertical_component_is_another_column():
-    header = run("floor", NAPA, "--period", "0.5s", "--vertical", NAPA).splitlines()[0]
+    header = run("floor", MOTION, "--period", "0.5s", "--vertical", MOTION).splitlines()[0]
     assert header == "time_s,acceleration_m/s2,vertical_m/s2"
 
 
 def test_errors_name_the_option():
-    assert "--period" in refused("floor", NAPA)
-    assert "--period" in refused("floor", NAPA, "--period", "0.5")
-    assert "--period" in refused("floor", NAPA, "--period", "1000s")
-    assert "--damping" in refused("floor", NAPA, "--period", "0.5s", "--damping", "1.5")
+    assert "--period" in refused("floor", MOTION)
+    assert "--period" in refused("floor", MOTION, "--period", "0.5")
+    assert "--period" in refused("floor", MOTION, "--period", "1000s")
+    assert "--damping" in refused("floor", MOTION, "--period", "0.5s", "--damping", "1.5")
     assert "none.csv" in refused("floor", "none.csv", "--period", "0.5s")

@@ -16,7 +16,10 @@ from tests.cli.test_cli import read_csv, refused, run
 from tests.excitation.record_files import at2, rows
 
 ROOT = Path(__file__).parents[2]
-NAPA = str(ROOT / "workflow/motions/napa_HNE.csv")
+MOTION = str(ROOT / "workflow/motions/synthetic_31.csv")
+"""The shortest of those of the workflow."""
+
+UP = str(ROOT / "workflow/motions/synthetic_32.csv")
 SIZES = ["--width", "0.5m", "--height", "200 cm"]
 
 
@@ -25,7 +28,7 @@ def small(tmp_path_factory):
     """A configuration of two records and few levels."""
     given = yaml.safe_load((ROOT / "workflow/config/suite.yaml").read_text())["suite"]
     given |= {"intensity": [2.0, 4.0, 6.0, 9.0], "map": None, "blocks": given["blocks"][:1]}
-    given["records"] |= {"folder": str(ROOT / "workflow/motions"), "pattern": "napa_*.csv"}
+    given["records"] |= {"folder": str(ROOT / "workflow/motions"), "pattern": "synthetic_3[12].csv"}
     path = tmp_path_factory.mktemp("suite") / "suite.json"
     path.write_text(json.dumps(given))
     return path
@@ -41,41 +44,41 @@ def test_remarks_of_the_reader_are_warnings(tmp_path):
 
 
 def test_record_in_three_formats():
-    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(NAPA)
-    expected = block.response(motion, scale=1.1)
-    result = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--format=json"))
+    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
+    expected = block.response(motion, scale=0.9)
+    result = json.loads(run("record", MOTION, *SIZES, "--scale", "0.9", "--format=json"))
     assert result["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
     assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
     assert result["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
     assert result["peak_acceleration"] == motion.peak_acceleration
     assert result["warnings"] == list(expected.warnings)
-    (row,) = read_csv(run("record", NAPA, *SIZES, "--scale", "1.1", "--format=csv"))
+    (row,) = read_csv(run("record", MOTION, *SIZES, "--scale", "0.9", "--format=csv"))
     assert float(row["peak_rotation"]) == result["peak_rotation"]
     assert row["overturned"] == "false"
-    assert run("record", NAPA, *SIZES, "--scale", "1.1").startswith("rocks and comes to rest\n")
+    assert run("record", MOTION, *SIZES, "--scale", "0.9").startswith("rocks and comes to rest\n")
 
 
 def test_a_body_whose_mass_is_not_in_the_middle():
-    expected = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03).response(rocking.read_record(NAPA), scale=1.1)
-    result = json.loads(run("record", NAPA, *SIZES, "--scale=1.1", "--offset=3cm", "--format=json"))
+    expected = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03).response(rocking.read_record(MOTION), scale=0.9)
+    result = json.loads(run("record", MOTION, *SIZES, "--scale=0.9", "--offset=3cm", "--format=json"))
     assert {name: result[name] for name in expected.summary()} == expected.summary()
     assert result["threshold_scale"] == expected.thresholds.value.tolist()
     assert result["overturning_scale"] == expected.thresholds[0].value
-    faster = json.loads(run("record", NAPA, *SIZES, "--offset=3cm", "--no-thresholds", "--format=json"))
+    faster = json.loads(run("record", MOTION, *SIZES, "--offset=3cm", "--no-thresholds", "--format=json"))
     assert faster["margin"] is None
     assert "threshold_scale" not in faster
-    middle = [run("record", NAPA, *SIZES, "--no-thresholds", *offset) for offset in ([], ["--offset=0cm"])]
+    middle = [run("record", MOTION, *SIZES, "--no-thresholds", *offset) for offset in ([], ["--offset=0cm"])]
     assert middle[0] == middle[1]
-    assert "--fit: True is not allowed" in refused("record", NAPA, *SIZES, "--offset=3cm", "--fit")
+    assert "--fit: True is not allowed" in refused("record", MOTION, *SIZES, "--offset=3cm", "--fit")
 
 
 def test_thresholds_and_pulse():
-    result = json.loads(run("record", NAPA, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--format=json"))
+    result = json.loads(run("record", MOTION, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--format=json"))
     scales = np.array(result["threshold_scale"])
     assert np.all(np.diff(scales) > 0.0)
     assert result["overturns_above"][0] is True
-    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(NAPA)
+    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
     for scale, above in zip(scales[:6], result["overturns_above"], strict=False):
         found = rocking.peak_response(
             motion,
@@ -90,22 +93,22 @@ def test_thresholds_and_pulse():
 
 
 def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
-    motion = rocking.read_record(NAPA)
+    motion = rocking.read_record(MOTION)
     path = tmp_path / "plain.txt"
     path.write_text("\n".join(map(repr, (motion.acceleration * 100.0).tolist())))
-    given = ["--unit", "cm/s2", "--time-step", "5 ms"]
+    given = ["--unit", "cm/s2", "--time-step", "10 ms"]
     plain = json.loads(run("record", str(path), *SIZES, *given, "--format=json"))
     assert plain["peak_rotation"] == pytest.approx(
-        json.loads(run("record", NAPA, *SIZES, "--format=json"))["peak_rotation"], rel=1e-6
+        json.loads(run("record", MOTION, *SIZES, "--format=json"))["peak_rotation"], rel=1e-6
     )
-    assert "no unit of acceleration" in refused("record", str(path), *SIZES, "--time-step", "5 ms")
+    assert "no unit of acceleration" in refused("record", str(path), *SIZES, "--time-step", "10 ms")
     assert "no time step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")
     assert "or --time-step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")  # not the name in Python
 
 
 def test_baseline_is_removed_on_request_only():
     plain, corrected = (
-        json.loads(run("record", NAPA, *SIZES, *more, "--format=json")) for more in ([], ["--baseline-order", "1"])
+        json.loads(run("record", MOTION, *SIZES, *more, "--format=json")) for more in ([], ["--baseline-order", "1"])
     )
     assert abs(corrected["final_velocity"]) < abs(plain["final_velocity"])
 
@@ -114,12 +117,12 @@ def test_baseline_is_removed_on_request_only():
     ("arguments", "message"),
     [
         (["nowhere.csv", *SIZES], "nowhere.csv: no such file"),
-        ([NAPA, "--width", "0.5", "--height", "2m"], "--width"),
-        ([NAPA, *SIZES, "--scale", "0"], "--scale"),
-        ([NAPA, *SIZES, "--restitution", "plastic"], "--restitution"),
-        ([NAPA, *SIZES, "--restitution", "1.5"], "--restitution"),
-        ([NAPA, *SIZES, "--unit", "feet"], "--unit"),
-        ([NAPA, *SIZES, "--baseline-order", "9"], "--order"),
+        ([MOTION, "--width", "0.5", "--height", "2m"], "--width"),
+        ([MOTION, *SIZES, "--scale", "0"], "--scale"),
+        ([MOTION, *SIZES, "--restitution", "plastic"], "--restitution"),
+        ([MOTION, *SIZES, "--restitution", "1.5"], "--restitution"),
+        ([MOTION, *SIZES, "--unit", "feet"], "--unit"),
+        ([MOTION, *SIZES, "--baseline-order", "9"], "--order"),
     ],
 )
 def test_invalid_options_are_named(arguments, message):
@@ -128,7 +131,7 @@ def test_invalid_options_are_named(arguments, message):
 
 def test_fragility_in_three_formats(small):
     result = json.loads(run("fragility", str(small), "--format=json"))
-    assert result["records"] == ["napa_HNE", "napa_HNN"]
+    assert result["records"] == ["synthetic_31", "synthetic_32"]
     suite = suite_configuration(json.loads(small.read_text()), small.parent)
     expected = rocking.fragility(suite.motions(), suite.blocks[0], intensity=suite.intensity)
     chosen = [k for k, demand in enumerate(result["levels"]["demand"]) if demand == "overturning"]
@@ -260,20 +263,19 @@ def test_a_long_line_of_toml_is_refused(tmp_path):
 
 
 def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
-    up = str(ROOT / "workflow/motions/napa_HNN.csv")
-    motion = rocking.read_record(NAPA, vertical=up)
-    expected = rocking.Block(0.5, 2.0).response(motion, scale=1.1)
-    found = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--vertical", up, "--format=json"))
+    motion = rocking.read_record(MOTION, vertical=UP)
+    expected = rocking.Block(0.5, 2.0).response(motion, scale=0.9)
+    found = json.loads(run("record", MOTION, *SIZES, "--scale", "0.9", "--vertical", UP, "--format=json"))
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
-    without = json.loads(run("record", NAPA, *SIZES, "--scale", "1.1", "--format=json"))
+    without = json.loads(run("record", MOTION, *SIZES, "--scale", "0.9", "--format=json"))
     assert without["peak_vertical_acceleration"] is None
     assert without["peak_rotation"] != found["peak_rotation"]
     path = tmp_path / "both.csv"
     rows = np.stack([motion.times, motion.acceleration, motion.vertical], axis=1).tolist()
     path.write_text("t,h_m/s2,up_m/s2\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in rows))
     columns = "--component", "h", "--vertical", "up"
-    same = json.loads(run("record", str(path), *SIZES, "--scale", "1.1", *columns, "--format=json"))
+    same = json.loads(run("record", str(path), *SIZES, "--scale", "0.9", *columns, "--format=json"))
     assert same["peak_rotation"] == found["peak_rotation"]
 
 
@@ -310,8 +312,7 @@ def test_the_worst_direction_of_two_components(tmp_path):
 
 
 def test_errors_of_the_vertical_component_name_the_option():
-    assert "--vertical" in refused("record", NAPA, *SIZES, "--vertical", "none.at2")
-    up = str(ROOT / "workflow/motions/napa_HNN.csv")
-    said = refused("record", NAPA, *SIZES, "--vertical", up, "--scale", "4")
+    assert "--vertical" in refused("record", MOTION, *SIZES, "--vertical", "none.at2")
+    said = refused("record", MOTION, *SIZES, "--vertical", UP, "--scale", "4")
     assert "--scale" in said
     assert "-g at " in said

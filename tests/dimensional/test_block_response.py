@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -120,20 +121,6 @@ def test_tables_hold_every_field():
     assert Outcome(labelled["outcome"].item()).name == series["outcome"]
     assert series["period"] == 0.5
     assert series["alpha"] == BLOCK.alpha
-
-
-@pytest.mark.parametrize(
-    ("changes", "name"),
-    [
-        ({"restitution": "elastic"}, "restitution"),
-        ({"peak_acceleration": [4.0, -4.0]}, "peak_acceleration"),
-        ({"period": [0.5, 0.6], "peak_acceleration": [1.0, 2.0, 3.0]}, "peak_acceleration, period"),
-    ],
-)
-def test_errors_name_the_argument(changes, name):
-    with pytest.raises(InvalidArgumentError) as caught:
-        BLOCK.response("sine", **(MOTION | changes))
-    assert caught.value.parameter == name
 
 
 @pytest.mark.parametrize("motion", ["sine", "record"])
@@ -266,18 +253,22 @@ def test_a_record_with_a_scale_is_solved_in_groups():
     assert "<td>peak rotation max |theta|</td>" in found._repr_html_()
 
 
+@pytest.mark.parametrize("body", [BLOCK, rocking.RigidBody(0.12, 0.18, 0.4)], ids=["block", "edges"])
 @pytest.mark.parametrize(
     ("motion", "arguments", "parameter"),
     [
         (RECORD, {"peak_acceleration": 3.0}, "peak_acceleration"),
         (RECORD, {"period": 0.5}, "period"),
         (RECORD, {"scale": 0.0}, "scale"),
-        ("sine", {"peak_acceleration": 3.0, "period": 0.5, "scale": 1.0}, "scale"),
+        ("sine", {**MOTION, "scale": 1.0}, "scale"),
         ("sine", {"peak_acceleration": 3.0}, "period"),
         ("sine", {"period": 0.5}, "peak_acceleration"),
+        ("sine", {**MOTION, "restitution": "housner"}, "restitution"),
+        ("sine", {**MOTION, "peak_acceleration": [4.0, -4.0]}, "peak_acceleration"),
+        ("sine", {"period": [0.5, 0.6], "peak_acceleration": [1.0, 2.0, 3.0]}, "peak_acceleration, period$"),
     ],
 )
-def test_arguments_of_the_other_kind_of_excitation_are_refused(motion, arguments, parameter):
+def test_wrong_arguments_and_those_of_the_other_kind_of_motion_are_named(body, motion, arguments, parameter):
     with pytest.raises(InvalidArgumentError) as caught:
-        rocking.Block(width=0.4, height=1.6).response(motion, **arguments)
-    assert caught.value.parameter == parameter
+        body.response(motion, **arguments)
+    assert re.search(parameter, caught.value.parameter)

@@ -17,6 +17,7 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional import response
 from rocking._model.body import polygon_properties
 from rocking._solver.bodies import outcome_margin_of
+from tests.sampling import number
 from tests.solver.records.tables import TABLE, record, samples
 
 BODY = rocking.RigidBody(0.12, 0.18, 0.4)
@@ -108,7 +109,7 @@ def test_the_summary_of_a_response_is_plain_and_searches_no_thresholds_where_non
     assert said["margin"] is None
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=number(20, 60))
 @given(
     st.floats(0.05, 0.3),
     st.floats(0.05, 0.3),
@@ -148,33 +149,40 @@ def test_history_has_the_peaks_of_the_response(motion):
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.04])
-def test_reactions_move_the_centre_of_mass(tilt):
+@pytest.mark.parametrize("vertical", [False, True])
+def test_reactions_move_the_centre_of_mass(vertical, tilt):
     """Newton's law: second differences of the positions of the centre of mass give the reactions."""
-    body = BODY.tilted(tilt)
-    history = body.history("sine", peak_acceleration=5.0, period=0.7, samples=40_001, contact=True)
-    rotation, time = history["rotation"].values, history["time"].values
-    p = {1: (0.18, tilt), -1: (0.12, tilt)}
-    checked = 0
-    for sign, (b, inclination) in p.items():
-        radius, alpha = math.hypot(b, 0.4), math.atan2(b, 0.4) - sign * inclination
+    height = 0.9 if vertical else 0.4
+    body = rocking.RigidBody(0.12, 0.18, height).tilted(tilt)
+    if vertical:
+        horizontal, upwards = samples("napa_HNE")[700:3000], 0.6 * samples("napa_HNN")[700:3000]
+        motion = rocking.Record(horizontal, 0.005, "g", vertical=upwards)
+        history = body.history(motion, scale=1.5, contact=True, duration=8.0, samples=100_001)
+    else:
+        history = body.history("sine", peak_acceleration=5.0, period=0.7, samples=40_001, contact=True)
+    rotation, time, edges = (history[name].values for name in ("rotation", "time", "edge"))
+    allowed, checked = (1e-3, 0) if vertical else (2e-4, 0)
+    for sign, b in ((1, 0.18), (-1, 0.12)):
+        radius, alpha = math.hypot(b, height), math.atan2(b, height) - sign * tilt
         lean = alpha - np.abs(rotation)
         x, y = -sign * radius * np.sin(lean), radius * np.cos(lean)
-        for k in range(200, time.size - 200, 131):
+        for k in range(200, time.size - 200, 431 if vertical else 131):
             part = slice(k - 1, k + 2)
             step = np.diff(time[part])
-            if not (history["edge"].values[k - 2 : k + 3] == sign).all() or abs(step[0] / step[1] - 1.0) > 1e-6:
+            kink = vertical and abs(time[k] / 0.005 - round(time[k] / 0.005)) < 0.05  # of the ground acceleration
+            if kink or not (edges[k - 3 : k + 4] == sign).all() or abs(step[0] / step[1] - 1.0) > 1e-6:
                 continue
             ax, ay = (np.diff(values[part], 2)[0] / step[0] ** 2 for values in (x, y))
-            ground = float(history["ground_acceleration"][k])
-            horizontal, vertical = (ground + ax) / STANDARD_GRAVITY, 1.0 + ay / STANDARD_GRAVITY
-            cosine, sine = math.cos(inclination), math.sin(inclination)
-            along, normal = horizontal * cosine - vertical * sine, horizontal * sine + vertical * cosine
-            assert float(history["horizontal_reaction"][k]) == pytest.approx(along, abs=2e-4)
-            assert float(history["normal_reaction"][k]) == pytest.approx(normal, abs=2e-4)
+            ax += float(history["ground_acceleration"][k])
+            ay += float(history["vertical_acceleration"][k]) if vertical else 0.0
+            across, up = ax / STANDARD_GRAVITY, 1.0 + ay / STANDARD_GRAVITY
+            along, normal = across * math.cos(tilt) - up * math.sin(tilt), across * math.sin(tilt) + up * math.cos(tilt)
+            assert float(history["horizontal_reaction"][k]) == pytest.approx(along, abs=allowed)
+            assert float(history["normal_reaction"][k]) == pytest.approx(normal, abs=allowed)
             if normal > 0.2:
-                assert float(history["friction_demand"][k]) == pytest.approx(abs(along) / normal, abs=2e-3)
+                assert float(history["friction_demand"][k]) == pytest.approx(abs(along) / normal, abs=10 * allowed)
             checked += 1
-    assert checked > 60
+    assert checked > 30
 
 
 def test_an_inclined_body_uplifts_at_other_accelerations():
@@ -344,21 +352,6 @@ def test_a_mesh_of_a_box_is_the_uniform_body(tmp_path):
     assert float(rocking.RigidBody.from_mesh(tmp_path / "box.stl", unit="cm").height) == pytest.approx(0.006, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ({"peak_acceleration": 3.0}, "`period` = None"),
-        ({"period": 1.0}, "`peak_acceleration` = None"),
-        ({**MOTION, "scale": 2.0}, "`scale` = 2.0"),
-        ({**MOTION, "restitution": "housner"}, "momentum, or"),
-        ({"peak_acceleration": [1.0, 2.0], "period": [1.0, 2.0, 3.0]}, "shapes that broadcast"),
-    ],
-)
-def test_arguments_are_checked(arguments, text):
-    with pytest.raises(InvalidArgumentError, match=text):
-        BODY.response("sine", **arguments)
-
-
 ROWS = list(csv.DictReader((TABLE.parent / "bodies.csv").read_text(encoding="utf-8").splitlines()))
 
 
@@ -388,38 +381,6 @@ def test_thresholds_below_flight_are_found_where_the_record_itself_would_let_the
     assert 0.0 < found.searched[0] < found.searched[1] < 1.0
     strongest = body.response(motion, scale=0.999 * float(found.searched[1]))
     np.testing.assert_array_equal(strongest.thresholds.value, found.value)
-
-
-@pytest.mark.parametrize("tilt", [0.0, 0.03])
-def test_reactions_with_vertical_motion(tilt):
-    """Newton's law by second differences, as without vertical motion."""
-    wave = samples("napa_HNE")[700:3000]
-    motion = rocking.Record(wave, 0.005, "g", vertical=0.6 * samples("napa_HNN")[700:3000])
-    body = rocking.RigidBody(0.12, 0.18, 0.9).tilted(tilt)
-    history = body.history(motion, scale=1.5, contact=True, duration=8.0, samples=100_001)
-    rotation, times = history["rotation"].values, history["time"].values
-    checked = 0
-    for sign, b in ((1, 0.18), (-1, 0.12)):
-        radius, alpha = math.hypot(b, 0.9), math.atan2(b, 0.9) - sign * tilt
-        lean = alpha - np.abs(rotation)
-        x, y = -sign * radius * np.sin(lean), radius * np.cos(lean)
-        for k in range(200, times.size - 200, 431):
-            part = slice(k - 1, k + 2)
-            step = np.diff(times[part])
-            offset = times[k] / 0.005 - round(times[k] / 0.005)
-            if not (history["edge"].values[k - 3 : k + 4] == sign).all() or abs(step[0] / step[1] - 1.0) > 1e-6:
-                continue
-            if abs(offset) < 0.05:
-                continue  # a kink of the ground acceleration
-            ax, ay = (np.diff(values[part], 2)[0] / step[0] ** 2 for values in (x, y))
-            horizontal = (float(history["ground_acceleration"][k]) + ax) / STANDARD_GRAVITY
-            vertical = 1.0 + (float(history["vertical_acceleration"][k]) + ay) / STANDARD_GRAVITY
-            along = horizontal * math.cos(tilt) - vertical * math.sin(tilt)
-            normal = horizontal * math.sin(tilt) + vertical * math.cos(tilt)
-            assert float(history["horizontal_reaction"][k]) == pytest.approx(along, abs=1e-3)
-            assert float(history["normal_reaction"][k]) == pytest.approx(normal, abs=1e-3)
-            checked += 1
-    assert checked > 30
 
 
 def test_limits_of_the_inclination_and_of_factors_of_a_record():

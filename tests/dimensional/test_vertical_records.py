@@ -10,6 +10,7 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.problem import record_groups, uplift_scale
 from rocking._dimensional.thresholds import overturning_scale
+from tests.sampling import number
 from tests.solver.records.tables import samples
 from tests.suites.motions import noise
 
@@ -93,7 +94,7 @@ def test_thresholds_are_those_of_the_responses() -> None:
     assert abs(found.value[0] / without - 1.0) > 1e-3
     for scale in found.value.tolist():
         assert BLOCK.response(motion, scale=scale, thresholds=False).overturned
-        near = scale * np.linspace(1.0 - 1e-6, 1.0 + 1e-6, 2001)  # ranges near a threshold can be narrow
+        near = scale * np.linspace(1.0 - 1e-6, 1.0 + 1e-6, number(401, 2001))  # ranges near a threshold can be narrow
         groups = record_groups(motion, BLOCK, near, BLOCK.inelastic_restitution)
         assert not rocking.peak_response(motion, **groups).overturned.all()
 

@@ -1,18 +1,14 @@
 """A pulse defined outside the package: responses, histories, boundaries, a cube and HTTP responses for it."""
 
-import json
-
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
-from typer.testing import CliRunner
 
 import rocking
 from rocking import precompile
 from rocking._base.errors import DatasetError, InvalidArgumentError
-from rocking._cli.app import app
 from rocking._datasets.cube import write_dataset
 from rocking._excitation import pulses
 from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
@@ -95,28 +91,6 @@ def ramp(monkeypatch):
     made = rocking.SampledPulse([0.0, 1.0, -0.3, 0.0], [0.0, 0.1, 0.5, 0.8], name="ramp")
     register(made)
     return made
-
-
-def test_a_sampled_pulse_is_known_by_its_name_to_every_function(ramp):
-    assert rocking.pulse("ramp") is ramp
-    assert rocking.pulse("-ramp") == ramp.mirrored()
-    for name, pulse in (("ramp", ramp), ("-ramp", ramp.mirrored())):
-        np.testing.assert_array_equal(
-            rocking.peak_response(name, **GROUPS).peak_rotation, rocking.peak_response(pulse, **GROUPS).peak_rotation
-        )
-    assert rocking.time_history("ramp", **GROUPS).equals(rocking.time_history(ramp, **GROUPS))
-    omega = {"frequency_ratio": 3.0, "restitution": 0.85}
-    assert rocking.thresholds("ramp", **omega) == rocking.thresholds(ramp, **omega)
-    window = {"restitution": 0.85, "nodes": 31, "frequency_ratio": (2.0, 3.0)}
-    assert rocking.overturning_boundary("ramp", **window).equals(rocking.overturning_boundary(ramp, **window))
-    block = rocking.Block(0.4, 1.6)
-    motion = {"peak_acceleration": 4.0, "period": 0.6}
-    assert block.response("ramp", **motion).rotation == block.response(ramp, **motion).rotation
-    options = [f"--{key.replace('_', '-')}={value}" for key, value in GROUPS.items()]
-    found = CliRunner().invoke(app, ["response", "--pulse", "ramp", "--format=json", *options])
-    assert json.loads(found.stdout)["peak_rotation"] == rocking.peak_response(ramp, **GROUPS).peak_rotation
-    with pytest.raises(InvalidArgumentError, match=r"^`name` = "):
-        register(rocking.SampledPulse([0.0, 1.0], name="two words"))
 
 
 def test_a_cube_of_a_sampled_pulse_and_http_by_its_name(ramp, tmp_path, monkeypatch):

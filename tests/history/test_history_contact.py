@@ -11,6 +11,7 @@ from rocking._excitation.pulses import PULSE_NAMES
 from rocking._history import contact
 from rocking._history.contact import MAX_FRICTION, MAX_STEP, MAX_STEPS, PRACTICAL_FRICTION, contact_extremes
 from rocking._history.motion import build_motion
+from tests.sampling import ALL
 
 QUESTIONS = (
     {"slenderness": 0.45, "frequency_ratio": 4.0, "restitution": 0.85},
@@ -131,7 +132,12 @@ def test_extreme_arguments_give_numbers(alpha):
     for slenderness in (1e-9, 0.5, 1 - 1e-12, 1e9):
         for omega in (1e-6, 1.0, 1e6):
             for eta in (0.0, 1.0):
-                if slenderness == 1 - 1e-12 and eta == 1.0 and omega >= 1.0 and (alpha, omega) != (0.5, 1.0):
+                if (
+                    slenderness == 1 - 1e-12
+                    and eta == 1.0
+                    and omega >= 1.0
+                    and not (ALL and (alpha, omega) == (0.5, 1.0))
+                ):
                     continue  # 200,000 impacts each, once is enough
                 history = rocking.time_history(
                     "sine", slenderness=slenderness, frequency_ratio=omega, restitution=eta, alpha=alpha, contact=True

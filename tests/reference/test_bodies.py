@@ -105,11 +105,11 @@ def errors_of(seed: int, made: Callable[..., Any] = random_body) -> tuple[ExactR
 
 @pytest.mark.parametrize("made", [random_body, against_a_wall])
 def test_random_bodies(made: Callable[..., Any]) -> None:
-    found = [errors_of(seed, made) for seed in number(range(9, 19), range(24))]
+    found = [errors_of(seed, made) for seed in number(range(11, 16), range(24))]
     errors = [error for _, both in found for error in both]
     assert max(errors) < ALLOWED
-    assert len(errors) > number(4, 15)
-    assert sum(exact.overturned for exact, _ in found) > 1
+    assert len(errors) > number(1, 15)
+    assert any(exact.overturned for exact, _ in found)
 
 
 @pytest.mark.long

@@ -95,7 +95,7 @@ def test_overturning_without_a_further_impact_for_every_pulse(name):
 @pytest.mark.parametrize("rigid", [False, True])
 def test_random_cells_have_a_response(rigid):
     rng = np.random.default_rng(14)
-    n = number(50_000, 1_000_000) // len(PULSE_NAMES) + 1
+    n = number(20_000, 1_000_000) // len(PULSE_NAMES) + 1
     for name in PULSE_NAMES:
         slenderness = np.minimum(np.exp(rng.uniform(np.log(1e-3), 0.0, n)), 1 - 1e-9)
         slenderness[: n // 10] = 1 - np.exp(rng.uniform(np.log(1e-9), np.log(0.1), n // 10))

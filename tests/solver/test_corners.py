@@ -22,7 +22,7 @@ ALPHA = (0.0, quantities.SMALLEST_ALPHA, 1e-3, 1.2, quantities.ALPHA.upper)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("pulse", but_long(PULSES, "c2", "ricker"))
+@pytest.mark.parametrize("pulse", but_long(PULSES, "c2"))
 def test_corners_of_the_parameter_space(pulse: str) -> None:
     groups = np.array(list(itertools.product(SLENDERNESS, FREQUENCY_RATIO, RESTITUTION, ALPHA))).T
     response = rocking.peak_response(

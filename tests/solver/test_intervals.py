@@ -11,6 +11,7 @@ from rocking._numba.compilation import kernel
 from rocking._numba.simd import LANES, splat, store
 from rocking._solver.excitation import shapes_and_slopes
 from tests.kernels import cell
+from tests.sampling import number
 
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 OTHERS = (
@@ -51,7 +52,7 @@ def check_cuts(pulse: AbstractPulse, slenderness: float) -> None:
 @pytest.mark.parametrize("name", SIGNED)
 def test_intervals_of_every_pulse(name):
     @given(slenderness=SLENDERNESS)
-    @settings(max_examples=40)
+    @settings(max_examples=number(15, 40))
     def check(slenderness):
         check_cuts(rocking.pulse(name), slenderness)
 

@@ -11,6 +11,7 @@ import rocking
 from rocking import PULSE_NAMES, Outcome
 from rocking._model.fields import RESPONSE_FIELDS
 from rocking._solver.peak_response import MAX_CHUNK, peak_response
+from tests.sampling import number
 
 FIELDS = tuple(field.name for field in RESPONSE_FIELDS)
 SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
@@ -117,7 +118,7 @@ def test_shapes_that_do_not_broadcast_are_named():
     eta=st.one_of(st.floats(0, 0.999), st.sampled_from([0.0, 1e-3, 0.99])),
     alpha=st.one_of(st.none(), st.floats(-8, 0.17).map(lambda x: 10**x)),
 )
-@settings(max_examples=400)
+@settings(max_examples=number(100, 400))
 def test_every_valid_cell_has_a_consistent_response(pulse, log_omega, log_slenderness, eta, alpha):
     found = peak_response(
         pulse, slenderness=10**log_slenderness, frequency_ratio=10**log_omega, restitution=eta, alpha=alpha

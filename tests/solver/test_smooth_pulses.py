@@ -1,26 +1,23 @@
 """Responses under smooth pulses of one's own: against named ones, in multi-precision, and in every use."""
 
-import json
 import math
 
 import numpy as np
 import pytest
 from flint import arb, arb_series, ctx
-from typer.testing import CliRunner
 
 import reference.multiprecision
 import rocking
 from reference.conditioning import integrate_with_conditioning
 from reference.exact_pulses import ExactPulse, _newton
 from reference.exact_response import working_precision
-from rocking._base.errors import InvalidArgumentError
-from rocking._cli.app import app
-from rocking._excitation import pulses
 from rocking.paper import margin_without_impact
 from tests.excitation.test_smooth_pulse import CHIRP, Given
+from tests.sampling import number
 
 SINE = Given("own_sine", 0.0, 2.0 * math.pi, np.sin)
 RICKER = Given("own_ricker", *(s * 4.0 * math.pi for s in (-1, 1)), rocking.pulse("ricker").shape)
+COUNT = number(1000, 3000)
 GROUPS = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
 
 
@@ -29,12 +26,12 @@ GROUPS = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
 def test_named_pulses_written_as_smooth_ones_give_the_same_responses(own, name, rigid):
     rng = np.random.default_rng(3)
     groups = {
-        "slenderness": rng.uniform(0.05, 0.98, 3000),
-        "frequency_ratio": 10 ** rng.uniform(-0.5, 1.3, 3000),
-        "restitution": rng.uniform(0.4, 0.98, 3000),
+        "slenderness": rng.uniform(0.05, 0.98, COUNT),
+        "frequency_ratio": 10 ** rng.uniform(-0.5, 1.3, COUNT),
+        "restitution": rng.uniform(0.4, 0.98, COUNT),
     }
     if rigid:
-        groups["alpha"] = rng.uniform(0.02, 0.5, 3000)
+        groups["alpha"] = rng.uniform(0.02, 0.5, COUNT)
     named, found = rocking.peak_response(name, **groups), rocking.peak_response(own, **groups)
     for field in ("outcome", "impacts", "chatter", "peak_mode"):
         np.testing.assert_array_equal(getattr(found, field), getattr(named, field), err_msg=field)
@@ -74,7 +71,7 @@ def exact_chirp() -> ExactPulse:
 def test_the_chirp_against_the_multi_precision_integrator(alpha, monkeypatch):
     monkeypatch.setattr(reference.multiprecision, "exact_pulse", lambda *_: exact_chirp())
     rng = np.random.default_rng(7)
-    for _ in range(6):
+    for _ in range(number(3, 6)):
         groups = {
             "slenderness": float(rng.uniform(0.1, 0.9)),
             "frequency_ratio": float(rng.uniform(1.0, 6.0)),
@@ -91,44 +88,7 @@ def test_the_chirp_against_the_multi_precision_integrator(alpha, monkeypatch):
                     assert float(getattr(found, name)) == pytest.approx(float(true), rel=allowed), (groups, name)
 
 
-@pytest.fixture
-def registered(monkeypatch):
-    """The chirp, registered for one test."""
-    monkeypatch.setattr(pulses, "_REGISTERED", {})
-    pulses.register(CHIRP)
-
-
-def test_smooth_pulses_in_every_use():
-    found = rocking.peak_response(CHIRP, **GROUPS)
-    history = rocking.time_history(CHIRP, **GROUPS, contact=True)
-    assert float(abs(history.rotation).max()) == pytest.approx(float(found.peak_rotation), rel=1e-3)
-    rigid = rocking.time_history(CHIRP, **GROUPS, alpha=0.2)
-    peak = float(rocking.peak_response(CHIRP, **GROUPS, alpha=0.2).peak_rotation)
-    assert float(abs(rigid.rotation).max()) == pytest.approx(peak, rel=1e-3)
-    block = {"frequency_ratio": 3.0, "restitution": 0.85}
-    threshold = 1.0 / rocking.thresholds(CHIRP, **block).amplitude[0]
-    sides = rocking.peak_response(CHIRP, **block, slenderness=threshold * np.array([1 + 1e-9, 1 - 1e-9]))
-    assert sides.overturned.tolist() == [False, True]
-    assert rocking.overturning_boundary(CHIRP, restitution=0.85, nodes=31).sizes["curve"] > 0
-    # with a tolerance
-    coarse = rocking.peak_response(CHIRP, **GROUPS, alpha=0.2, relative_tolerance=1e-6)
-    assert float(coarse.peak_rotation) == pytest.approx(peak, rel=1e-6)
-
-
 def test_margin_without_impact_is_that_of_the_named_pulse():
     for omega in (0.5, 3.0):
         own, named = margin_without_impact(SINE, 3.0, omega), margin_without_impact("sine", 3.0, omega)
         assert own == pytest.approx(named, rel=1e-13)
-
-
-@pytest.mark.usefixtures("registered")
-def test_registered_by_name():
-    found = rocking.peak_response("chirp", **GROUPS)
-    assert float(found.peak_rotation) == float(rocking.peak_response(CHIRP, **GROUPS).peak_rotation)
-    block = rocking.Block(width=0.4, height=1.6)
-    assert block.response("-chirp", peak_acceleration="0.4 g", period="0.6 s").peak_rotation > 0.0
-    groups = [f"--{name.replace('_', '-')}={value}" for name, value in GROUPS.items()]
-    printed = CliRunner().invoke(app, ["response", "--pulse", "chirp", "--format=json", *groups])
-    assert json.loads(printed.stdout)["peak_rotation"] == pytest.approx(float(found.peak_rotation), rel=1e-12)
-    with pytest.raises(InvalidArgumentError, match="name"):
-        pulses.register(CHIRP)

@@ -22,7 +22,7 @@ STATE = ("end_rotation", "end_velocity")
 WHOLE = ("outcome", "impacts", "chatter", "peak_mode", "exceeded_alpha")
 
 
-COUNT = number(1500, 4000)
+COUNT = number(600, 4000)
 
 
 def cells(count, seed):
@@ -100,7 +100,7 @@ def test_a_cell_does_not_depend_on_its_company(name):
     together = by_stages(pulse, s, w, eta)
     order = np.random.default_rng(6).permutation(s.size)
     assert_equal(by_stages(pulse, s[order], w[order], eta[order]), together[order])
-    for i in range(0, s.size, number(51, 17)):
+    for i in range(0, s.size, number(101, 17)):
         assert_equal(by_stages(pulse, s[i : i + 1], w[i : i + 1], eta[i : i + 1]), together[i : i + 1])
 
 
@@ -121,7 +121,7 @@ def test_a_start_above_the_level_and_pieces_without_a_cut():
 def test_few_cells_are_left(name):
     """The peak between two zeros of w inside a part is bracketed by the state there."""
     pulse = rocking.pulse(name)
-    s, w, eta = cells(20_000, 10)
+    s, w, eta = cells(number(5_000, 20_000), 10)
     left = by_stages_alone(pulse, np.minimum(s, 0.95), w, np.minimum(eta, 0.95))["outcome"] == LEFT
     assert np.count_nonzero(left) < 0.002 * s.size
 

@@ -10,7 +10,7 @@ from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.summary import record_margins
 from tests.suites.motions import BLOCK, noise
 
-RECORDS = [noise(seed) for seed in range(3)]
+RECORDS = [noise(seed, 600, 0.02) for seed in range(3)]
 BLOCKS = [BLOCK, rocking.Block(0.8, 4.0)]
 
 

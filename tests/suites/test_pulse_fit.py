@@ -40,7 +40,7 @@ def test_pulse_of_a_record_overturns_as_the_record(cycles, phase):
 
 
 def test_fit_describes_a_record_and_gives_the_ratio_of_scales():
-    record = noise(3)
+    record = noise(3, 600, 0.02)
     fit = rocking.suites.fit_pulse(record)
     assert 0.2 < fit.explained < 1.0
     assert [block.half_diagonal for block in fit.blocks] == pytest.approx([1.0, 4.0, 16.0])

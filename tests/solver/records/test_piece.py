@@ -33,7 +33,7 @@ def test_random_pieces_against_dense_samples() -> None:
     """Both signs of q; the impact and the largest maximum are those of 4,000 samples."""
     random = np.random.default_rng(2)
     impacts = peaks = 0
-    count = number(100, 1000)
+    count = number(50, 1000)
     for _ in range(count):
         length = 10.0 ** random.uniform(-2, 0.5)
         restoring = random.uniform() < 0.6

@@ -9,7 +9,6 @@ import pytest
 
 import rocking
 from reference.records import response_and_amplification
-from rocking._excitation.shapes import AbstractPulse
 from tests.sampling import number
 
 TRIANGLE = rocking.SampledPulse([0.0, 1.0, 0.0], name="triangle")
@@ -22,7 +21,7 @@ RANDOM = rocking.SampledPulse(np.random.default_rng(9).uniform(-1, 1, 9), name="
 def test_responses_are_those_of_the_reference(pulse: rocking.SampledPulse, alpha: float | None) -> None:
     rng = np.random.default_rng(len(pulse.values))
     step = float(pulse.phases[1])
-    for _ in range(number(2, 8)):
+    for _ in range(number(1, 8)):
         s, omega, eta = rng.uniform(0.2, 0.9), rng.uniform(0.6, 6.0), rng.uniform(0.6, 0.95)
         groups = {"slenderness": s, "restitution": eta, "alpha": alpha}
         exact, amplification = response_and_amplification(
@@ -72,23 +71,6 @@ def test_the_response_of_a_block_does_not_depend_on_the_others_of_the_array(alph
         alone = rocking.peak_response(RANDOM, frequency_ratio=omega[k], **groups)
         assert alone.outcome == together.outcome[k]
         np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[k])
-
-
-def test_every_function_that_takes_a_pulse_takes_samples() -> None:
-    groups = {"frequency_ratio": 2.0, "restitution": 0.85}
-    threshold = float(rocking.thresholds(TRIANGLE, **groups).amplitude[0])
-    around = rocking.peak_response(TRIANGLE, slenderness=1.0 / (threshold * np.array([1 - 1e-9, 1 + 1e-9])), **groups)
-    assert around.overturned.tolist() == [False, True]
-    for alpha in (None, 0.2):
-        history = rocking.time_history(SAW, slenderness=0.5, alpha=alpha, **groups, samples=2000, contact=True)
-        peak = rocking.peak_response(SAW, slenderness=0.5, alpha=alpha, **groups).peak_rotation
-        assert np.abs(history.rotation).max() == pytest.approx(float(peak), rel=1e-4)
-    curves = rocking.overturning_boundary(TRIANGLE, restitution=0.85, frequency_ratio=(1.0, 3.0))
-    nearest = np.abs(curves.frequency_ratio.values - 2.0).argmin()
-    assert 1.0 / curves.slenderness.values[nearest] == pytest.approx(threshold, rel=0.05)
-    block = rocking.Block(width=0.4, height=1.6)
-    assert block.response(TRIANGLE, peak_acceleration="0.6 g", period="1 s").overturned
-    assert isinstance(TRIANGLE, AbstractPulse)
 
 
 def test_mirrored_pulse_and_equality() -> None:
