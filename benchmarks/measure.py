@@ -95,9 +95,9 @@ def versions(*packages: str) -> dict[str, str]:
 
 
 def columns(rows: Iterable[Mapping[str, Any]], **titles: str) -> str:
-    """Format the columns of rows that have a title; None is written as "tightest"."""
+    """Format the columns of rows that have a title."""
     found = pd.DataFrame(rows)[[*titles]]
-    return found.to_string(index=False, header=[*titles.values()], float_format="{:.4g}".format, na_rep="tightest")
+    return found.to_string(index=False, header=[*titles.values()], float_format="{:.4g}".format)
 
 
 def save(record: dict[str, Any], path: Path) -> None:
@@ -131,6 +131,8 @@ def arguments(about: str | None, given: Sequence[str] | None = None, **options: 
 
 
 def finish(record: dict[str, Any], path: Path, table: Callable[[dict[str, Any]], str]) -> None:
-    """Write a record and print it as a table."""
+    """Write a record and print it as a table, which is written beside it."""
     save(record, path)
-    print(f"{table(record)}\n\nwritten to {path}")
+    text = table(record)
+    path.with_suffix(".txt").write_text(f"{path.stem}\n{text}\n\n", encoding="utf-8")
+    print(f"{text}\n\nwritten to {path}")

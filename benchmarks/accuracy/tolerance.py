@@ -53,11 +53,10 @@ def table(record: dict[str, Any]) -> str:
     above = {"above": "above", "above_tenfold": "10 x"}
     unexplained = {"above_and_unexplained": "unexpl.", "above_tenfold_and_unexplained": "10 x"}
     errors = {"wrong_outcomes": "outcomes", "median_error": "error", "error_99": "99 %", "largest_error": "largest"}
-    rows = columns(
-        record["tolerances"], tolerance="", **above, **unexplained, **errors, largest_over_explained="/ expl."
-    )
+    rows = [row | {"tolerance": row["tolerance"] or "tightest"} for row in record["tolerances"]]
+    text = columns(rows, tolerance="", **above, **unexplained, **errors, largest_over_explained="/ expl.")
     survive = f"{record['cells']} cells, {record['surviving']} of them survive"
-    return f"{rows}\n\n{survive}; tightest compared with {EPS:.1e}"
+    return f"{text}\n\n{survive}; tightest compared with {EPS:.1e}"
 
 
 def main() -> None:

@@ -16,10 +16,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from benchmarks.baselines.methods import OPTIONAL, Method, methods
-from benchmarks.measure import Task, accuracy, arguments, finish, in_rounds, progress, spread, versions
+from benchmarks.measure import Task, accuracy, arguments, columns, finish, in_rounds, progress, spread, versions
 from benchmarks.tables import Table, read_table
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -77,10 +78,6 @@ def measure(diagram: str, rounds: int, cells: Table) -> dict[str, Any]:
         "cells": {"all": len(cells), "overturned": int(np.isnan(cells["peak_rotation"]).sum()), "sample": len(sampled)},
         "rounds": rounds,
         "methods": rows_of,
-        "time_ratios": {
-            measure: {name: time_ratios(rows_of, name, measure) for name in rows_of if name != "rocking"}
-            for measure in MEASURES
-        },
         "missing_baselines": [baseline for baseline in OPTIONAL if not find_spec(baseline)],
         "versions": versions("numpy", "scipy", "numba", *OPTIONAL),
     }
@@ -110,54 +107,41 @@ def least_times(rows: list[dict[str, Any]], error: float, measure: str) -> NDArr
     return np.array([time_for(error, [row["us"][k] for row in correct], errors) for k in rounds])
 
 
-def time_ratios(
-    rows_of: dict[str, list[dict[str, Any]]], name: str, measure: str
-) -> dict[str, dict[str, float] | None]:
-    """Return the time of a baseline over that of the package at equal errors; None where one does not reach it."""
-    found: dict[str, dict[str, float] | None] = {}
-    for error in TARGETS:
-        ratio = least_times(rows_of[name], error, measure) / least_times(rows_of["rocking"], error, measure)
-        found[f"{error:.0e}"] = None if np.isnan(ratio).all() else spread(ratio)
-    return found
+def fastest_baselines(rows_of: dict[str, list[dict[str, Any]]], measure: str, prefix: str = "") -> dict[str, str]:
+    """Return the fastest baseline at each error, and its time over that of the package: median and range of the rounds.
 
-
-def fastest_baselines(
-    record: dict[str, Any], measure: str, prefix: str = ""
-) -> dict[str, tuple[str, dict[str, float]] | None]:
-    """Return the fastest baseline at each error and its time over that of the package; None where none reaches it.
-
-    Only baselines whose name starts with `prefix` are considered.
+    Only baselines whose name starts with `prefix` are considered; "-" where none reaches the error.
     """
-    baselines = {name: one for name, one in record["time_ratios"][measure].items() if name.startswith(prefix)}
-    found: dict[str, tuple[str, dict[str, float]] | None] = {}
-    for error in (f"{error:.0e}" for error in TARGETS):
-        reached = [(name, baseline[error]) for name, baseline in baselines.items() if baseline[error]]
-        found[error] = min(reached, key=lambda pair: pair[1]["median"], default=None)
+    found = {}
+    for error in TARGETS:
+        ours, ratios = least_times(rows_of["rocking"], error, measure), {}
+        for name in rows_of.keys() - {"rocking"}:
+            ratio = least_times(rows_of[name], error, measure) / ours
+            if name.startswith(prefix) and not np.isnan(ratio).all():
+                ratios[name] = spread(ratio)
+        best = min(ratios, key=lambda name: ratios[name]["median"], default=None)
+        text = "{median:,.1f} ({smallest:,.1f} to {largest:,.1f})"
+        found[f"{error:.0e}"] = "-" if best is None else f"{best} {text.format(**ratios[best])}"
     return found
 
 
 def table(record: dict[str, Any]) -> str:
     """Format the record as text."""
-    columns = ("median", "smallest", "largest", "error", "99 %", "largest", "outcomes")
-    lines = [f"{'one core, us a cell':24}{'setting':>9}" + "".join(f"{column:>10}" for column in columns)]
-    for name, rows in record["methods"].items():
-        for row in rows:
-            setting = "tightest" if row["setting"] is None else f"{row['setting']:g}"
-            lines.append(
-                f"{name:24}{setting:>9}"
-                + "".join(f"{value:10.2f}" for value in spread(row["us"]).values())
-                + "".join(f"{row[key]:10.1e}" for key in ("median_error", "error_99", "largest_error"))
-                + f"{row['wrong_outcomes']:10d}"
-            )
-    for measure, baselines in record["time_ratios"].items():
-        title = f"times rocking, {measure.replace('_', ' ')}"
-        lines.append("\n" + f"{title:33}" + "".join(f"{error:>10.0e}" for error in TARGETS))
-        for name, found in baselines.items():
-            lines.append(
-                f"{name:33}" + "".join("         -" if r is None else f"{r['median']:10.1f}" for r in found.values())
-            )
-    lines.extend(f"\n{baseline} cannot be imported and is omitted" for baseline in record["missing_baselines"])
-    return "\n".join(lines)
+    rows = [
+        {**row, **spread(row["us"]), "method": name, "setting": row["setting"] or "tightest"}
+        for name, rows in record["methods"].items()
+        for row in rows
+    ]
+    errors = {"median_error": "error", "error_99": "99 %", "largest_error": "largest", "wrong_outcomes": "outcomes"}
+    times = {"median": "us a cell", "smallest": "smallest", "largest": "largest"}
+    best = {
+        f"fastest {prefix or 'baseline'} over rocking, {measure}": fastest_baselines(record["methods"], measure, prefix)
+        for measure in MEASURES
+        for prefix in ("", "scipy")
+    }
+    missing = [f"{baseline} cannot be imported and is omitted" for baseline in record["missing_baselines"]]
+    tables = columns(rows, method="", setting="", **times, **errors), pd.DataFrame(best).T.to_string()
+    return "\n\n".join([*tables, *missing])
 
 
 def main() -> None:

@@ -1,7 +1,8 @@
-"""Run time against error, four diagrams."""
+"""Run time against error, four diagrams: `python -m benchmarks.figures.work_precision FOLDER` of their records."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from benchmarks.measure import spread
+from benchmarks.measure import arguments, spread
+from benchmarks.tables import DIAGRAMS
 from rocking.plot.style import BLACK, BLUE, VERMILION, WIDTH
 from workflow.figures.style import panel_letters
 
@@ -57,3 +59,10 @@ def draw(records: list[dict[str, Any]], measure: str, path: Path) -> None:
     figure.legend(handles, labels, loc="outside upper center", ncols=4)
     figure.savefig(path)
     plt.close(figure)
+
+
+if __name__ == "__main__":
+    folder = arguments(__doc__, folder=Path).folder
+    measured = [json.loads((folder / f"work-precision-{name}.json").read_text()) for name in DIAGRAMS]
+    for error in MEASURES:
+        draw(measured, error, folder / f"work-precision-{error}.png")

@@ -127,7 +127,7 @@ rule bench:
         diagrams=expand(rules.work_precision.output.record, diagram=DIAGRAMS),
         records=expand("results/benchmarks/{name}.json", name=TIMED),
     output:
-        summary="results/benchmarks/summary.md",
+        summary="results/benchmarks/summary.txt",
         figures=report(
             expand("results/benchmarks/work-precision-{measure}.png", measure=["median_error", "error_99"]),
             caption="../report/work-precision.rst",
@@ -140,9 +140,10 @@ rule bench:
     conda:
         "../envs/rocking.yaml"
     params:
-        code=benchmark_code("summary"),
+        code=benchmark_code("figures/work_precision"),
+        tables=lambda wildcards, input: [f"{os.path.splitext(path)[0]}.txt" for path in input],
         folder=lambda wildcards, output: os.path.dirname(output.summary),
     message:
         "Summary of the benchmarks"
     shell:
-        "python -m benchmarks.summary --folder {params.folder} >{log}"
+        "cat {params.tables} >{output.summary} && python -m benchmarks.figures.work_precision {params.folder} >{log}"
