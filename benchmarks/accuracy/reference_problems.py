@@ -1,8 +1,7 @@
 """What codes reach on the reference problems: `python -m benchmarks.accuracy.reference_problems [rocking] [scipy] ...`.
 
-`scipy` is what a user would write with `solve_ivp`: method DOP853, rtol 1e-10, an event at each impact. `opensees` and
-`siconos`, where they are installed, solve the problems that have a block of their kind under a sine. The table is that
-of docs/reference-problems.md.
+`scipy` is what a user would write with `solve_ivp`: method DOP853, rtol 1e-10, an event at each impact. The table is
+that of docs/reference-problems.md.
 """
 
 import json
@@ -17,7 +16,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import rocking
-from benchmarks.accuracy import siconos
 from rocking import Outcome
 
 FOLDER = Path("reference/problems")
@@ -26,9 +24,6 @@ FALLEN = 0.5 * math.pi
 MOST_IMPACTS = 2000
 REST = 1e-12
 """Velocity after an impact [rad/s] below which SciPy's body rests."""
-
-BLOCK = {"left": 0.2, "right": 0.2, "height": 0.8}
-"""Geometry of the block of `opensees` and `siconos`."""
 
 Answer = dict[str, Any]
 
@@ -229,33 +224,7 @@ def digits_reached(problem: dict[str, Any], found: Answer | None) -> str:
     return f"{min(15.0, -math.log10(max(worst, 1e-15))):.1f}"
 
 
-def by_opensees(problem: dict[str, Any]) -> Answer | None:
-    """The answer of OpenSees for its block of stone; None for other problems."""
-    if problem["body"].get("geometry") != BLOCK or problem["motion"]["kind"] != "pulse":
-        return None
-    from benchmarks.accuracy import opensees  # noqa: PLC0415  (not a dependency)
-
-    return _of_rotation(problem, opensees.peak_rotation(problem["motion"]["peak_acceleration"], opensees.STRAINS[-1]))
-
-
-def by_siconos(problem: dict[str, Any]) -> Answer | None:
-    """The answer of Siconos for its block, in steps of 0.1 ms; None for other problems."""
-    if problem["body"].get("geometry") != BLOCK or problem["motion"]["kind"] != "pulse":
-        return None
-    level = problem["motion"]["peak_acceleration"] / problem["body"]["gravity"]
-    return _of_rotation(problem, siconos.peak_rotation(level, siconos.STEPS[1])[0])
-
-
-def _of_rotation(problem: dict[str, Any], rotation: float) -> Answer:
-    """The answer of a code that gives the largest rotation [rad], nan for a body that overturns."""
-    if math.isnan(rotation):
-        return {"outcome": problem["answer"]["outcome"] if "overturns" in problem["answer"]["outcome"] else "overturns"}
-    return {"outcome": "recovers", "peak_rotation": rotation / problem["body"]["edges"]["right"]["alpha"]}
-
-
 RUNNERS: dict[str, Callable[[dict[str, Any]], Answer | None]] = {"rocking": by_rocking, "scipy": by_scipy}
-OTHERS = {"opensees": by_opensees, "siconos": by_siconos}
-"""Where they are installed."""
 
 
 def main(chosen: list[str]) -> None:
@@ -263,7 +232,7 @@ def main(chosen: list[str]) -> None:
     names = chosen or list(RUNNERS)
     print(f"| problem | digits asked for | {' | '.join(names)} |\n|---|---|{'---|' * len(names)}")
     for problem in problems():
-        cells = [digits_reached(problem, (RUNNERS | OTHERS)[name](problem)) for name in names]
+        cells = [digits_reached(problem, RUNNERS[name](problem)) for name in names]
         print(f"| {problem['id']} | {problem['digits']} | {' | '.join(cells)} |", flush=True)
 
 
