@@ -31,7 +31,7 @@ LAYERS = (
     ("rocking/_base/quantity",),
     ("rocking/_base/errors", "rocking/_base/equality"),
     ("rocking/_base/units",),
-    ("rocking/_base/constants", "rocking/_base/version", "rocking/_base/source_tree"),
+    ("rocking/_base/arrays", "rocking/_base/constants", "rocking/_base/version", "rocking/_base/source_tree"),
 )
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SOURCES = SourceTree(ROOT)
