@@ -13,8 +13,7 @@ OLDEST = 1980, 1, 1, 0, 0, 0
 """Time stamp of all files in the archive, the first that zip knows: equal files give equal bytes."""
 
 
-CHUNK_BYTES = 128 * 1024
-"""Bytes that are sent at once."""
+CHUNK_BYTES = 128 * 1024  # bytes that are sent at once
 
 
 class _Sink(bytearray):

@@ -16,11 +16,8 @@ from rocking._lookup.collection import NO_CUBES, CubeCollection
 
 LOG = logging.getLogger("rocking.service")
 
-MAX_WAIT = 0.1
-"""How long a request waits for the check to finish [s]."""
-
-WATCH_SECONDS = 5.0
-"""Time between two looks at the folder without a request [s]."""
+MAX_WAIT = 0.1  # how long a request waits for the check to finish [s]
+WATCH_SECONDS = 5.0  # time between two looks at the folder without a request [s]
 
 
 class State(NamedTuple):

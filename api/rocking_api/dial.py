@@ -7,24 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from rocking._base.arrays import Array
 
-RADIUS = 100.0
-"""Of the rim, in units of the drawing."""
-
-RIM = 3.0
-"""Factor at the rim over the lowest one, at most [-]; higher ones are drawn there."""
-
-SPACE = 1.15
-"""Factor at the rim over the highest one, at most [-]."""
+RADIUS = 100.0  # of the rim, in units of the drawing
+RIM = 3.0  # factor at the rim over the lowest one, at most [-]; higher ones are drawn there
+SPACE = 1.15  # factor at the rim over the highest one, at most [-]
 
 BASE = 24.0
 """Largest distance of a corner of the base from the middle, in units of the drawing: less than `RADIUS`/`RIM`."""
 
-SAME = 1e-9
-"""Relative difference up to which two directions are both the worst [-]."""
+SAME = 1e-9  # relative difference up to which two directions are both the worst [-]
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,9 @@ from rocking._base.errors import InvalidArgumentError
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag
 
-SECONDS = 10
-"""Most processor time of a file [s]."""
-
-MEMORY = 1024**3
-"""Most memory beyond that of the modules [bytes]."""
-
-_POLL = 0.1
-"""Time between two looks at the stop flag [s]."""
+SECONDS = 10  # most processor time of a file [s]
+MEMORY = 1024**3  # most memory beyond that of the modules [bytes]
+_POLL = 0.1  # time between two looks at the stop flag [s]
 
 
 def result_of(

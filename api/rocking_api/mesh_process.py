@@ -9,8 +9,7 @@ from typing import Any
 
 from rocking_api.limited_process import print_result
 
-CORNERS = 200
-"""Most corners of a footprint that are kept, for its drawing [-]."""
+CORNERS = 200  # most corners of a footprint that are kept, for its drawing [-]
 
 
 def main(path: str, unit: str, step: str) -> None:

@@ -21,8 +21,7 @@ CONTENT_TYPE = CONTENT_TYPE_LATEST
 BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
 """Bucket bounds of the latency [s]: a point takes a millisecond, a batch a second, a curve several."""
 
-FOLDER = "PROMETHEUS_MULTIPROC_DIR"
-"""Environment variable with the folder of the metrics of several workers."""
+FOLDER = "PROMETHEUS_MULTIPROC_DIR"  # environment variable with the folder of the metrics of several workers
 
 
 class Metrics:

@@ -10,8 +10,7 @@ from fastapi import FastAPI
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
-GC_THRESHOLD = 20_000
-"""Net allocations that start a garbage collection [-]."""
+GC_THRESHOLD = 20_000  # net allocations that start a garbage collection [-]
 
 SWITCH_INTERVAL = 0.0005
 """Time after which a thread of Python passes the interpreter lock to one that waits for it [s]; the default is 0.005.

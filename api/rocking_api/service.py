@@ -33,8 +33,7 @@ T = TypeVar("T")
 LARGE_BODY = 1_000_000
 """Bytes beyond which bodies are parsed one at a time. Smaller ones take some hundredths of a second."""
 
-SEARCH_SHARE = 0.2
-"""Share of the time limit for the search along one line [-]."""
+SEARCH_SHARE = 0.2  # share of the time limit for the search along one line [-]
 
 
 class Service:

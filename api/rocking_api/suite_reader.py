@@ -112,11 +112,7 @@ class SuiteReader:
         return written.getvalue().decode()
 
     def _part(
-        self,
-        cache: VersionCache[str, T | DatasetError],
-        suite: str,
-        file: str,
-        read: Callable[[xr.Dataset], T],
+        self, cache: VersionCache[str, T | DatasetError], suite: str, file: str, read: Callable[[xr.Dataset], T]
     ) -> T:
         """What `read` makes of a file of a suite, once per version of the file."""
         name = f"{_FOLDER}{suite}/{file}"

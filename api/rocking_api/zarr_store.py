@@ -26,11 +26,8 @@ from rocking._datasets.checksum import find_damage, sha256_of
 from rocking._datasets.cube import DIMENSIONS
 from rocking._datasets.netcdf import open_netcdf
 
-MAX_KEPT = 4
-"""Stores in memory, and variables of cubes; an older one is made again on request."""
-
-SPECTRA = "spectra"
-"""Folder of the spectrum cubes, which has a folder for each pulse."""
+MAX_KEPT = 4  # stores in memory, and variables of cubes; an older one is made again on request
+SPECTRA = "spectra"  # folder of the spectrum cubes, which has a folder for each pulse
 
 Contents = dict[str, bytes]
 

@@ -8,24 +8,17 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.columns import CLOSE, OUTPUTS, VERDICTS
 from rocking._assessment.motions import first_exceedances
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.result import Assessment
-from rocking._assessment.search import (
-    HIGHEST_FACTOR,
-    Progress,
-    factors_of,
-    least,
-    overturned_by,
-    responses_of,
-)
+from rocking._assessment.search import HIGHEST_FACTOR, Progress, factors_of, least, overturned_by, responses_of
 from rocking._assessment.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
 from rocking._assessment.site import Motion, Site, record_doubts
 from rocking._assessment.sliding import sliding_displacement
 from rocking._assessment.standards import checked_clauses, demand_over_capacity
+from rocking._base.arrays import Array, Flags
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, integer
 from rocking._base.units import Scalar
@@ -34,9 +27,6 @@ from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag, check_stop
 from rocking.suites.fits import FitStatus, binomial_interval, fit_curve
 from rocking.suites.hazard import curve_rates, outcome_rates
-
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 WIDE = 0.1  # relative distance of the bounds of an annual rate above which a warning is given [-]
 
@@ -176,7 +166,7 @@ def assess(
     )
 
 
-def _by_event(overturned: Bools, motions: Sequence[Motion]) -> Bools:
+def _by_event(overturned: Flags, motions: Sequence[Motion]) -> Flags:
     """Whether a motion of each group overturns: arrays (..., motions) become (..., groups)."""
     groups = np.array([motion.group for motion in motions])
     return np.stack([overturned[..., groups == group].any(axis=-1) for group in range(groups.max() + 1)], axis=-1)

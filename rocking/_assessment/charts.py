@@ -7,15 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from rocking._base.arrays import Array
 
 WIDTH, HEIGHT = 220.0, 95.0  # of the area between the axes [pixels]
 MOST_POINTS = 320  # points of a line beyond which it is thinned, largest and smallest values kept [-]
-
-FLAT = 0.15
-"""Departure of a line from its points that is not seen [pixels]."""
+FLAT = 0.15  # departure of a line from its points that is not seen [pixels]
 
 STYLES = tuple(
     (colour, dash)

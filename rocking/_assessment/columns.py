@@ -2,47 +2,17 @@
 
 from __future__ import annotations
 
-from rocking._base.quantities import (
-    DEPTH,
-    DIAMETER,
-    FRICTION,
-    HEIGHT,
-    LENGTH,
-    MASS,
-    MASS_HEIGHT,
-    NAME,
-    NOTES,
-    NUMBER,
-    OFFSET_DEPTH,
-    OFFSET_WIDTH,
-    PEDESTAL,
-    RESTITUTION,
-    THICKNESS,
-    TOLERANCE,
-    WIDTH,
-)
+import rocking._base.quantities as q
 from rocking._base.quantity import Quantity
 from rocking._dimensional.body_kinds import columns_beside
 
 INPUTS = (
-    NAME,
-    WIDTH,
-    DEPTH,
-    DIAMETER,
-    HEIGHT,
-    MASS_HEIGHT,
-    OFFSET_WIDTH,
-    OFFSET_DEPTH,
-    MASS,
-    FRICTION,
-    RESTITUTION,
-    TOLERANCE,
-    PEDESTAL,
-    NOTES,
+    *(q.NAME, q.WIDTH, q.DEPTH, q.DIAMETER, q.HEIGHT, q.MASS_HEIGHT, q.OFFSET_WIDTH, q.OFFSET_DEPTH),
+    *(q.MASS, q.FRICTION, q.RESTITUTION, q.TOLERANCE, q.PEDESTAL, q.NOTES),
 )
 """What an object has."""
 
-STAND_INS = (NUMBER, LENGTH, THICKNESS)  # other columns of tables, which are read as one of these
+STAND_INS = (q.NUMBER, q.LENGTH, q.THICKNESS)  # other columns of tables, which are read as one of these
 
 SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination")
 """Parameters of kinds of bodies that an object may have in place of or beside its own dimensions."""

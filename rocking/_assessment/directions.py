@@ -76,11 +76,5 @@ def factors_by_direction(
             name: ("direction", values, {"long_name": meaning} | ({"units": unit} if unit else {}))
             for name, (values, unit, meaning) in variables.items()
         },
-        {
-            "direction": (
-                "direction",
-                directions,
-                {"units": "degrees", "long_name": "of the ground acceleration"},
-            )
-        },
+        {"direction": ("direction", directions, {"units": "degrees", "long_name": "of the ground acceleration"})},
     )

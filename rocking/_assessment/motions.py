@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.search import least, problems_of
 from rocking._assessment.site import LENGTH, Motion, static_acceleration
 from rocking._assessment.sliding import first_exceedance
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
@@ -24,8 +24,6 @@ from rocking._numba.cancellation import StopFlag, check_stop
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 ENVELOPE_PERIODS = 25
 """Periods of an envelope, from a third of the shortest period of the site to three times the longest [-]."""

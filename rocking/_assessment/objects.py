@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array, Flags, Index
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.quantities import RESTITUTION
@@ -22,9 +23,6 @@ from rocking._dimensional.rigid_body import RigidBody
 from rocking._model.block import RectangularBlock
 from rocking._model.body import AbstractBody, Edge, PolygonProperties, checked_vertices, rebound_of
 from rocking._model.checks import impact_share
-
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 LENGTHS = 1e-4, 1e3  # smallest and largest dimension of an object [m]
 STEP = 15  # between the directions around an object [degrees]
@@ -454,7 +452,7 @@ class Bodies:
         rows = [(*astuple(plane), eta if (share := impact_share(eta)) is None else -share) for plane, eta in planes]
         return cls(*np.array(rows, dtype=np.float64).reshape(-1, 9).T)
 
-    def take(self, rows: NDArray[np.intp]) -> Bodies:
+    def take(self, rows: Index) -> Bodies:
         """Some of them."""
         return Bodies(**{name: column[rows] for name, column in vars(self).items()})
 
@@ -485,7 +483,7 @@ class BodyArray(AbstractBody):
     def left(self) -> Edge:
         return self._edge("left", "right", self.side > 0.0)
 
-    def _edge(self, own: str, other: str, blocked: Bools) -> Edge:
+    def _edge(self, own: str, other: str, blocked: Flags) -> Edge:
         edge = self._changed(own, other)
         if not blocked.any():
             return edge
@@ -526,7 +524,7 @@ class BodyArray(AbstractBody):
         return [self, replace(self, rigid=mirrored, side=-self.side)]
 
     @property
-    def is_lopsided(self) -> Bools:
+    def is_lopsided(self) -> Flags:
         """Whether each has its centre of mass not in the middle, or a wall at one side."""
         given = self.rigid.parameters
         return np.asarray((given["left"] != given["right"]) | (self.side != 0.0))

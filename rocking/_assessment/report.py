@@ -33,19 +33,13 @@ COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
 WORST = 5  # objects that are drawn on the first page [-]
 LARGEST = 120.0, 165.0  # largest width and height of a drawing on the first page [pixels]; all have one scale
 DRAWING = 105.0  # height of an object in its drawings, and width of these together, at most [pixels]
-
-MOST_DETAILED = 60
-"""Largest number of objects with drawings and charts, the worst ones [-]."""
-
-MOST_MOTIONS = 8
-"""Number of motions listed beside an object, the worst first [-]; `detailed` lists all."""
+MOST_DETAILED = 60  # largest number of objects with drawings and charts, the worst ones [-]
+MOST_MOTIONS = 8  # number of motions listed beside an object, the worst first [-]; `detailed` lists all
 
 PAGE, HEAD, NOTE, LINE, GAP = 259.0, 28.0, 13.0, 3.6, 1.0
 """Heights [mm]: of a page, of the title and head of the table, of the text below it, of a line, between two rows."""
 
-NAME, VERDICT, MOTION, STEP = 22, 14, 11, 17
-"""Characters in a line of these columns of the table [-], on the safe side."""
-
+NAME, VERDICT, MOTION, STEP = 22, 14, 11, 17  # characters in a line of these columns of the table [-], on the safe side
 STRONGEST = 3.0  # height of the axis of an envelope over the peak acceleration of the site [-]
 
 
@@ -61,12 +55,7 @@ class Project:
 
 
 def report_html(
-    found: Assessment,
-    project: Project,
-    bad_rows: Sequence[BadRow] = (),
-    reading: str = "",
-    *,
-    detailed: bool = False,
+    found: Assessment, project: Project, bad_rows: Sequence[BadRow] = (), reading: str = "", *, detailed: bool = False
 ) -> str:
     """The report as text; `reading` says what the columns of the table of objects were read as.
 
@@ -210,14 +199,7 @@ def _envelopes(found: Assessment, given: Sequence[tuple[Object, str]]) -> list[C
             )
             colours[place] = "black" if colours.get(place, own) != own else own  # of several shapes
         marked = [(float(axes[0].at(t)), -float(axes[1].at(a)), colour) for (t, a), colour in colours.items()]
-        charts.append(
-            Chart(
-                "Lowest peak acceleration that overturns it; rings: the site",
-                *axes,
-                lines,
-                marked,
-            )
-        )
+        charts.append(Chart("Lowest peak acceleration that overturns it; rings: the site", *axes, lines, marked))
     return charts
 
 

@@ -17,6 +17,7 @@ from rocking._assessment.directions import factors_by_direction
 from rocking._assessment.motions import frictions_of, history_of
 from rocking._assessment.objects import Object
 from rocking._assessment.site import Motion, Site
+from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
 from rocking._boundary.scan import RESOLUTION
@@ -58,8 +59,8 @@ class Assessment(EqualByValue):
     motions: tuple[str, ...]
     highest_factor: float
     objects: tuple[Object, ...]
-    factors: NDArray[np.float64]
-    rotations: NDArray[np.float64]
+    factors: Array
+    rotations: Array
     site: Site
     resolution: float = 0.0
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.objects import BodyArray
 from rocking._assessment.site import Motion
+from rocking._base.arrays import Array, Flags
 from rocking._boundary.scan import RESOLUTION
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
 from rocking._dimensional.problem import Problem
@@ -19,9 +19,6 @@ from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Index = NDArray[np.intp]
 Progress = Callable[[float], None]  # called with the share of the work that is done [-]
 HIGHEST_FACTOR = 10.0  # highest factor on the motions of a site that is searched [-]
 
@@ -82,7 +79,7 @@ def lowest_factor(
 
 def overturned_by(
     body: BodyArray, motion: Motion, stop: StopFlag | None = None, acceleration: Array | float | None = None
-) -> Bools:
+) -> Flags:
     """Whether a motion overturns each body from either side, at the strength of the site or at another one."""
     given = motion.peak_acceleration if acceleration is None else acceleration
     given = np.minimum(given, motion.peak_acceleration * strongest_factor(motion))
@@ -93,7 +90,7 @@ def overturned_by(
 
 def responses_of(
     body: BodyArray, motions: Sequence[Motion], stop: StopFlag | None = None
-) -> tuple[Bools, Array, Array]:
+) -> tuple[Flags, Array, Array]:
     """Whether each motion overturns each body, and otherwise its largest rotation [rad] and movement of the top [m]."""
     overturned, rotation, displacement = [], [], []
     for motion in motions:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.search import (
@@ -20,13 +19,10 @@ from rocking._assessment.search import (
     strongest_factor,
 )
 from rocking._assessment.site import Motion, static_acceleration
+from rocking._base.arrays import Array, Flags, Index
 from rocking._excitation.records.record import Record
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
-Index = NDArray[np.intp]
 
 ETA_CHANGE = 0.05  # change of the coefficient of restitution [-]
 
@@ -125,7 +121,7 @@ def _overturns_like(
     factor: float,
     resolution: float,
     stop: StopFlag | None,
-) -> Bools:
+) -> Flags:
     """Whether a motion overturns changed bodies at its strength or below, of a body that it overturns at a factor.
 
     The strength, and some just above that factor, are tried before the search, which then is for few.

@@ -15,13 +15,11 @@ import math
 from bisect import bisect_left
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.site import Motion, sampled
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record
-
-Array = NDArray[np.float64]
 
 
 def sliding_displacement(motion: Motion, friction: float) -> float:

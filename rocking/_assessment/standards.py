@@ -6,19 +6,17 @@ import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking import standards
 from rocking._assessment.columns import CLAUSES
 from rocking._assessment.objects import BodyArray
 from rocking._assessment.site import Motion, sampled
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation.records.elastic_spectrum import largest_displacement
 from rocking._excitation.records.measures import velocity
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag
-
-Array = NDArray[np.float64]
 
 
 def checked_clauses(names: object) -> tuple[str, ...]:

@@ -15,22 +15,16 @@ from rocking._base.cells import named, plain_name
 from rocking._base.quantities import NUMBER
 from rocking._base.units import UNITS
 
-PEOPLE = {"m": "cm", "rad": "deg", "m/s2": "g"}
-"""Units that people use, by the SI unit."""
-
-SMALL = {"m": 0.05, "rad": 0.05}
-"""Numbers in such a unit below which they are written as 0, others below 0.0005."""
+PEOPLE = {"m": "cm", "rad": "deg", "m/s2": "g"}  # units that people use, by the SI unit
+SMALL = {"m": 0.05, "rad": 0.05}  # numbers in such a unit below which they are written as 0, others below 0.0005
 
 WITHIN = "within 20 %"
 
 DETAILED = (WITHIN, "slides before it rocks", "may slide while it rocks", "the hazard curve does not")
 """Beginnings of warnings whose numbers, behind a colon, differ from object to object."""
 
-LONGEST = 40
-"""Characters of a name on a screen, and in a warning [-]."""
-
-WIDER = 1.5
-"""Largest ratio of the base needed to the present one at which a wider base is proposed [-]."""
+LONGEST = 40  # characters of a name on a screen, and in a warning [-]
+WIDER = 1.5  # largest ratio of the base needed to the present one at which a wider base is proposed [-]
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,7 @@ from rocking._assessment.objects import Object, RowDetails
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.body_kinds import WITHOUT_FILES, described
 from rocking._dimensional.table_header import Schema
-from rocking._dimensional.table_reader import (
-    BadRow,
-    Table,
-    TooManyRowsError,
-    read_bytes,
-    read_csv,
-    read_file,
-    text_of,
-)
+from rocking._dimensional.table_reader import BadRow, Table, TooManyRowsError, read_bytes, read_csv, read_file, text_of
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.assess import CONFIDENCE
 from rocking._assessment.objects import Bodies
 from rocking._assessment.search import overturned_by
 from rocking._assessment.site import Site
+from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, integer, number
 from rocking._base.quantities import RESTITUTION
@@ -26,8 +26,6 @@ from rocking._numba.cancellation import StopFlag
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 REPLICATES = 8  # independent scramblings of the quasi-random points, whose scatter gives the interval [-]
 NAMES = ("width", "height", "mass_height", "offset", "restitution")  # inputs that may be uncertain

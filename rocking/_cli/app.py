@@ -14,21 +14,11 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from rocking._cli import options
 from rocking._cli.assess import assess
 from rocking._cli.floor import floor
 from rocking._cli.fragility import fragility
 from rocking._cli.identify import identify
-from rocking._cli.options import (
-    Duration,
-    FrequencyRatioMax,
-    FrequencyRatioMin,
-    HistoryOptions,
-    OutputOptions,
-    ProblemOptions,
-    SpectrumOptions,
-    WindowOptions,
-    with_options,
-)
 from rocking._cli.plot import plot
 from rocking._cli.record import record
 
@@ -87,10 +77,10 @@ def main(
 
 
 @app.command()
-@with_options
+@options.with_options
 def response(
-    block: ProblemOptions,
-    output: OutputOptions,
+    block: options.ProblemOptions,
+    output: options.OutputOptions,
     file: Annotated[
         str | None,
         typer.Argument(
@@ -120,11 +110,11 @@ def response(
 
 
 @app.command()
-@with_options
+@options.with_options
 def history(
-    block: HistoryOptions,
-    output: OutputOptions,
-    duration: Duration = None,
+    block: options.HistoryOptions,
+    output: options.OutputOptions,
+    duration: options.Duration = None,
     samples: Annotated[
         int, typer.Option(help="Number of uniform samples; the events are added.", metavar="[NUMBER]")
     ] = 400,
@@ -148,13 +138,13 @@ def history(
 
 
 @app.command()
-@with_options
+@options.with_options
 def spectrum(
     context: typer.Context,
-    block: SpectrumOptions,
-    output: OutputOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.5,
-    frequency_ratio_max: FrequencyRatioMax = 12.0,
+    block: options.SpectrumOptions,
+    output: options.OutputOptions,
+    frequency_ratio_min: options.FrequencyRatioMin = 0.5,
+    frequency_ratio_max: options.FrequencyRatioMax = 12.0,
     points: Annotated[
         int, typer.Option(help="Number of points, spaced evenly in the logarithm.", metavar="[NUMBER]")
     ] = 24,
@@ -168,13 +158,13 @@ def spectrum(
 
 
 @app.command()
-@with_options
+@options.with_options
 def boundary(
     context: typer.Context,
-    block: WindowOptions,
-    output: OutputOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.2,
-    frequency_ratio_max: FrequencyRatioMax = 15.0,
+    block: options.WindowOptions,
+    output: options.OutputOptions,
+    frequency_ratio_min: options.FrequencyRatioMin = 0.2,
+    frequency_ratio_max: options.FrequencyRatioMax = 15.0,
 ) -> None:
     """Overturning boundary curves, traced with the solver."""
     from rocking._cli import arguments, printing
@@ -185,8 +175,8 @@ def boundary(
 
 
 @app.command()
-@with_options
-def pulses(output: OutputOptions) -> None:
+@options.with_options
+def pulses(output: options.OutputOptions) -> None:
     """Names of pulses, with their durations in periods."""
     import math
 
@@ -203,8 +193,8 @@ def pulses(output: OutputOptions) -> None:
 
 
 @app.command()
-@with_options
-def units(output: OutputOptions) -> None:
+@options.with_options
+def units(output: options.OutputOptions) -> None:
     """Names of units, for options and tables. Case, blanks and signs of a power do not matter."""
     from rocking._base.units import EXAMPLES, UNITS
     from rocking._cli import printing

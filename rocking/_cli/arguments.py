@@ -11,13 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from rocking._base.errors import (
-    InvalidArgumentError,
-    SeveralArgumentsError,
-    UnreadableFileError,
-    number,
-    si_value,
-)
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, UnreadableFileError, number, si_value
 from rocking._base.quantities import FREQUENCY_RATIO, PEAK_ACCELERATION, PERIOD, RESTITUTION
 from rocking._base.units import split_quantity, unit_name
 from rocking._cli.options import BODY, BodyOptions, ProblemOptions, ShapeOptions, SpectrumOptions, WindowOptions

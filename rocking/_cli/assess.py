@@ -57,8 +57,7 @@ def assess(
         ),
     ] = None,
     mesh: Annotated[
-        Texts,
-        said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE"),
+        Texts, said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE")
     ] = None,
     mesh_unit: Annotated[str, said("Unit of the lengths of the meshes: m, cm, mm, in, ft.", "UNIT")] = "m",
     friction: Annotated[
@@ -87,12 +86,7 @@ def assess(
     ] = None,
     floor_periods: Annotated[
         str | None,
-        said(
-            "Periods of the building, for objects on a floor: 0.5s,0.2s.",
-            "s,s,...",
-            "--floor-periods",
-            "--floor",
-        ),
+        said("Periods of the building, for objects on a floor: 0.5s,0.2s.", "s,s,...", "--floor-periods", "--floor"),
     ] = None,
     floor_damping: Annotated[str, said("Damping ratios of these modes, one or one for each.", "-,-,...")] = "0.05",
     floor_participation: Annotated[
@@ -239,8 +233,7 @@ def _read(
     up = iter(verticals)
 
     def read(path: str, vertical: str | None = None) -> Record:
-        motion = read_record(path, vertical=vertical, **stated)
-        return motion if order is None else motion.baseline_corrected(order=order)
+        return read_record(path, vertical=vertical, **stated).baseline_corrected(order=order)
 
     found: list[Record | tuple[Record, Record]] = [read(path, next(up, None)) for path in paths]
     for one in pairs:

@@ -16,27 +16,7 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import typer
 
-from rocking._base.quantities import (
-    ALPHA,
-    DIAMETER,
-    FREQUENCY_RATIO,
-    GYRATION,
-    HEIGHT,
-    LEFT,
-    MASS_HEIGHT,
-    OFFSET,
-    PEAK_ACCELERATION,
-    PERIOD,
-    REBOUND,
-    RESTITUTION,
-    RIGHT,
-    SCALE,
-    SIDES,
-    SLENDERNESS,
-    START,
-    TIME_STEP,
-    WIDTH,
-)
+import rocking._base.quantities as q
 from rocking._base.quantity import Quantity
 from rocking._dimensional.body_kinds import BODIES, signatures
 
@@ -75,7 +55,7 @@ def _bodies(incomplete: str) -> list[str]:
     return [name for name in BODIES if name.startswith(incomplete)]
 
 
-BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT, SIDES, REBOUND)
+BODY = (q.WIDTH, q.HEIGHT, q.OFFSET, q.MASS_HEIGHT, q.GYRATION, q.DIAMETER, q.LEFT, q.RIGHT, q.SIDES, q.REBOUND)
 """Parameters of bodies that are options of their own."""
 
 
@@ -83,16 +63,16 @@ BODY = (WIDTH, HEIGHT, OFFSET, MASS_HEIGHT, GYRATION, DIAMETER, LEFT, RIGHT, SID
 class BodyOptions:
     """A body: its parameters, or a text."""
 
-    width: Annotated[str | None, option(WIDTH, panel=_UNITS)] = None
-    height: Annotated[str | None, option(HEIGHT, panel=_UNITS)] = None
-    offset: Annotated[str | None, option(OFFSET, panel=_UNITS)] = None
-    mass_height: Annotated[str | None, option(MASS_HEIGHT, panel=_UNITS)] = None
-    gyration: Annotated[str | None, option(GYRATION, panel=_UNITS)] = None
-    diameter: Annotated[str | None, option(DIAMETER, panel=_UNITS)] = None
-    left: Annotated[str | None, option(LEFT, panel=_UNITS)] = None
-    right: Annotated[str | None, option(RIGHT, panel=_UNITS)] = None
-    sides: Annotated[str | None, option(SIDES, panel=_UNITS)] = None
-    rebound: Annotated[str | None, option(REBOUND, panel=_UNITS)] = None
+    width: Annotated[str | None, option(q.WIDTH, panel=_UNITS)] = None
+    height: Annotated[str | None, option(q.HEIGHT, panel=_UNITS)] = None
+    offset: Annotated[str | None, option(q.OFFSET, panel=_UNITS)] = None
+    mass_height: Annotated[str | None, option(q.MASS_HEIGHT, panel=_UNITS)] = None
+    gyration: Annotated[str | None, option(q.GYRATION, panel=_UNITS)] = None
+    diameter: Annotated[str | None, option(q.DIAMETER, panel=_UNITS)] = None
+    left: Annotated[str | None, option(q.LEFT, panel=_UNITS)] = None
+    right: Annotated[str | None, option(q.RIGHT, panel=_UNITS)] = None
+    sides: Annotated[str | None, option(q.SIDES, panel=_UNITS)] = None
+    rebound: Annotated[str | None, option(q.REBOUND, panel=_UNITS)] = None
     body: Annotated[
         str | None,
         typer.Option(
@@ -121,18 +101,18 @@ class ShapeOptions(BodyOptions):
     """A pulse without amplitude and a block: its slenderness angle, or its size."""
 
     pulse: Pulse
-    restitution: Annotated[str | None, option(RESTITUTION)] = None
-    alpha: Annotated[str | None, option(ALPHA, panel=_GROUPS)] = None
+    restitution: Annotated[str | None, option(q.RESTITUTION)] = None
+    alpha: Annotated[str | None, option(q.ALPHA, panel=_GROUPS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class ProblemOptions(ShapeOptions):
     """A block under a pulse: in groups, or with units."""
 
-    slenderness: Annotated[float | None, option(SLENDERNESS, panel=_GROUPS)] = None
-    frequency_ratio: Annotated[float | None, option(FREQUENCY_RATIO, panel=_GROUPS)] = None
-    peak_acceleration: Annotated[str | None, option(PEAK_ACCELERATION, panel=_UNITS)] = None
-    period: Annotated[str | None, option(PERIOD, panel=_UNITS)] = None
+    slenderness: Annotated[float | None, option(q.SLENDERNESS, panel=_GROUPS)] = None
+    frequency_ratio: Annotated[float | None, option(q.FREQUENCY_RATIO, panel=_GROUPS)] = None
+    peak_acceleration: Annotated[str | None, option(q.PEAK_ACCELERATION, panel=_UNITS)] = None
+    period: Annotated[str | None, option(q.PERIOD, panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,23 +120,23 @@ class HistoryOptions(ProblemOptions):
     """The same, or a body that is released."""
 
     pulse: Pulse = ""
-    start: Annotated[str | None, option(START, panel=_UNITS)] = None
+    start: Annotated[str | None, option(q.START, panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class WindowOptions(ShapeOptions):
     """A block under pulses of all periods of a window."""
 
-    period_min: Annotated[str | None, option(PERIOD, text="Shortest T_p", panel=_UNITS)] = None
-    period_max: Annotated[str | None, option(PERIOD, text="Longest T_p", panel=_UNITS)] = None
+    period_min: Annotated[str | None, option(q.PERIOD, text="Shortest T_p", panel=_UNITS)] = None
+    period_max: Annotated[str | None, option(q.PERIOD, text="Longest T_p", panel=_UNITS)] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpectrumOptions(WindowOptions):
     """The same with an amplitude."""
 
-    slenderness: Annotated[float | None, option(SLENDERNESS, panel=_GROUPS)] = None
-    peak_acceleration: Annotated[str | None, option(PEAK_ACCELERATION, panel=_UNITS)] = None
+    slenderness: Annotated[float | None, option(q.SLENDERNESS, panel=_GROUPS)] = None
+    peak_acceleration: Annotated[str | None, option(q.PEAK_ACCELERATION, panel=_UNITS)] = None
 
 
 Component = Annotated[
@@ -165,13 +145,9 @@ Component = Annotated[
         "Column or trace to read from a file with several; rows: one series along the rows of several columns.", "NAME"
     ),
 ]
-Skip = Annotated[
-    int | None,
-    said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER"),
-]
+Skip = Annotated[int | None, said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER")]
 BaselineOrder = Annotated[
-    int | None,
-    said("Remove a baseline of this degree, 0 to 6; by default only the offset of K-NET counts.", "NUMBER"),
+    int | None, said("Remove a baseline of this degree, 0 to 6; by default only the offset of K-NET counts.", "NUMBER")
 ]
 
 
@@ -182,7 +158,7 @@ class FileOptions:
     unit: Annotated[
         str | None, said("Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", "UNIT")
     ] = None
-    time_step: Annotated[str | None, option(TIME_STEP, text="Time step if the file states none")] = None
+    time_step: Annotated[str | None, option(q.TIME_STEP, text="Time step if the file states none")] = None
     component: Component = None
     vertical: Annotated[
         str | None, said("File of the vertical component, upwards, or its column or trace in the file.", "FILE|NAME")
@@ -194,8 +170,8 @@ class FileOptions:
 class RecordOptions(FileOptions, BodyOptions):
     """A block, and a record."""
 
-    restitution: Annotated[str, option(RESTITUTION)] = "momentum"
-    scale: Annotated[float, option(SCALE)] = 1.0
+    restitution: Annotated[str, option(q.RESTITUTION)] = "momentum"
+    scale: Annotated[float, option(q.SCALE)] = 1.0
     baseline_order: BaselineOrder = None
 
 

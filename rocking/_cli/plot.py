@@ -52,11 +52,7 @@ def response(block: ProblemOptions, picture: PictureOptions) -> None:
 
 @plot.command()
 @with_options
-def history(
-    block: ProblemOptions,
-    picture: PictureOptions,
-    duration: Duration = None,
-) -> None:
+def history(block: ProblemOptions, picture: PictureOptions, duration: Duration = None) -> None:
     """Rotation and ground acceleration of one block against time."""
     from rocking._cli import arguments
 

@@ -380,10 +380,7 @@ def boundary_curves(params: Params, window: tuple[float, float]) -> xr.Dataset:
 
 
 def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
-    return solve_with_bound(
-        params.pulse,
-        **(params.groups | {"frequency_ratio": frequency_ratio}),
-    )
+    return solve_with_bound(params.pulse, **(params.groups | {"frequency_ratio": frequency_ratio}))
 
 
 def _groups(params: Params) -> dict[str, Any]:

@@ -6,13 +6,13 @@ import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import OutputOptions, RecordOptions, said, with_options
+from rocking._cli.options import FileOptions, OutputOptions, RecordOptions, said, with_options
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
@@ -134,17 +134,8 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingB
     from rocking._excitation.records.readers.read_record import read_record
 
     body, eta = read_body(options), read_eta(options.restitution)
-    motion = read_record(
-        file,
-        unit=options.unit,
-        time_step=options.time_step,
-        component=options.component,
-        vertical=options.vertical,
-        skip=options.skip,
-    )
-    if options.baseline_order is not None:
-        motion = motion.baseline_corrected(order=options.baseline_order)
-    return motion, body, eta
+    motion = read_record(file, **{one.name: getattr(options, one.name) for one in fields(FileOptions)})
+    return motion.baseline_corrected(order=options.baseline_order), body, eta
 
 
 def _measures(motion: Record) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
 from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION, START
 from rocking._base.units import Scalar, Values
@@ -35,8 +35,6 @@ from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 
 class RespondingBody(AbstractBody):

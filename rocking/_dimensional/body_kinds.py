@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 Makers = tuple[Callable[..., Any], ...]
 
 _RIGID: Makers = rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline, mesh
-RIGID = tuple(map(with_wall, _RIGID))
-"""Rigid bodies, which an object of a table may be."""
+RIGID = tuple(map(with_wall, _RIGID))  # rigid bodies, which an object of a table may be
 
 _ALL: Makers = *RIGID, frame, arch, on_pivots, structure
 BODIES: dict[str, Kind[RespondingBody]] = {

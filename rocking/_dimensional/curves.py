@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.units import Scalar
 from rocking._boundary.tracing import overturning_boundary, trace_curves
@@ -136,7 +136,7 @@ def release(
     return found.assign_attrs(motion="release", start=start, impacts=found.sizes["impact"], motion_end=0.0)
 
 
-def _history_of(moving: BodyMotion, body: AbstractBody, grid: NDArray[np.float64], contact: bool) -> xr.Dataset:
+def _history_of(moving: BodyMotion, body: AbstractBody, grid: Array, contact: bool) -> xr.Dataset:
     """The samples of a motion at `grid` [tau] and at its events, in SI units."""
     import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
@@ -186,7 +186,7 @@ def _history_of(moving: BodyMotion, body: AbstractBody, grid: NDArray[np.float64
     )
 
 
-def spectrum(problem: Problem, period: NDArray[np.float64], stop: StopFlag | None = None) -> xr.Dataset:
+def spectrum(problem: Problem, period: Array, stop: StopFlag | None = None) -> xr.Dataset:
     """Peak rotation of one body over periods of the pulse (periods,) [s], as `rocking.Block.spectrum`.
 
     The period of the problem is not read. Of a block with the coordinate frequency_ratio(period) [-].
@@ -218,7 +218,7 @@ def spectrum(problem: Problem, period: NDArray[np.float64], stop: StopFlag | Non
     )
 
 
-def over_axis(found: BodyResponse, axis: str, along: NDArray[np.float64]) -> xr.Dataset:
+def over_axis(found: BodyResponse, axis: str, along: Array) -> xr.Dataset:
     """The responses of one body over periods [s], or of its sizes, as a data set with this axis."""
     data = found.to_xarray()
     kept = data.drop_vars([one for one in data.coords if one not in ("period", "peak_acceleration", "scale")])

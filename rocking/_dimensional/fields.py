@@ -8,29 +8,13 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._dimensional.problem import STRENGTHS
-from rocking._model.fields import (
-    DERIVED_FIELDS,
-    ERROR_BOUND,
-    EXCEEDED_ALPHA,
-    IMPACTS,
-    KINDS,
-    OUTCOME,
-    OVERTURNED,
-    PEAK_ROTATION,
-    UPLIFT_TIME,
-    ResponseField,
-)
+from rocking._model import fields
 from rocking._model.outcome import Outcome
 
-if TYPE_CHECKING:
-    pass
-
-Array = NDArray[np.float64]
-
-ONE, EDGES, BLOCK = KINDS - {"many"}, KINDS - {"block"}, KINDS - {"edges", "many"}
+ONE, EDGES, BLOCK = fields.KINDS - {"many"}, fields.KINDS - {"block"}, fields.KINDS - {"edges", "many"}
 
 PULSES, RECORDS = BLOCK - {"record"}, BLOCK - {"pulse"}
 
@@ -54,12 +38,12 @@ def _edge(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> An
     return np.where(known["overturned"], known["last_edge"], larger)
 
 
-ROTATION = ResponseField(
+ROTATION = fields.ResponseField(
     "rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns", derive=_rotation,
     shown="peak_rotation_deg",
 )  # fmt: skip
 
-DISPLACEMENT = ResponseField(
+DISPLACEMENT = fields.ResponseField(
     "displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", "the block overturns",
     derive=lambda known, groups, motion, body: body.top_displacement(_rotation(known, groups, motion, body)),
     shown="top_displacement",
@@ -71,13 +55,13 @@ ARGUMENTS = ("scale", "peak_acceleration", "period", "slenderness", "frequency_r
 
 def _about(
     name: str, unit: str, equation: str, meaning: str, kinds: frozenset[str], of_body: str = ""
-) -> ResponseField:
+) -> fields.ResponseField:
     """A number that is an argument, a group or a property of the body."""
 
     def derive(_known: Any, groups: Any, _motion: Any, body: Any) -> Any:
         return groups[name] if name in ARGUMENTS else attrgetter(of_body or name)(body)
 
-    return ResponseField(name, "f8", unit, equation, meaning, derive=derive, kinds=kinds)
+    return fields.ResponseField(name, "f8", unit, equation, meaning, derive=derive, kinds=kinds)
 
 
 FIELDS = (
@@ -87,18 +71,18 @@ FIELDS = (
     replace(ROTATION, name="rotation_right", meaning="peak rotation about the right edge", kinds=EDGES, shown="",
             derive=lambda known, _groups, _motion, body: _rotations(known, body)[0]),
     DISPLACEMENT,
-    OVERTURNED,
-    OUTCOME,
-    ResponseField("edge", "i1", "1", "2.2",
+    fields.OVERTURNED,
+    fields.OUTCOME,
+    fields.ResponseField("edge", "i1", "1", "2.2",
                   "edge of the largest rotation over alpha, or of overturning: 1 right, -1 left, 0 without uplift",
                   kinds=EDGES, derive=_edge),
-    IMPACTS,
-    EXCEEDED_ALPHA,
-    PEAK_ROTATION,
-    replace(UPLIFT_TIME, unit="s", meaning="time of the first uplift", kinds=EDGES,
+    fields.IMPACTS,
+    fields.EXCEEDED_ALPHA,
+    fields.PEAK_ROTATION,
+    replace(fields.UPLIFT_TIME, unit="s", meaning="time of the first uplift", kinds=EDGES,
             derive=lambda known, _groups, _motion, body: known["uplift_time"] / body.right.frequency_parameter),
-    replace(ERROR_BOUND, kinds=PULSES),
-    *DERIVED_FIELDS,
+    replace(fields.ERROR_BOUND, kinds=PULSES),
+    *fields.DERIVED_FIELDS,
     _about("width", "m", "2.1", "width 2b of the block", BLOCK),
     _about("height", "m", "2.1", "height 2h of the block", BLOCK),
     _about("half_diagonal", "m", "2.2", "half-diagonal R of the block", BLOCK),
@@ -120,9 +104,9 @@ FIELDS = (
 def _judged(
     name: str, meaning: str, missing: str = "", *, dtype: str = "f8", unit: str = "1", kinds: frozenset[str] = ONE,
     source: Callable[[Any], Any] | None = None,
-) -> tuple[ResponseField, Callable[[Any], Any]]:  # fmt: skip
+) -> tuple[fields.ResponseField, Callable[[Any], Any]]:  # fmt: skip
     """A value computed on request: an attribute of the response, or a function of it."""
-    return ResponseField(name, dtype, unit, "", meaning, missing, kinds=kinds), source or attrgetter(name)
+    return fields.ResponseField(name, dtype, unit, "", meaning, missing, kinds=kinds), source or attrgetter(name)
 
 
 _UNKNOWN = "it lifts off, or the forces are not known"

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array, Flags, Index
 from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.scan import FEWEST, SHARES, Lines, lowest_overturning
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
@@ -25,9 +26,7 @@ from rocking._solver.bodies import outcome_margin_of, solve_motion
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.samples import motion_samples
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
-Solved = tuple[Array, NDArray[np.bool_], Array, NDArray[np.int32]]
+Solved = tuple[Array, Flags, Array, NDArray[np.int32]]
 """Peak |theta|/alpha, whether the body overturns, margin of the outcome, and impacts."""
 
 HIGHEST = 100.0  # largest peak acceleration searched over that of uplift [-]
@@ -66,8 +65,7 @@ Layers of outcomes lie close together there, the more of them the more flights t
 AT_ONCE = 4  # coarse nodes solved at a time, before the bodies that have overturned are left out
 
 
-BALANCED = 1.0
-"""|theta|/alpha of a body that is balanced on an edge, and of one that overturns [-]."""
+BALANCED = 1.0  # |theta|/alpha of a body that is balanced on an edge, and of one that overturns [-]
 
 
 @dataclass(eq=False)
@@ -91,7 +89,7 @@ class _Nodes:
     line: Index
     place: Index
     peak: Array
-    overturned: NDArray[np.bool_]
+    overturned: Flags
     margin: Array
     impacts: NDArray[np.int32]
 
@@ -244,7 +242,7 @@ def _searched(solve: Callable[[Index, Array], Solved], start: Index, count: Inde
     return nodes
 
 
-def _halved(nodes: _Nodes) -> NDArray[np.bool_]:
+def _halved(nodes: _Nodes) -> Flags:
     """Whether each interval between two nodes is halved."""
     same = np.diff(nodes.line) == 0
     gap = np.where(same, np.diff(nodes.place), 0)
@@ -271,7 +269,7 @@ def _certain_survival(pulse: AbstractPulse, cells: NDArray[np.void]) -> Array:
     return np.asarray(needed / gained)
 
 
-def _reach(values: Array, same: NDArray[np.bool_], multiple: NDArray[np.integer]) -> Array:
+def _reach(values: Array, same: Flags, multiple: NDArray[np.integer]) -> Array:
     """The larger of two consecutive values of a body plus a multiple of the variation there; arrays (values - 1,)."""
     step = np.where(same, np.abs(np.diff(values)), 0.0)
     beside = np.maximum(step, np.maximum(np.append(0.0, step)[:-1], np.append(step, 0.0)[1:]))

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, UnreadableFileError, one_of
 from rocking._base.units import UNITS
 from rocking._dimensional.mesh_parts import with_few_parts
@@ -61,7 +61,7 @@ def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[Poly
     return found, remarks
 
 
-def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.float64]:
+def mesh_outline(path: str | Path, direction: float, unit: str) -> Array:
     """Convex outline in the plane of a direction [rad], for drawings; (points, 2) [m].
 
     Distances from the centre of mass along the plane, and heights above the lowest point.
@@ -73,7 +73,7 @@ def mesh_outline(path: str | Path, direction: float, unit: str) -> NDArray[np.fl
     return np.asarray(points[ConvexHull(points).vertices] * UNITS["m"][unit])
 
 
-def mesh_footprint(path: str | Path, unit: str) -> NDArray[np.float64]:
+def mesh_footprint(path: str | Path, unit: str) -> Array:
     """Convex outline of the footprint from the centre of mass [m], array (points, 2); arguments and errors as above."""
     points = _footprint(_mesh(path)[0])
     try:
@@ -83,7 +83,7 @@ def mesh_footprint(path: str | Path, unit: str) -> NDArray[np.float64]:
     return np.asarray(points[corners] * UNITS["m"][one_of("unit", unit, UNITS["m"])])
 
 
-def directions_across(footprint: NDArray[np.float64], step: float) -> list[float]:
+def directions_across(footprint: Array, step: float) -> list[float]:
     """Directions across the sides of a convex footprint, those of short sides in steps, 0 to below 180 [degrees]."""
     sides = np.roll(footprint, -1, axis=0) - footprint
     length = np.hypot(*sides.T)
@@ -92,7 +92,7 @@ def directions_across(footprint: NDArray[np.float64], step: float) -> list[float
     return [float(angle) for angle in np.unique(rounded % 180.0)]
 
 
-def _footprint(mesh: trimesh.Trimesh) -> NDArray[np.float64]:
+def _footprint(mesh: trimesh.Trimesh) -> Array:
     """Vertices on which a mesh stands, from its centre of mass; array (points, 2)."""
     vertices = np.asarray(mesh.vertices)
     heights = vertices[:, 2]
@@ -130,6 +130,6 @@ def _loaded(path: Path, _changed: int, _size: int) -> RepairedMesh:
         return repaired(mesh)
 
 
-def _horizontal(direction: float) -> NDArray[np.float64]:
+def _horizontal(direction: float) -> Array:
     """Unit vector at an angle from the x axis [rad]."""
     return np.array([math.cos(direction), math.sin(direction), 0.0])

@@ -6,13 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
-Array = NDArray[np.float64]
+from rocking._base.arrays import Array, Flags, Index
 
 FLAT = 0.01
 """Distance of the edges of a hole from its plane times its area, over the volume, up to which it is filled [-]."""
@@ -83,17 +80,17 @@ def repaired(mesh: trimesh.Trimesh) -> RepairedMesh:
 class _Edges(NamedTuple):
     """Sides of faces, arrays (faces, 3): their edge, whether they lead to its later vertex, how many sides it has."""
 
-    edge: Ints
-    forward: Bools
-    shared: Ints
+    edge: Index
+    forward: Flags
+    shared: Index
 
 
-def _sides(faces: Ints) -> Ints:
+def _sides(faces: Index) -> Index:
     """Both vertices of each side of each face, array (faces, 3, 2)."""
     return np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
 
 
-def _edges(faces: Ints) -> _Edges:
+def _edges(faces: Index) -> _Edges:
     sides = _sides(faces)
     low, high = np.sort(sides.reshape(-1, 2), axis=1).T
     key = low * (int(faces.max(initial=0)) + 1) + high  # one number sorts ten times as fast as two
@@ -102,20 +99,20 @@ def _edges(faces: Ints) -> _Edges:
     return _Edges(edge, sides[..., 0] < sides[..., 1], shared[edge])
 
 
-def _parts(count: int, first: Ints, second: Ints) -> Ints:
+def _parts(count: int, first: Index, second: Index) -> Index:
     """The number of the connected part of each of `count` things, some pairs of which are connected."""
     graph = coo_matrix((np.ones(len(first), dtype=bool), (first, second)), shape=(count, count))
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 
-def _bodies(edges: _Edges) -> Ints:
+def _bodies(edges: _Edges) -> Index:
     """The number of the body of each face: faces that share edges."""
     size = len(edges.edge)
     part = _parts(size + 3 * size, np.repeat(np.arange(size), 3), size + edges.edge.ravel())[:size]
     return np.asarray(np.unique(part, return_inverse=True)[1], dtype=np.intp)
 
 
-def _single(faces: Ints) -> Ints:
+def _single(faces: Index) -> Index:
     """The faces of three vertices, each once, without those that stand on an edge that others close.
 
     Of two that look opposite ways, as between two bodies, neither is kept.
@@ -136,7 +133,7 @@ def _single(faces: Ints) -> Ints:
         kept = kept[~standing]
 
 
-def _turned(faces: Ints) -> Bools | None:
+def _turned(faces: Index) -> Flags | None:
     """Which faces to turn so that neighbours go together, as few as possible in each body; None if that is impossible.
 
     Each face is in a graph as it is and turned, and neighbours are connected as they go together. A face that is
@@ -160,11 +157,11 @@ class _Holes(NamedTuple):
 
     centre: Array
     uncertain: Array
-    cones: Ints
-    of_cone: Ints
+    cones: Index
+    of_cone: Index
 
 
-def _holes(vertices: Array, faces: Ints, edges: _Edges) -> _Holes:
+def _holes(vertices: Array, faces: Index, edges: _Edges) -> _Holes:
     """The holes of a mesh, and the cones that fill them."""
     sides = _sides(faces)[edges.shared == 1]
     rim, place = np.unique(sides, return_inverse=True)
@@ -185,7 +182,7 @@ def _holes(vertices: Array, faces: Ints, edges: _Edges) -> _Holes:
     return _Holes(centre, distance * size, cones, of_cone)
 
 
-def _outwards(vertices: Array, faces: Ints, body: Ints) -> tuple[Bools, Array]:
+def _outwards(vertices: Array, faces: Index, body: Index) -> tuple[Flags, Array]:
     """Which faces to turn, of bodies of negative volume unless they lie within another as cavities do; all volumes."""
     corners = vertices[faces]
     volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0

@@ -17,20 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import rocking._base.quantities as q
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, reject_given
-from rocking._base.quantities import (
-    ALPHA,
-    FREQUENCY_RATIO,
-    HIGHEST_SCALE,
-    PEAK_ACCELERATION,
-    PERIOD,
-    RESTITUTION,
-    SCALE,
-    SLENDERNESS,
-    SMALLEST_ALPHA,
-)
 from rocking._base.units import Scalar, Values
 from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse, as_pulse
@@ -58,11 +49,9 @@ from rocking._solver.records.record_response import frequency_parameter_range, p
 from rocking._solver.records.samples import motion_samples
 from rocking._solver.state import BODY_CELL
 
-Array = NDArray[np.float64]
-
 Motion = str | AbstractPulse | Record
 
-STRENGTHS = {one.name: one for one in (PEAK_ACCELERATION, PERIOD, SCALE)}
+STRENGTHS = {one.name: one for one in (q.PEAK_ACCELERATION, q.PERIOD, q.SCALE)}
 """Arguments for the strength and the length of a motion."""
 
 
@@ -116,7 +105,7 @@ class Problem(EqualByValue):
         one = body.is_block and are_numbers(*given.values(), restitution)
         eta = None
         if not (isinstance(restitution, str) and restitution == "momentum"):
-            eta = checked_restitution(restitution, RESTITUTION.number if one else RESTITUTION.convert)
+            eta = checked_restitution(restitution, q.RESTITUTION.number if one else q.RESTITUTION.convert)
         stated = not isinstance(peak_acceleration, Real)
         if one:
             values: dict[str, Any] = {name: STRENGTHS[name].number(value) for name, value in given.items()}
@@ -207,13 +196,13 @@ class Problem(EqualByValue):
             allowed = "solved with numbers, not arrays: its equation of motion is linear"
             raise InvalidArgumentError("body", body.description, allowed)
         for name, edge in (("right", right), ("left", left)):
-            in_range(f"alpha of the {name} edge", edge.alpha, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
+            in_range(f"alpha of the {name} edge", edge.alpha, q.SMALLEST_ALPHA, q.ALPHA.upper, unit="rad")
             in_range(f"restitution of the {name} edge", edge.restitution, -math.inf, 1.0, closed="right")
         p = right.frequency_parameter
         if isinstance(self.motion, Record):
             in_range("frequency_parameter", p, *frequency_parameter_range(self.motion), unit="rad/s")
         else:
-            FREQUENCY_RATIO.convert(2.0 * math.pi / (self.period * p))
+            q.FREQUENCY_RATIO.convert(2.0 * math.pi / (self.period * p))
         etas = [edge.restitution if self.restitution is None else self.restitution for edge in (right, left)]
         unit = self.motion.time_step * p if isinstance(self.motion, Record) else 2.0 * math.pi / (self.period * p)
         columns = {
@@ -260,11 +249,11 @@ class Problem(EqualByValue):
         """The response of one block to a pulse in groups, with a bound of its error."""
         groups = self.groups
         s, w, alpha = groups["slenderness"], groups["frequency_ratio"], groups["alpha"]
-        low, high = SLENDERNESS.lower, FREQUENCY_RATIO.upper
-        if not (low < s < math.inf and FREQUENCY_RATIO.lower < w < high and not 0.0 < alpha < SMALLEST_ALPHA):
-            SLENDERNESS.convert(s)
-            FREQUENCY_RATIO.convert(w)
-            in_range("alpha", alpha or ALPHA.upper, SMALLEST_ALPHA, ALPHA.upper, unit="rad")
+        low, high = q.SLENDERNESS.lower, q.FREQUENCY_RATIO.upper
+        if not (low < s < math.inf and q.FREQUENCY_RATIO.lower < w < high and not 0.0 < alpha < q.SMALLEST_ALPHA):
+            q.SLENDERNESS.convert(s)
+            q.FREQUENCY_RATIO.convert(w)
+            in_range("alpha", alpha or q.ALPHA.upper, q.SMALLEST_ALPHA, q.ALPHA.upper, unit="rad")
         return solve_checked(self.pulse, s, w, groups["restitution"], alpha, self.body, threads, stop)
 
     def solve_edges(self, threads: int | None = None, stop: StopFlag | None = None) -> tuple[NDArray[np.void], Array]:
@@ -350,7 +339,7 @@ def are_numbers(*arguments: Any) -> bool:
     return True
 
 
-def checked_restitution(restitution: Values, checked: Callable[..., Any] = RESTITUTION.convert) -> Any:
+def checked_restitution(restitution: Values, checked: Callable[..., Any] = q.RESTITUTION.convert) -> Any:
     """The coefficient of restitution: None for "momentum", else an array; or one number by `RESTITUTION.number`."""
     if isinstance(restitution, str) and restitution == "momentum":
         return None
@@ -375,7 +364,7 @@ def spread_restitution(body: AbstractBody, restitution: Any) -> Any:
 
 def restitution_of(block: AbstractBlock, restitution: Scalar) -> float:
     """The coefficient of restitution [-]: the number, or for "momentum" the value (2.4) of the geometry."""
-    eta = checked_restitution(spread_restitution(block, restitution), RESTITUTION.number)
+    eta = checked_restitution(spread_restitution(block, restitution), q.RESTITUTION.number)
     return float(block.inelastic_restitution if eta is None else eta)
 
 
@@ -389,9 +378,7 @@ def period_of(block: AbstractBlock, frequency_ratio: float) -> float:
     return float(2.0 * math.pi / frequency_ratio / block.frequency_parameter)
 
 
-def record_groups(
-    record: Record, block: AbstractBlock, scale: float | NDArray[np.float64], restitution: float
-) -> dict[str, Any]:
+def record_groups(record: Record, block: AbstractBlock, scale: float | Array, restitution: float) -> dict[str, Any]:
     """Keyword arguments of `record_response` for a block with the restitution eta under a record times `scale`, > 0."""
     return {
         "frequency_parameter": block.frequency_parameter,
@@ -412,7 +399,7 @@ def uplift_scale(record: Record, block: AbstractBlock) -> float:
         return float(block.uplift_acceleration / record.peak_acceleration)
     excess = np.abs(record.acceleration) / block.uplift_acceleration - record.vertical / block.gravity
     largest = float(excess.max())
-    return 1.0 / max(largest, 1.0 / HIGHEST_SCALE)
+    return 1.0 / max(largest, 1.0 / q.HIGHEST_SCALE)
 
 
 def search_range(record: Record, block: AbstractBlock, highest: float | None) -> tuple[float, float, bool]:
@@ -421,6 +408,6 @@ def search_range(record: Record, block: AbstractBlock, highest: float | None) ->
     And whether the latter is that at which the vertical acceleration reaches -g.
     """
     lowest = uplift_scale(record, block)
-    top = min(10.0 * lowest, HIGHEST_SCALE) if highest is None else highest
+    top = min(10.0 * lowest, q.HIGHEST_SCALE) if highest is None else highest
     limit = highest_vertical_scale(record, block.gravity)
     return lowest, min(top, limit), limit < top

@@ -14,8 +14,8 @@ from html import escape
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantities import FREQUENCY_RATIO
@@ -29,12 +29,7 @@ from rocking._excitation.records.record import Record
 from rocking._history.contact import ContactExtremes, contact_extremes
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody
-from rocking._model.fields import (
-    DERIVED_FIELDS,
-    OUTCOME,
-    OVERTURNED,
-    ResponseField,
-)
+from rocking._model.fields import DERIVED_FIELDS, OUTCOME, OVERTURNED, ResponseField
 from rocking._model.labelled import with_index
 from rocking._model.outcome import Outcome
 from rocking._model.response import Response, along_own_axes, axis_names
@@ -45,8 +40,6 @@ from rocking._solver.records.amplification import record_amplification
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 T = TypeVar("T")
 

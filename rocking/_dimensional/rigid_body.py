@@ -10,23 +10,12 @@ from pathlib import Path
 from typing import Any, Self, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+import rocking._base.quantities as q
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number, positive
-from rocking._base.quantities import (
-    GRAVITY,
-    GYRATION,
-    HEIGHT,
-    INCLINATION,
-    LEFT,
-    MASS_HEIGHT,
-    OFFSET,
-    REBOUND,
-    RIGHT,
-    TOP_HEIGHT,
-    WIDTH,
-)
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
@@ -34,10 +23,8 @@ from rocking._model.body import Edge, polygon_properties, rebound_of, rigid_edge
 from rocking._model.checks import check_quantities
 from rocking._model.labelled import in_unit, index_of, is_labelled
 
-Array = NDArray[np.float64]
-
 SIDES = "both", "left", "right"  # edges about which a body rocks
-_NO_LENGTHS = {one.name for one in (GRAVITY, INCLINATION, REBOUND)}
+_NO_LENGTHS = {one.name for one in (q.GRAVITY, q.INCLINATION, q.REBOUND)}
 
 
 @final
@@ -108,14 +95,14 @@ class RigidBody(RespondingBody):
             raise InvalidArgumentError("rebound", rebound, 'nothing beside sides="both": impacts have a restitution')
         checked, labels, index = check_quantities(
             {
-                LEFT: left,
-                RIGHT: right,
-                HEIGHT: height,
-                GYRATION: gyration,
-                TOP_HEIGHT: top_height,
-                GRAVITY: gravity,
-                INCLINATION: inclination,
-                REBOUND: rebound,
+                q.LEFT: left,
+                q.RIGHT: right,
+                q.HEIGHT: height,
+                q.GYRATION: gyration,
+                q.TOP_HEIGHT: top_height,
+                q.GRAVITY: gravity,
+                q.INCLINATION: inclination,
+                q.REBOUND: rebound,
             }
         )
         vars(self).update(_given=checked, labels=labels, index=index, sides=sides)  # it is frozen
@@ -309,7 +296,7 @@ class RigidBody(RespondingBody):
         >>> RigidBody.from_size("40 cm", "160 cm", offset="5 cm")
         <rocking.RigidBody: body on edges 0.25 m left and 0.15 m right of its mass at 0.8 m>
         """
-        lengths = {WIDTH: width, HEIGHT: height, OFFSET: offset, MASS_HEIGHT: mass_height}
+        lengths = {q.WIDTH: width, q.HEIGHT: height, q.OFFSET: offset, q.MASS_HEIGHT: mass_height}
         checked, labels, _ = check_quantities(lengths)
         given: dict[str, Any] = checked | labels
         w, h, e = given["width"], given["height"], given["offset"]
@@ -355,12 +342,7 @@ class RigidBody(RespondingBody):
 
     @classmethod
     def from_mesh(
-        cls,
-        path: str | Path,
-        direction: Scalar = 0.0,
-        *,
-        unit: str = "m",
-        gravity: Scalar = STANDARD_GRAVITY,
+        cls, path: str | Path, direction: Scalar = 0.0, *, unit: str = "m", gravity: Scalar = STANDARD_GRAVITY
     ) -> Self:
         """A body of uniform density from a surface mesh, which stands on its lowest points; z is upwards.
 
@@ -414,8 +396,8 @@ def body_of_size(
     Arguments and errors are those of `RigidBody.from_size`.
     """
     if mass_height is not None:
-        mass_height = number("mass_height", mass_height, 0.0, HEIGHT.number(height), closed="right", unit="m")
-    elif gyration is None and not OFFSET.number(offset):
+        mass_height = number("mass_height", mass_height, 0.0, q.HEIGHT.number(height), closed="right", unit="m")
+    elif gyration is None and not q.OFFSET.number(offset):
         return Block(width, height, gravity)
     return RigidBody.from_size(
         width, height, offset=offset, mass_height=mass_height, gyration=gyration, gravity=gravity

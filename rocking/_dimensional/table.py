@@ -84,9 +84,7 @@ def read_blocks(
 
 
 def _schema(
-    pulse: str | AbstractPulse,
-    given: dict[str, float | str],
-    limited: Callable[[Quantity], Quantity] = lambda one: one,
+    pulse: str | AbstractPulse, given: dict[str, float | str], limited: Callable[[Quantity], Quantity] = lambda one: one
 ) -> Schema[Problem]:
     """A table of bodies under a pulse; `given` fills empty cells."""
     shapes = columns_beside(COLUMNS)

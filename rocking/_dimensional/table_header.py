@@ -9,14 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
-from rocking._base.cells import (
-    name_and_unit,
-    named,
-    plain_name,
-    rank,
-    read_header,
-    stated_unit,
-)
+from rocking._base.cells import name_and_unit, named, plain_name, rank, read_header, stated_unit
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name

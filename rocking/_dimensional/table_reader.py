@@ -19,13 +19,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking._base.cells import (
-    decimal_sign,
-    name_and_unit,
-    plain_name,
-    read_cell,
-    split_number,
-)
+from rocking._base.cells import decimal_sign, name_and_unit, plain_name, read_cell, split_number
 from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array, Flags
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, number
 from rocking._base.quantities import HIGHEST_SCALE
@@ -18,13 +19,7 @@ from rocking._base.units import Scalar
 from rocking._boundary.amplitude import amplitude_changes, thresholds
 from rocking._boundary.scan import RESOLUTION, Lines, checked_resolution, lowest_overturning, outcome_changes
 from rocking._dimensional.lowest_thresholds import record_lines, record_range
-from rocking._dimensional.problem import (
-    Problem,
-    record_groups,
-    restitution_of,
-    search_range,
-    uplift_scale,
-)
+from rocking._dimensional.problem import Problem, record_groups, restitution_of, search_range, uplift_scale
 from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
@@ -37,9 +32,6 @@ from rocking._solver.records.samples import motion_samples
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 HIGHEST = 100.0, 10.0  # largest strength searched over that of uplift [-]: of pulses, and of records
 BEYOND = 10.0, 2.0  # that for a block over its own strength [-], where it is larger

@@ -5,16 +5,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array, Flags
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 from rocking._solver.records.record_response import record_response
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 SEED = 0  # of the order in which tests are divided into folds, and of the resamples
 RESAMPLES = 400  # resamples of the tests for the intervals [-]

@@ -30,20 +30,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.special import ellipj, ellipkinc
 from scipy.stats import f as f_distribution
 from scipy.stats import t as student
 
+from rocking._base.arrays import Array, Flags, Index
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
 from rocking._base.units import Scalar
 from rocking._model.labelled import variable
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag  # numba takes longer to load than the fit
-
-Array = NDArray[np.float64]
 
 MAX_ROTATION = 0.8  # largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees
 
@@ -176,7 +175,7 @@ class _Found(NamedTuple):
 
     t: Array
     theta: Array
-    used: NDArray[np.bool_]
+    used: Flags
     model: Array
     impacts: Array
     fit: OptimizeResult
@@ -268,7 +267,7 @@ def _rest(theta: Array) -> tuple[float, float, bool]:
     return float(np.median(end) if rests else 0.5 * (half.max() + half.min())), noise, rests
 
 
-def _flights(t: Array, theta: Array, noise: float) -> tuple[list[NDArray[np.intp]], Array]:
+def _flights(t: Array, theta: Array, noise: float) -> tuple[list[Index], Array]:
     """Samples of each flight that stands out, in order, and the times of the impacts between them.
 
     An impact lies between the roots of the parabolas of two flights. The first flight, which may begin in a hand, is no

@@ -13,8 +13,8 @@ from functools import partial
 
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._excitation.stationary import sign_changes
 
@@ -34,7 +34,6 @@ _POINTS = np.concatenate([_NODES, chebyshev.chebpts2(2 * DEGREE + 5)])  # points
 _SPECTRUM = chebyshev.chebvander(_NODES, _NODES.size - 1).T * (2.0 / _NODES.size)
 _SPECTRUM[0] *= 0.5  # from values at the nodes to coefficients of the Chebyshev series
 
-Array = NDArray[np.float64]
 Curve = Callable[[Array], Array]
 
 

@@ -132,28 +132,14 @@ def mavroeidis_papageorgiou(
     """
     cycles, phase = CYCLES.number(cycles), PHASE.number(phase)
     shift = phase + math.pi / 2  # -sin x = cos(x + pi/2)
-    raw = (
-        (cycles, 1.0, shift),
-        ((cycles + 1) / 2, 1 + 1 / cycles, shift),
-        ((cycles - 1) / 2, 1 - 1 / cycles, shift),
-    )
+    raw = ((cycles, 1.0, shift), ((cycles + 1) / 2, 1 + 1 / cycles, shift), ((cycles - 1) / 2, 1 - 1 / cycles, shift))
     end = math.pi * cycles
     return SinusoidalPulse.of_unit_peak("mavroeidis_papageorgiou", -end, end, raw)
 
 
 _KINDS: dict[str, Kind[AbstractPulse]] = {
     make.__name__: Kind(make)
-    for make in (
-        sine,
-        cosine,
-        half_sine,
-        rectangular,
-        c1,
-        c2,
-        ricker,
-        ricker_antisymmetric,
-        mavroeidis_papageorgiou,
-    )
+    for make in (sine, cosine, half_sine, rectangular, c1, c2, ricker, ricker_antisymmetric, mavroeidis_papageorgiou)
 }
 
 PULSE_NAMES: tuple[str, ...] = tuple(_KINDS)

@@ -9,8 +9,9 @@ from os import PathLike
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, number, positive
 from rocking._excitation.pulse_file import read_pulse_file
 from rocking._excitation.series import ExcitationSeries, Family
@@ -67,8 +68,8 @@ class SampledPulse(AbstractPulse):
     1.0
     """
 
-    phases: NDArray[np.float64]
-    values: NDArray[np.float64]
+    phases: Array
+    values: Array
 
     def __init__(
         self, acceleration: ArrayLike, time: ArrayLike | None = None, period: float | None = None, name: str = "sampled"
@@ -156,7 +157,7 @@ class SampledPulse(AbstractPulse):
         periods = self.end / (2.0 * math.pi)
         return f"<rocking.SampledPulse {self.name}: {self.values.size} samples, {periods:.4g} periods>"
 
-    def shape(self, phi: ArrayLike) -> NDArray[np.float64]:
+    def shape(self, phi: ArrayLike) -> Array:
         """f(phi) [-] on the window, constant outside; `phi` [rad], any shape."""
         return np.asarray(np.interp(np.asarray(phi, dtype=np.float64), self.phases, self.values))
 
@@ -165,7 +166,7 @@ class SampledPulse(AbstractPulse):
         return SampledPulse(-self.values, self.phases, 2.0 * math.pi, opposite)
 
     @cached_property
-    def samples(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def samples(self) -> tuple[Array, Array]:
         return self.phases, self.values
 
     @property

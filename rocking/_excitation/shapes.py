@@ -13,8 +13,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, float_array, in_range, number
 from rocking._excitation.series import ExcitationSeries
 
@@ -24,8 +25,6 @@ MAX_MAGNITUDE = 1e6
 """Largest phase [rad], coefficient and frequency [-] of a pulse: beyond it the phase has fewer than six digits."""
 
 PEAK_TOLERANCE = 1e-12  # largest difference of max |f| from 1 [-]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ class AbstractPulse(ABC):
     def _stationary_phases(self, start: float, end: float) -> tuple[float, ...]:
         """The phases strictly inside the window at which f' changes its sign [rad]."""
 
-    def acceleration(self, phi: ArrayLike) -> NDArray[np.float64]:
+    def acceleration(self, phi: ArrayLike) -> Array:
         """f(phi) [-], zero outside the window; `phi` [rad], any shape."""
         phi = float_array("phi", phi, unit="rad")
         return np.where((phi >= self.start) & (phi <= self.end), self.shape(np.clip(phi, self.start, self.end)), 0.0)

@@ -7,16 +7,15 @@ from functools import cached_property, partial
 from typing import ClassVar, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, float_array, in_range
 from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import MAX_MAGNITUDE, AbstractPulse, checked_window, mirrored_name, peak_amplitude
 from rocking._excitation.stationary import sign_changes
 
 MAX_SINUSOIDS = 8  # most terms of a sum of sinusoids
-
-Array = NDArray[np.float64]
 
 Terms = tuple[tuple[float, float, float], ...]  # sinusoids c cos(w phi + d): c [-], w [-], d [rad]
 

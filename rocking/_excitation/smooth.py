@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from typing import ClassVar, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._excitation.polynomials import Polynomials, fit_polynomials
 from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import MAX_PIECES, AbstractPulse, mirrored_name, peak_amplitude
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
 
 HALVINGS = 26
@@ -13,7 +13,6 @@ HALVINGS = 26
 MAX_INTERVALS = 65536  # largest number of intervals searched at once
 BISECTIONS = 80  # halvings of a bracket around one zero, down to two adjacent doubles
 
-Array = NDArray[np.float64]
 Slope = Callable[[Array], tuple[Array, Array]]  # from phases (n,) the function and its derivative
 
 

@@ -8,8 +8,9 @@ from functools import cached_property
 from typing import ClassVar, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import AbstractPulse, checked_number, checked_numbers, mirrored_name
@@ -17,8 +18,6 @@ from rocking._excitation.stationary import sign_changes
 
 MAX_POLYNOMIAL = 4  # most coefficients of a wavelet's polynomial
 MAX_DECAY = 1.25  # largest sqrt(spread)/(2 omega) [-] at which the arcs under a wavelet are accurate to rounding
-
-Array = NDArray[np.float64]
 
 
 @final

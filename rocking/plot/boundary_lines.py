@@ -9,20 +9,18 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._model.outcome import Outcome
 
-MAIN_IMPACTS = 1
-"""Boundaries of overturning after at most so many impacts are drawn with the full line width [-]."""
-
-DETAIL_WIDTH = 0.4
-"""Line width of the boundaries of overturning after more impacts, as a share of the full width [-]."""
+MAIN_IMPACTS = 1  # boundaries of overturning after at most so many impacts are drawn with the full line width [-]
+DETAIL_WIDTH = 0.4  # line width of the boundaries of overturning after more impacts, as a share of the full width [-]
 
 
 class Lines(NamedTuple):
     """Polylines one after the other, each followed by nan; arrays of the same shape."""
 
-    amplitude: NDArray[np.float64]  # a = a_g/(g tan alpha) [-]
-    frequency_ratio: NDArray[np.float64]  # omega [-]
+    amplitude: Array  # a = a_g/(g tan alpha) [-]
+    frequency_ratio: Array  # omega [-]
     impacts: NDArray[np.int32]  # before overturning, -1 if not counted
 
     def at_level(self, *, detail: bool) -> Lines:
@@ -44,9 +42,7 @@ def outcome_lines(curves: xr.Dataset) -> Lines:
     )
 
 
-def draw_lines(
-    ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64], lines: Lines, *, linewidth: float, **style: Any
-) -> None:
+def draw_lines(ax: Axes, x: Array, y: Array, lines: Lines, *, linewidth: float, **style: Any) -> None:
     """Draw polylines, those of overturning after several impacts thinner; `x` and `y` are made of `lines`."""
     for detail, width in ((False, linewidth), (True, DETAIL_WIDTH * linewidth)):
         shown = np.isfinite(lines.at_level(detail=detail).amplitude)

@@ -18,8 +18,7 @@ FORMATS = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
 """Endings of files, and the metadata that are left out, so that equal pictures are equal files."""
 
 
-POSITION_DIGITS = 9
-"""Digits of the positions of axes, as fractions of the size of the figure."""
+POSITION_DIGITS = 9  # digits of the positions of axes, as fractions of the size of the figure
 
 
 def style() -> AbstractContextManager[None]:

@@ -11,8 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-WIDTH = 6.7
-"""Width of a figure in print [in]."""
+WIDTH = 6.7  # width of a figure in print [in]
 
 BLACK, BLUE, VERMILION = "#000000", "#0072B2", "#D55E00"
 """Colours of Okabe and Ito (2008), distinct to colour-blind readers."""

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
@@ -77,7 +78,7 @@ def mirrored(record: Record) -> Record:
     return Record(-record.acceleration, record.time_step, "m/s2", name, record.source, record.remarks, record.vertical)
 
 
-def _properties(body: RigidBody, eta: NDArray[np.float64] | None) -> dict[str, tuple[NDArray[Any], str, str]]:
+def _properties(body: RigidBody, eta: Array | None) -> dict[str, tuple[NDArray[Any], str, str]]:
     """Coordinates of the bodies: values (bodies,), unit and meaning."""
     found: dict[str, tuple[Any, str, str]] = {
         "width": (body.width, "m", "distance of the edges"),

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._base.quantities import RESTITUTION
@@ -30,8 +30,6 @@ from rocking.suites.intensity import MEASURES
 
 if TYPE_CHECKING:  # it needs numba, which the rules of a workflow do not
     from rocking._dimensional.rigid_body import RigidBody
-
-Array = NDArray[np.float64]
 
 DEFAULTS: dict[str, Any] = {
     "restitution": "momentum",
@@ -81,13 +79,9 @@ class RecordFiles:
         motion = parse_record(  # read_record would take a file of the name `vertical` in the working directory
             read_content("path", path),
             path.name,
-            unit=self.unit,
-            time_step=self.time_step,
-            component=self.component,
-            vertical=self.vertical,
-            skip=self.skip,
+            **{name: getattr(self, name) for name in STATED_BY_FILES if name != "baseline_order"},
         )
-        corrected = motion if self.baseline_order is None else motion.baseline_corrected(order=self.baseline_order)
+        corrected = motion.baseline_corrected(order=self.baseline_order)
         about = path.stem, corrected.source, corrected.remarks
         return Record(corrected.acceleration, corrected.time_step, "m/s2", *about, vertical=corrected.vertical)
 

@@ -14,10 +14,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import expit, log_expit, log_ndtr, ndtr
 
-Array = NDArray[np.float64]
+from rocking._base.arrays import Array
 
 
 @dataclass(frozen=True)

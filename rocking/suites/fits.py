@@ -31,9 +31,8 @@ from scipy.optimize import minimize
 from scipy.stats import beta, chi2
 from scipy.stats import t as student
 
+from rocking._base.arrays import Array, Flags
 from rocking.suites.curve import LINKS, Link, curve_probability
-
-Array = NDArray[np.float64]
 
 LARGEST_SLOPE = 1e8  # b at which a fit counts as a step [-]; it is reached only by data that are separated to rounding
 
@@ -93,9 +92,7 @@ def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple
     return low, high
 
 
-def counted(
-    reached: NDArray[np.bool_], confidence: float, event: str, signs: int = 1
-) -> dict[str, tuple[NDArray[Any], str]]:
+def counted(reached: Flags, confidence: float, event: str, signs: int = 1) -> dict[str, tuple[NDArray[Any], str]]:
     """Number and fraction of the motions, the last axis, that do something, with interval; each with its meaning.
 
     `signs` consecutive motions are one record and count as one independent trial of the interval.
@@ -189,7 +186,7 @@ def _flat_loss(fractions: Array) -> float:
 
 def _described(
     link: Link,
-    outcomes: NDArray[np.bool_],
+    outcomes: Flags,
     x: Array,
     direction: float,
     parameters: tuple[float, float],
@@ -280,7 +277,7 @@ def _log_likelihood(fractions: Array, probabilities: Array, trials: int) -> floa
 
 
 def _free_interval(
-    outcomes: NDArray[np.bool_], intensity: Array, confidence: float, falling: bool, signs: int
+    outcomes: Flags, intensity: Array, confidence: float, falling: bool, signs: int
 ) -> tuple[float, float]:
     """Distribution-free interval of the median, from the binomial intervals of the levels."""
     low, high = binomial_interval(outcomes.sum(axis=1) / signs, outcomes.shape[1] // signs, confidence)

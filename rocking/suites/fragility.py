@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array, Flags
 from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._dimensional.rigid_body import RigidBody
@@ -27,8 +28,6 @@ from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import CurveFit, FitStatus, counted, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
-
-Array = NDArray[np.float64]
 
 COMPARISON = "for comparison: a record counts at and above the lowest level at which it reaches the limit state"
 
@@ -209,7 +208,7 @@ _STATUS_ATTRIBUTES: dict[str, Any] = {
 }
 
 
-def _reached(outcomes: xr.Dataset, limit: str | float) -> NDArray[np.bool_]:
+def _reached(outcomes: xr.Dataset, limit: str | float) -> Flags:
     """Whether each record reaches a limit state, (block, intensity, record)."""
     overturned = outcomes["overturned"].values.astype(bool)
     if limit == "overturning":
@@ -220,9 +219,7 @@ def _reached(outcomes: xr.Dataset, limit: str | float) -> NDArray[np.bool_]:
         return overturned | (outcomes["peak_rotation"].values > limit)
 
 
-def _fits(
-    reached: NDArray[np.bool_], levels: Array, confidence: float, falling: bool, signs: int
-) -> list[list[list[CurveFit]]]:
+def _fits(reached: Flags, levels: Array, confidence: float, falling: bool, signs: int) -> list[list[list[CurveFit]]]:
     options: dict[str, Any] = {"confidence": confidence, "falling": falling, "signs": signs}
     return [[[fit_curve(own, levels, model=model, **options) for model in LINKS] for own in block] for block in reached]
 

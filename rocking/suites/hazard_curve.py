@@ -4,11 +4,10 @@ Separate from `hazard`, so that a configuration is checked without the imports o
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range
-
-Array = NDArray[np.float64]
 
 RANGE = 1e-30, 1e30
 """Smallest and largest intensity and rate: the number of nodes between two points grows with their ratio."""

@@ -21,13 +21,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, UnreadableFileError, in_range, positive
 from rocking.suites.hazard_curve import check_hazard_curve
-
-Array = NDArray[np.float64]
 
 TYPES = {"PGA": ("pga", "m s-2", STANDARD_GRAVITY), "PGV": ("pgv", "m s-1", 0.01)}
 """Measure of this package, its unit, and the unit of the files in it, by the type of measure in the files."""

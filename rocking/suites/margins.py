@@ -2,8 +2,8 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Flags
 from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.scan import RESOLUTION, lowest_overturning
 from rocking._dimensional.problem import uplift_scale
@@ -40,7 +40,7 @@ def with_margins(
 
 
 def _mildest(
-    suite: Suite, number: int, record: Record, overturned: NDArray[np.bool_], threads: int | None, stop: StopFlag | None
+    suite: Suite, number: int, record: Record, overturned: Flags, threads: int | None, stop: StopFlag | None
 ) -> float:
     """The mildest intensity at which a record overturns the block of that number, which does so at `overturned` levels.
 

@@ -15,10 +15,9 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import IO, Literal
 
-import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array, Flags
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking.suites.curve import curve_probability
@@ -112,7 +111,7 @@ def checked_measure(fragility: xr.Dataset, known: Mapping[str, object]) -> str:
     return measure
 
 
-def reached_states(fragility: xr.Dataset) -> tuple[NDArray[np.float64], dict[str, NDArray[np.bool_]]]:
+def reached_states(fragility: xr.Dataset) -> tuple[Array, dict[str, Flags]]:
     """The levels, and by limit state whether it is reached, (blocks, levels, records)."""
     data = with_block(fragility)
     levels = data["intensity"].values
@@ -125,9 +124,7 @@ def reached_states(fragility: xr.Dataset) -> tuple[NDArray[np.float64], dict[str
     )
 
 
-def lognormal_of(
-    reached: NDArray[np.bool_], levels: NDArray[np.float64], what: str, argument: tuple[str, object, str]
-) -> tuple[float, float]:
+def lognormal_of(reached: Flags, levels: Array, what: str, argument: tuple[str, object, str]) -> tuple[float, float]:
     """Median and dispersion of the lognormal fit to (levels, records); without a fit, an error of `argument`."""
     fit = fit_curve(reached, levels, model="lognormal")
     if fit.status not in (FitStatus.FITTED, FitStatus.SEPARATED):
@@ -136,5 +133,5 @@ def lognormal_of(
     return fit.median, max(fit.dispersion, STEP_DISPERSION)
 
 
-def _numbers(values: NDArray[np.float64]) -> str:
+def _numbers(values: Array) -> str:
     return " ".join(f"{value:.9g}" for value in values)

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range
 from rocking._base.units import Scalar
@@ -25,8 +26,6 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.amplification import record_amplification as record_amplification  # noqa: PLC0414  # public
 from rocking._solver.records.record_response import record_response
 from rocking.suites.intensity import Measure, measure_of
-
-Array = NDArray[np.float64]
 
 FIELDS = (PEAK_ROTATION, OVERTURNED, EXCEEDED_ALPHA, OUTCOME, IMPACTS)
 """Fields of the response that are kept for every record, level and block."""

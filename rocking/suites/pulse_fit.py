@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array, one_of
 from rocking._base.quantities import HIGHEST_SCALE
@@ -32,8 +33,6 @@ from rocking.suites.velocity_pulses import FAMILIES, VelocityPulse, fit_velocity
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 COMPARED_ALPHA = 0.2  # slenderness angle of the blocks of the comparison [rad]: five times as high as wide
 COMPARED_HALF_DIAGONALS = (1.0, 4.0, 16.0)  # their half diagonals R [m]

@@ -13,8 +13,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
@@ -36,8 +37,6 @@ from rocking.suites.outcomes import (
     slenderness_of,
     vertical_scale_of,
 )
-
-Array = NDArray[np.float64]
 
 RESTITUTION_STEP = 0.05  # change of the coefficient of restitution by default [-]
 REFINEMENT = 2  # samples into which one is divided by band-limited interpolation

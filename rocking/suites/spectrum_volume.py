@@ -2,8 +2,8 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.quantities import RESTITUTION
@@ -11,8 +11,6 @@ from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 from rocking._model.labelled import variable
 from rocking._solver.records.record_response import record_response
-
-Array = NDArray[np.float64]
 
 
 def spectrum_volume(

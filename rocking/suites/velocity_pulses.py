@@ -26,16 +26,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.optimize import least_squares
 
+from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, float_array
 from rocking._excitation import pulses
 from rocking._excitation.pulses import AbstractPulse, SinusoidalPulse
-
-Array = NDArray[np.float64]
 
 MAX_CYCLES = 10.0  # largest gamma of a fit [-]. Pulses of the cited study have 1 to 3
 MIN_CYCLES = 1.0 + 1e-6  # smallest gamma of a fit [-]; at 1 a term of the acceleration vanishes

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from rocking._base.arrays import Array, Flags
 from rocking._base.errors import OutsideCubeError
 from rocking._excitation.pulses import as_pulse
 from rocking._lookup.collection import CubeCollection
@@ -24,8 +25,7 @@ from rocking._numba.compilation import contiguous_array
 from rocking._solver.bounded_response import BoundedResponse, solve_checked
 from rocking_api.models.params import GROUPS, LookupOptions
 
-CHUNK_SIZE = 50_000
-"""Points between two checks of the stop flag [-]: some hundredths of a second."""
+CHUNK_SIZE = 50_000  # points between two checks of the stop flag [-]: some hundredths of a second
 
 FIELDS: dict[str, DTypeLike] = {
     field.name: field.dtype for field in (*BOUNDED_FIELDS, *DERIVED_FIELDS) if field is not FROM_CUBE
@@ -41,14 +41,14 @@ class BatchResult:
     """Responses of many points: arrays (points,) of `FIELDS`, whether from a data set, sha256 of each data set used."""
 
     fields: dict[str, NDArray[Any]]
-    from_cube: NDArray[np.bool_]
+    from_cube: Flags
     versions: tuple[str, ...]
 
 
 def evaluate(
     cubes: CubeCollection,
     options: LookupOptions,
-    groups: Iterable[NDArray[np.float64]],
+    groups: Iterable[Array],
     stop: StopFlag | None = None,
     *,
     may_read: bool = True,
@@ -72,7 +72,7 @@ def evaluate(
 
 
 def evaluate_many(
-    cubes: CubeCollection, options: LookupOptions, groups: Mapping[str, NDArray[np.float64]], stop: StopFlag
+    cubes: CubeCollection, options: LookupOptions, groups: Mapping[str, Array], stop: StopFlag
 ) -> BatchResult:
     """Responses of the points of three arrays of one length; as `evaluate`."""
     points = groups["slenderness"].size

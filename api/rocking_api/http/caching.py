@@ -6,14 +6,9 @@ import hashlib
 
 from fastapi import Request, Response
 
-SHORT = "max-age=60"
-"""For responses that change only with the data sets or the service."""
-
-IMMUTABLE = "public, max-age=31536000, immutable"
-"""Under a URL that names the sha256 of its content."""
-
-REVALIDATE = "no-cache"
-"""May be stored, but must be revalidated."""
+SHORT = "max-age=60"  # for responses that change only with the data sets or the service
+IMMUTABLE = "public, max-age=31536000, immutable"  # under a URL that names the sha256 of its content
+REVALIDATE = "no-cache"  # may be stored, but must be revalidated
 
 
 def validators(sha256: str, control: str = REVALIDATE) -> dict[str, str]:

@@ -17,6 +17,7 @@ from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
+from rocking._base.arrays import Array
 from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking._datasets.cube import MODEL_RESULT, VARIABLES
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
@@ -33,9 +34,7 @@ MEDIA_TYPES: dict[Form, str] = {
     "nrml": "application/xml",
 }
 
-CONTENT: dict[int | str, dict[str, Any]] = {
-    200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}},
-}
+CONTENT: dict[int | str, dict[str, Any]] = {200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}}}
 """For the OpenAPI description: the other formats of a response."""
 
 
@@ -43,9 +42,7 @@ Column = Callable[[slice], list[Any]]
 """The values of a column at some points, of which no list is made before they are sent."""
 
 
-ROWS = 5_000
-"""Points of a batch that are written and sent at once [-]: up to half a megabyte, some milliseconds."""
-
+ROWS = 5_000  # points of a batch that are written and sent at once [-]: up to half a megabyte, some milliseconds
 _WEIGHT = re.compile(r"0(\.[0-9]{0,3})?|1(\.0{0,3})?")  # RFC 9110, 12.4.2; another is ignored
 
 
@@ -161,9 +158,7 @@ def solved_variable(name: str, dimensions: Any, values: NDArray[Any]) -> tuple[A
     return dimensions, values.astype(dtype, copy=False), MODEL_RESULT | kept
 
 
-def dataset_of(
-    groups: Mapping[str, NDArray[np.float64]], result: BatchResult, attributes: Mapping[str, Any]
-) -> xr.Dataset:
+def dataset_of(groups: Mapping[str, Array], result: BatchResult, attributes: Mapping[str, Any]) -> xr.Dataset:
     """Groups and results over one dimension `point`, with the attributes of the data sets."""
     variables: dict[str, Any] = {name: ("point", values, {"units": "1"}) for name, values in groups.items()}
     variables |= {name: solved_variable(name, "point", result.fields[name]) for name in FIELDS if name in VARIABLES}

@@ -64,8 +64,7 @@ class Kind:
         return f"{PROBLEMS}#{self.name}"
 
 
-PROBLEMS = "/problems"
-"""The page that explains the kinds of errors."""
+PROBLEMS = "/problems"  # the page that explains the kinds of errors
 
 KINDS: dict[type[Exception], Kind] = {
     InvalidArgumentError: Kind(  # OutsideCubeError is one
@@ -98,8 +97,7 @@ OTHERS = (
 )
 """Those without an exception, by their status codes."""
 
-NOSNIFF = (b"x-content-type-options", b"nosniff")
-"""Of every response: no content sniffing by browsers."""
+NOSNIFF = (b"x-content-type-options", b"nosniff")  # of every response: no content sniffing by browsers
 
 HEADERS: dict[type[Exception], dict[str, str]] = {
     BusyError: {"Retry-After": "2"},
@@ -108,14 +106,9 @@ HEADERS: dict[type[Exception], dict[str, str]] = {
 }
 """Additional headers."""
 
-MAX_TEXT = 400
-"""Characters of a value that an error repeats."""
-
-MAX_NUMBER = sys.float_info.max
-"""Largest number that an error repeats; larger integers become text."""
-
-MAX_ERRORS = 20
-"""Parameters that an error names at most."""
+MAX_TEXT = 400  # characters of a value that an error repeats
+MAX_NUMBER = sys.float_info.max  # largest number that an error repeats; larger integers become text
+MAX_ERRORS = 20  # parameters that an error names at most
 
 
 class InvalidParameter(BaseModel):

@@ -19,8 +19,7 @@ REF = "#/components/schemas/"
 
 _CONSTRAINTS = {"enum", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum", "pattern"}
 
-_KEPT = {"description", "default", "examples"}
-"""What a place says of a shared schema."""
+_KEPT = {"description", "default", "examples"}  # what a place says of a shared schema
 
 CONTENT: dict[str, Schema] = {
     "application/json": {},

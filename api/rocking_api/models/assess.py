@@ -136,8 +136,7 @@ class SuiteRecordBody(BaseModel):
         name = self.name or f"record {number}"
 
         def record(samples: list[float], vertical: list[float] | None = None) -> Record:
-            found = Record(samples, self.time_step, self.unit, name, vertical=vertical)
-            return found if order is None else found.baseline_corrected(order=order)
+            return Record(samples, self.time_step, self.unit, name, vertical=vertical).baseline_corrected(order=order)
 
         first = record(self.acceleration, self.vertical)
         return first if self.second is None else (first, record(self.second))

@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models.params import GROUPS, LookupOptions
 
-Columns = Mapping[str, NDArray[np.float64]]
+Columns = Mapping[str, Array]
 
 CHUNK_LINES = 10_000  # lines of CSV that are parsed at once: 5 ms, for which numpy holds the interpreter lock
 MAX_LINE = 1000  # characters of a line of CSV
@@ -29,7 +29,7 @@ class Batch:
     """Points to evaluate, arrays of shape (points,), and the options."""
 
     options: LookupOptions
-    groups: dict[str, NDArray[np.float64]]
+    groups: dict[str, Array]
 
     @property
     def points(self) -> int:
@@ -66,7 +66,7 @@ def batch_of(options: LookupOptions, columns: Columns, given: Mapping[str, Any],
 def parse_csv(body: bytes, max_points: int, stop: StopFlag) -> Columns:
     """The columns of a CSV body with a header line; by line, as the whole text would take five times its memory."""
     lines = _lines(io.TextIOWrapper(io.BytesIO(body), encoding="utf-8-sig", newline="\n"))
-    tables: list[NDArray[np.float64]] = []
+    tables: list[Array] = []
     first, points = 2, 0
     try:
         names = _group_names(name.strip() for name in next(lines, "").split(","))

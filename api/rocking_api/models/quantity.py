@@ -179,8 +179,7 @@ Unit: Any = Annotated[
 ]
 TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], required if the file states none")]
 Skip = Annotated[
-    int | None,
-    between(0, MAX_SKIP, "rows of numbers to skip above the samples, such as a count or a factor [-]"),
+    int | None, between(0, MAX_SKIP, "rows of numbers to skip above the samples, such as a count or a factor [-]")
 ]
 BaselineOrder = Annotated[
     int | None,
@@ -199,8 +198,7 @@ Method = Annotated[
     Field(description="auto: the data set where it meets the tolerance, else the solver; cube, solver: only this one"),
 ]
 AbsoluteTolerance = Annotated[
-    float,
-    Field(description="largest absolute error of an interpolated peak_rotation [-]", ge=0, allow_inf_nan=False),
+    float, Field(description="largest absolute error of an interpolated peak_rotation [-]", ge=0, allow_inf_nan=False)
 ]
 Format = _format("json", "csv", "nc", default="JSON")
 BodyFormat = _format("json", "csv", "nc", default="that of the body")

@@ -11,6 +11,7 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import BaseModel, Field
 
+from rocking._base.arrays import Array
 from rocking._base.errors import finite
 from rocking._boundary.amplitude import thresholds
 from rocking._datasets.cube import AXES
@@ -22,17 +23,7 @@ from rocking._model.response import Response as Found
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
 from rocking_api.execution.evaluation import evaluate_many
-from rocking_api.http.encoding import (
-    CONTENT,
-    columns_as_they_are,
-    csv_response,
-    csv_stream,
-    dataset_of,
-    json_response,
-    negotiated_form,
-    netcdf_response,
-    solved_variable,
-)
+from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import Echoed, Solved
@@ -45,15 +36,21 @@ from rocking_api.service import Service, ServiceDep
 router = APIRouter(prefix="/v1", route_class=ParamsRoute)
 
 
-@pair(router, "/spectrum", "Peak rotation against frequency ratio", response_model=SpectrumResponse, responses=CONTENT)
+@pair(
+    router,
+    "/spectrum",
+    "Peak rotation against frequency ratio",
+    response_model=SpectrumResponse,
+    responses=encoding.CONTENT,
+)
 async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Blocks of one slenderness over a window of the frequency ratio."""
-    form = negotiated_form(request, params.format)
+    form = encoding.negotiated_form(request, params.format)
     ratio = _axis(service, params)
     return await service.run_heavy(lambda stop: _spectrum(service, params, request, ratio, form, stop), request)
 
 
-def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
+def _axis(service: Service, params: SpectrumParams) -> Array:
     """The frequency ratios of the curve, within the range of the service."""
     low, high = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
     if params.points > service.settings.max_samples:
@@ -62,12 +59,7 @@ def _axis(service: Service, params: SpectrumParams) -> NDArray[np.float64]:
 
 
 def _spectrum(
-    service: Service,
-    params: SpectrumParams,
-    request: Request,
-    frequency_ratio: NDArray[np.float64],
-    form: str,
-    stop: StopFlag,
+    service: Service, params: SpectrumParams, request: Request, frequency_ratio: Array, form: str, stop: StopFlag
 ) -> Response:
     shape = frequency_ratio.shape
     groups = {
@@ -78,12 +70,14 @@ def _spectrum(
     result = evaluate_many(service.cubes, params, groups, stop)
     if form == "nc":
         attributes = params.model_dump(exclude={"format"}, exclude_none=True)
-        return netcdf_response(dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum")
-    curve = columns_as_they_are({"frequency_ratio": frequency_ratio}) | columns_of(result)
+        return encoding.netcdf_response(
+            encoding.dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum"
+        )
+    curve = encoding.columns_as_they_are({"frequency_ratio": frequency_ratio}) | columns_of(result)
     if form == "csv":
-        return csv_stream(curve, frequency_ratio.size, "spectrum")
+        return encoding.csv_stream(curve, frequency_ratio.size, "spectrum")
     lists: dict[str, Any] = {name: column(slice(None)) for name, column in curve.items()}
-    return json_response(
+    return encoding.json_response(
         SpectrumResponse.model_construct(query=params, data_versions=list(result.versions), **lists), request
     )
 
@@ -92,7 +86,7 @@ SAMPLED = ("rotation", "angular_velocity", "edge", "ground_acceleration", "verti
 """Variables of motions that are sent where they are known."""
 
 
-@pair(router, "/history", "Motion of one block", response_model=HistoryResponse, responses=CONTENT)
+@pair(router, "/history", "Motion of one block", response_model=HistoryResponse, responses=encoding.CONTENT)
 async def get_history(params: Annotated[HistoryParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Rotation and angular velocity from the start of the pulse through free rocking, always computed by the solver.
 
@@ -100,7 +94,7 @@ async def get_history(params: Annotated[HistoryParams, Query()], request: Reques
     """
     if params.samples > service.settings.max_samples:
         raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
-    form = negotiated_form(request, params.format)
+    form = encoding.negotiated_form(request, params.format)
     return await service.run_heavy(lambda stop: _history(params, request, form, stop), request)
 
 
@@ -115,11 +109,11 @@ def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag)
         stop=stop,
     )
     if form == "nc":
-        return netcdf_response(motion, "history")
+        return encoding.netcdf_response(motion, "history")
     columns, reactions = motion_columns(motion, "tau")
     if form == "csv":
-        return csv_response(columns | reactions, "history")
-    return json_response(
+        return encoding.csv_response(columns | reactions, "history")
+    return encoding.json_response(
         HistoryResponse.model_construct(query=params, **motion_fields(motion, reactions), **columns), request
     )
 
@@ -197,12 +191,7 @@ async def get_thresholds(
 
 
 def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
-    found = thresholds(
-        params.pulse,
-        **params.groups,
-        highest=params.highest,
-        stop=stop,
-    )
+    found = thresholds(params.pulse, **params.groups, highest=params.highest, stop=stop)
     listed = [
         AmplitudeThreshold(
             amplitude=amplitude,
@@ -254,11 +243,11 @@ class MapResponse(Echoed[MapParams], Solved[MapParams]):
     "/map",
     "Outcome and peak rotation over a window of frequency ratio and slenderness",
     response_model=MapResponse,
-    responses=CONTENT,
+    responses=encoding.CONTENT,
 )
 async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
-    form = negotiated_form(request, params.format)
+    form = encoding.negotiated_form(request, params.format)
     axes = _axes(service, params)
     response = await service.run_heavy(lambda stop: _map(params, request, *axes, form, stop), request)
     if request.method == "GET":
@@ -267,12 +256,7 @@ async def get_map(params: Annotated[MapParams, Query()], request: Request, servi
 
 
 def _map(
-    params: MapParams,
-    request: Request,
-    frequency_ratio: NDArray[np.float64],
-    slenderness: NDArray[np.float64],
-    form: str,
-    stop: StopFlag,
+    params: MapParams, request: Request, frequency_ratio: Array, slenderness: Array, form: str, stop: StopFlag
 ) -> Response:
     found = peak_response(
         params.pulse,
@@ -283,15 +267,15 @@ def _map(
         stop=stop,
     )
     if form == "nc":
-        return netcdf_response(_dataset(params, frequency_ratio, slenderness, found), "map")
+        return encoding.netcdf_response(_dataset(params, frequency_ratio, slenderness, found), "map")
     if form == "csv":
         s, w = np.meshgrid(slenderness, frequency_ratio, indexing="ij")
         columns: dict[str, NDArray[Any]] = {"slenderness": s, "frequency_ratio": w}
         columns |= {"peak_rotation": found.peak_rotation, "overturned": found.overturned}
         columns |= {"outcome": np.array(OUTCOMES)[found.outcome], "impacts": found.impacts}
         columns |= {"exceeded_alpha": found.exceeded_alpha}
-        return csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
-    return json_response(
+        return encoding.csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
+    return encoding.json_response(
         MapResponse.model_construct(
             query=params,
             frequency_ratio=frequency_ratio.tolist(),
@@ -304,7 +288,7 @@ def _map(
     )
 
 
-def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _axes(service: Service, params: MapParams) -> tuple[Array, Array]:
     """The columns and the rows, within the ranges of the service."""
     left, right = check_window(FREQUENCY_RATIO, params.frequency_ratio_min, params.frequency_ratio_max)
     low, high = check_window(SLENDERNESS, params.slenderness_min, params.slenderness_max)
@@ -315,13 +299,11 @@ def _axes(service: Service, params: MapParams) -> tuple[NDArray[np.float64], NDA
     return np.geomspace(left, right, params.columns), np.linspace(low, high, params.rows)
 
 
-def _dataset(
-    params: MapParams, frequency_ratio: NDArray[np.float64], slenderness: NDArray[np.float64], found: Found
-) -> xr.Dataset:
+def _dataset(params: MapParams, frequency_ratio: Array, slenderness: Array, found: Found) -> xr.Dataset:
     """The map with the names, types and attributes of the data sets."""
     axes = ("slenderness", "frequency_ratio")
     names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")
-    variables: dict[str, Any] = {name: solved_variable(name, axes, getattr(found, name)) for name in names}
+    variables: dict[str, Any] = {name: encoding.solved_variable(name, axes, getattr(found, name)) for name in names}
     coordinates = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
     attributes = params.model_dump(exclude={"format"}, exclude_none=True)
     return xr.Dataset(

@@ -19,15 +19,8 @@ from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetErr
 from rocking._datasets.cube import DIMENSIONS
 from rocking_api.dataset_archive import archive
 from rocking_api.dataset_summaries import summarized
+from rocking_api.http import encoding
 from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
-from rocking_api.http.encoding import (
-    MEDIA_TYPES,
-    columns_as_they_are,
-    csv_stream,
-    json_response,
-    negotiated_form,
-    netcdf_response,
-)
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.files import file_response
 from rocking_api.http.parameters import ParamsRoute
@@ -60,7 +53,10 @@ class FileParams(Params):
 VARIABLES = "peak_rotation,outcome,impacts,exceeded_alpha"  # variables that are sent unless others are named
 
 FOUND: dict[int | str, dict[str, Any]] = {
-    200: {"content": {MEDIA_TYPES["nc"]: {}, MEDIA_TYPES["csv"]: {}}, "description": "the part of the cube"}
+    200: {
+        "content": {encoding.MEDIA_TYPES["nc"]: {}, encoding.MEDIA_TYPES["csv"]: {}},
+        "description": "the part of the cube",
+    }
 }
 
 
@@ -106,7 +102,7 @@ async def get_subset(
 ) -> Response:
     """Nodes of a cube within ranges of its axes: a netCDF-3 file, or one row of CSV for each node."""
     ranges = params.ranges()
-    form = negotiated_form(request, params.format, ("nc", "csv"))
+    form = encoding.negotiated_form(request, params.format, ("nc", "csv"))
     return await service.run_io(partial(_subset, service, name, params, ranges, form))
 
 
@@ -138,8 +134,8 @@ def _subset(
     if form == "nc":
         part = part.drop_vars("pulse").drop_encoding()
         part.attrs = {**part.attrs, "source_sha256": product.sha256}
-        return netcdf_response(part, "subset")
-    return csv_stream(columns_as_they_are(_columns(part, wanted)), points, "subset")
+        return encoding.netcdf_response(part, "subset")
+    return encoding.csv_stream(encoding.columns_as_they_are(_columns(part, wanted)), points, "subset")
 
 
 def _columns(part: xr.Dataset, wanted: list[str]) -> dict[str, NDArray[Any]]:
@@ -164,7 +160,7 @@ async def get_datasets(params: Annotated[ListParams, Query()], request: Request,
 
     summaries, cursor = await service.run_io(work)
     catalogue = DatasetCatalogue(query=params, datasets=summaries, pulses=_pulses(summaries), next_cursor=cursor)
-    return json_response(catalogue, request, {"Cache-Control": REVALIDATE})
+    return encoding.json_response(catalogue, request, {"Cache-Control": REVALIDATE})
 
 
 @router.get(
@@ -242,7 +238,7 @@ async def get_zarr(name: DatasetName, key: ZarrKey, request: Request, service: S
 async def get_dataset(name: DatasetName, request: Request, service: ServiceDep) -> Response:
     """Dimensions, variables and attributes of a data set, its size and its sha256."""
     description = await service.run_io(partial(_description, service, name))
-    return json_response(description, request, {"Cache-Control": REVALIDATE})
+    return encoding.json_response(description, request, {"Cache-Control": REVALIDATE})
 
 
 def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Request, Response
-from numpy.typing import NDArray
 from pydantic import Field
 
+from rocking._base.arrays import Array
 from rocking._base.errors import finite
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
@@ -127,9 +127,7 @@ async def post_identify(request: Request, service: ServiceDep) -> Response:
     return await service.run_heavy(lambda stop: _identified(params, request, time, rotation, form, stop), request)
 
 
-def _read(
-    params: IdentifyParams, body: Trace | bytes, stop: StopFlag
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[Array, Array]:
     """Times [s] and rotations [rad]."""
     if isinstance(body, Trace):
         return np.array(body.time), (math.pi / 180.0 if params.degrees else 1.0) * np.array(body.rotation)
@@ -138,12 +136,7 @@ def _read(
 
 
 def _identified(
-    params: IdentifyParams,
-    request: Request,
-    time: NDArray[np.float64],
-    rotation: NDArray[np.float64],
-    form: Form,
-    stop: StopFlag,
+    params: IdentifyParams, request: Request, time: Array, rotation: Array, form: Form, stop: StopFlag
 ) -> Response:
     # scipy.stats takes longer to import than the service to start
     from rocking._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415

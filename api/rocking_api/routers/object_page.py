@@ -10,12 +10,12 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse
-from numpy.typing import NDArray
 
 from rocking._assessment.directions import factors_by_direction
 from rocking._assessment.objects import Object, Plane
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
@@ -50,14 +50,7 @@ LENGTHS = {
 
 UNITS_SHOWN = ("cm", "m", "mm", "ft", "in")
 
-SITE = {
-    "pga": "0.3",
-    "pga_unit": "g",
-    "pgv": "30",
-    "pgv_unit": "cm/s",
-    "floor_periods": "",
-    "floor_participation": "1",
-}
+SITE = {"pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s", "floor_periods": "", "floor_participation": "1"}
 """Fields of a site, and what they hold at first."""
 
 EXAMPLES = {
@@ -68,11 +61,8 @@ EXAMPLES = {
 }
 """What the fields hold at first."""
 
-MAX_TEXT = 10_000
-"""Longest outline [characters]."""
-
-MAX_VERTICES = 200
-"""Most vertices of an outline [-]."""
+MAX_TEXT = 10_000  # longest outline [characters]
+MAX_VERTICES = 200  # most vertices of an outline [-]
 
 router = APIRouter(prefix=PATH, include_in_schema=False)
 
@@ -179,7 +169,7 @@ def _object(given: dict[str, str]) -> Object:
     return Object(**lengths, **others)
 
 
-def _vertices(text: str) -> NDArray[np.float64]:
+def _vertices(text: str) -> Array:
     """Corners of an outline [m] from lines of two numbers [cm]."""
     if len(text) > MAX_TEXT:
         raise InvalidArgumentError("vertices", f"{len(text)} characters", f"at most {MAX_TEXT}")
@@ -200,7 +190,7 @@ def page_of(
     given: dict[str, str],
     *,
     found: xr.Dataset | None = None,
-    footprint: NDArray[np.float64] | None = None,
+    footprint: Array | None = None,
     notes: list[str] | None = None,
     error: InvalidArgumentError | None = None,
     settings: Settings | None = None,

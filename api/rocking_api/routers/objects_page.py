@@ -36,20 +36,14 @@ from rocking_api.routers.pages import POLICY, REPORT_POLICY, STATIC, TEMPLATES, 
 from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
-MAX_SHEET = 32 * 1024 * 1024
-"""Largest unpacked file of a sheet [bytes]."""
+MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
 
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
 
-MAX_FIELDS = 100
-"""Most fields of the form [-]: those of the site, and of rows that are corrected."""
-
-MAX_CORRECTED = 50
-"""Most rows that are corrected at a time [-]."""
-
-PART = 65536
-"""Characters of a form whose escapes are replaced at a time [-]."""
+MAX_FIELDS = 100  # most fields of the form [-]: those of the site, and of rows that are corrected
+MAX_CORRECTED = 50  # most rows that are corrected at a time [-]
+PART = 65536  # characters of a form whose escapes are replaced at a time [-]
 
 PATH = "/objects"
 

@@ -106,12 +106,7 @@ def _definition(name: str) -> str:
 def _parameters(name: str) -> list[PulseParameter]:
     return [
         PulseParameter(
-            name=key,
-            symbol=one.symbol,
-            unit=one.unit,
-            range=one.interval,
-            default=one.default,
-            description=one.meaning,
+            name=key, symbol=one.symbol, unit=one.unit, range=one.interval, default=one.default, description=one.meaning
         )
         for key, one in pulses.pulse_parameters(name).items()
     ]

@@ -23,15 +23,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 from rocking.suites.body_arrays import as_block
 from rocking.suites.pulse_fit import PulseFit, fit_pulse
-from rocking_api.http.encoding import (
-    CONTENT,
-    MEDIA_TYPES,
-    Form,
-    csv_response,
-    json_response,
-    negotiated_form,
-    netcdf_response,
-)
+from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import records as m
@@ -74,7 +66,7 @@ async def post_response(request: Request, service: ServiceDep) -> m.RecordRespon
     "/history",
     summary="Motion of a block in SI units under a record",
     response_model=m.RecordHistoryResponse | m.RecordBodyHistoryResponse,
-    responses=CONTENT,
+    responses=encoding.CONTENT,
     openapi_extra=_about(m.RecordHistoryParams),
 )
 async def post_history(request: Request, service: ServiceDep) -> Response:
@@ -88,7 +80,7 @@ async def post_history(request: Request, service: ServiceDep) -> Response:
         raise TooLargeError("samples", params.samples, f"at most {limit}")
     if record.samples > limit and params.samples is None:
         raise TooLargeError("samples", record.samples, f"at most {limit}; state `samples`")
-    form = negotiated_form(request, params.format)
+    form = encoding.negotiated_form(request, params.format)
     return await service.run_heavy(lambda stop: _history(params, request, record, form, stop), request)
 
 
@@ -96,13 +88,13 @@ async def post_history(request: Request, service: ServiceDep) -> Response:
     "/scales",
     summary="A block in SI units under a record times many factors",
     response_model=m.RecordScalesResponse,
-    responses=CONTENT,
+    responses=encoding.CONTENT,
     openapi_extra=_about(m.RecordScalesParams),
 )
 async def post_scales(request: Request, service: ServiceDep) -> Response:
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
     params, record = await _read(m.RecordScalesParams, request, service)
-    form = negotiated_form(request, params.format)
+    form = encoding.negotiated_form(request, params.format)
     return await service.run_heavy(lambda stop: _scales(params, request, record, form, stop), request)
 
 
@@ -116,21 +108,13 @@ async def post_pulse(request: Request, service: ServiceDep) -> m.RecordPulseResp
 async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, Record]:
     """The parameters, and the record in the body, parsed in a thread, one body at a time."""
     declared = request.headers.get("content-type", "").split(";")[0].strip().lower()
-    form: Form = "json" if declared == MEDIA_TYPES["json"] else "csv"  # a file, whatever its type
+    form: encoding.Form = "json" if declared == encoding.MEDIA_TYPES["json"] else "csv"  # a file, whatever its type
     params, body = await service.read(request, kind, form, m.with_record(kind), service.settings.max_record_bytes)
 
     def read(stop: StopFlag) -> Record:
-        found = parse_record(
-            body if isinstance(body, bytes) else body.record.encode(),
-            params.name,
-            unit=params.unit,
-            time_step=params.time_step,
-            component=params.component,
-            vertical=params.vertical,
-            skip=params.skip,
-            stop=stop,
-        )
-        return found if params.baseline_order is None else found.baseline_corrected(order=params.baseline_order)
+        raw = body if isinstance(body, bytes) else body.record.encode()
+        stated = {name: getattr(params, name) for name in ("unit", "time_step", "component", "vertical", "skip")}
+        return parse_record(raw, params.name, **stated, stop=stop).baseline_corrected(order=params.baseline_order)
 
     record = await service.run_parser(read, request, large=True)
     kept = record.acceleration.nbytes * (1 if record.vertical is None else 2)
@@ -164,14 +148,14 @@ def _history(params: m.RecordHistoryParams, request: Request, record: Record, fo
     options: dict[str, Any] = {"samples": params.samples, "contact": params.contact, "stop": stop}
     motion = time_history(record, **problem.groups, **options) if problem.is_block else history(problem, **options)
     if form == "nc":
-        return netcdf_response(motion, "history")
+        return encoding.netcdf_response(motion, "history")
     columns, reactions = motion_columns(motion, "time")
     if form == "csv":
-        return csv_response(columns | reactions, "history")
+        return encoding.csv_response(columns | reactions, "history")
     kind = m.RecordHistoryResponse if problem.is_block else m.RecordBodyHistoryResponse
     found = motion_fields(motion, reactions)
     answer = kind.model_construct(query=params, record=_description(record), **found, **columns)
-    return json_response(answer, request)
+    return encoding.json_response(answer, request)
 
 
 def _scales(params: m.RecordScalesParams, request: Request, record: Record, form: str, stop: StopFlag) -> Response:
@@ -198,7 +182,7 @@ def _scales(params: m.RecordScalesParams, request: Request, record: Record, form
         "exceeded_alpha": found.exceeded_alpha.tolist(),
     }
     if form == "csv":
-        return csv_response(columns, "scales")
+        return encoding.csv_response(columns, "scales")
     if form == "nc":
         numbers = {**columns, "peak_rotation": found.peak_rotation, "outcome": found.outcome}
         units = {"peak_acceleration": "m s-2"}
@@ -206,11 +190,11 @@ def _scales(params: m.RecordScalesParams, request: Request, record: Record, form
             name: ("scale", np.asarray(values) + 0, {"units": units.get(name, "1")}) for name, values in numbers.items()
         }
         attributes = {"record": record.name, "record_digest": record.digest, "outcomes": " ".join(OUTCOMES)}
-        return netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
+        return encoding.netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
     thresholds = (block_thresholds if one.is_block else thresholds_of)(one, high, stop)
     changes = [ScaleThreshold(**one) for one in changes_of(thresholds, record)]
     columns |= {"record": _description(record), "thresholds": changes}
-    return json_response(m.RecordScalesResponse.model_construct(query=params, **columns), request)
+    return encoding.json_response(m.RecordScalesResponse.model_construct(query=params, **columns), request)
 
 
 def _pulse(params: m.RecordPulseParams, record: Record, stop: StopFlag) -> m.RecordPulseResponse:

@@ -11,28 +11,12 @@ from fastapi import APIRouter, Query, Request, Response
 from rocking._lookup.cube import UnreadError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate, evaluate_many
+from rocking_api.http import encoding
 from rocking_api.http.body import body_form
-from rocking_api.http.encoding import (
-    CONTENT,
-    MEDIA_TYPES,
-    Form,
-    columns_as_they_are,
-    csv_stream,
-    dataset_of,
-    json_stream,
-    negotiated_form,
-    netcdf_response,
-)
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.batch import Batch, Columns, batch_of, parse_csv, parse_netcdf
 from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.params import (
-    BatchOptions,
-    BatchParams,
-    LookupOptions,
-    ResponseParams,
-    TableParams,
-)
+from rocking_api.models.params import BatchOptions, BatchParams, LookupOptions, ResponseParams, TableParams
 from rocking_api.models.pulses import options_of, with_samples
 from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
 from rocking_api.service import Service, ServiceDep
@@ -69,15 +53,17 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     "/response",
     summary="Many blocks",
     response_model=BatchResponse,
-    responses=CONTENT,
+    responses=encoding.CONTENT,
     openapi_extra=body_of(
         {
             **json_content(
                 with_samples(BatchParams),
                 {"pulse": "sine", "slenderness": [0.4, 0.2, 1.2], "frequency_ratio": 5, "restitution": 0.85},
             ),
-            **text_content(MEDIA_TYPES["csv"], "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"),
-            MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
+            **text_content(
+                encoding.MEDIA_TYPES["csv"], "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"
+            ),
+            encoding.MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
         },
         BatchOptions,
     ),
@@ -92,7 +78,7 @@ async def post_response(request: Request, service: ServiceDep) -> Response:
     return await service.run_heavy(lambda stop: _answered(service, batch, request, form, stop), request)
 
 
-async def _read(request: Request, service: Service) -> tuple[Batch, Form]:
+async def _read(request: Request, service: Service) -> tuple[Batch, encoding.Form]:
     """The points of a request, and the format of its response."""
     given, most = body_form(request, ("json", "csv", "nc")), service.settings.max_points
     limit, hint = service.settings.max_body_bytes, ""
@@ -107,10 +93,10 @@ async def _read(request: Request, service: Service) -> tuple[Batch, Form]:
         return batch_of(options_of(params, LookupOptions), columns, dict(params), most)
 
     batch = await service.run_parser(read, request)
-    return batch, negotiated_form(request, params.format, default=given)
+    return batch, encoding.negotiated_form(request, params.format, default=given)
 
 
-def _answered(service: Service, batch: Batch, request: Request, form: Form, stop: StopFlag) -> Response:
+def _answered(service: Service, batch: Batch, request: Request, form: encoding.Form, stop: StopFlag) -> Response:
     result = evaluate_many(service.cubes, batch.options, batch.groups, stop)
     from_cubes = int(result.from_cube.sum())
     service.metrics.points("cube", from_cubes)
@@ -118,9 +104,9 @@ def _answered(service: Service, batch: Batch, request: Request, form: Form, stop
     query: dict[str, Any] = batch.options.model_dump() | {"points": batch.points}
     if form == "nc":
         attributes = {name: value for name, value in query.items() if value is not None}
-        return netcdf_response(dataset_of(batch.groups, result, attributes), "response")
+        return encoding.netcdf_response(encoding.dataset_of(batch.groups, result, attributes), "response")
     columns = columns_of(result)  # JSON and CSV are written while they are sent
     if form == "csv":
-        return csv_stream(columns_as_they_are(batch.groups) | columns, batch.points, "response")
+        return encoding.csv_stream(encoding.columns_as_they_are(batch.groups) | columns, batch.points, "response")
     answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
-    return json_stream(answer, request, columns, batch.points)
+    return encoding.json_stream(answer, request, columns, batch.points)

@@ -6,22 +6,8 @@ from collections.abc import Callable
 from functools import wraps
 from typing import TYPE_CHECKING, Annotated, Any
 
+import rocking._base.quantities as q
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.quantities import (
-    DIAMETER,
-    GRAVITY,
-    GYRATION,
-    HEIGHT,
-    INCLINATION,
-    LEFT,
-    MASS_HEIGHT,
-    OFFSET,
-    REBOUND,
-    RIGHT,
-    SIDES,
-    TOP_HEIGHT,
-    WIDTH,
-)
 from rocking._base.quantity import Quantity
 
 if TYPE_CHECKING:
@@ -45,9 +31,9 @@ DIRECTION = Quantity(
 
 
 def rectangle(
-    width: Annotated[float, WIDTH],
-    height: Annotated[float, HEIGHT],
-    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+    width: Annotated[float, q.WIDTH],
+    height: Annotated[float, q.HEIGHT],
+    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
 ) -> "Block":
     """A rectangular block of uniform density."""
     from rocking._dimensional.block import Block  # noqa: PLC0415
@@ -56,12 +42,12 @@ def rectangle(
 
 
 def offset_mass(
-    width: Annotated[float, WIDTH],
-    height: Annotated[float, HEIGHT],
-    offset: Annotated[float, OFFSET] = 0.0,
-    mass_height: Annotated[float | None, MASS_HEIGHT] = None,
-    gyration: Annotated[float | None, GYRATION] = None,
-    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+    width: Annotated[float, q.WIDTH],
+    height: Annotated[float, q.HEIGHT],
+    offset: Annotated[float, q.OFFSET] = 0.0,
+    mass_height: Annotated[float | None, q.MASS_HEIGHT] = None,
+    gyration: Annotated[float | None, q.GYRATION] = None,
+    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
 ) -> "Block | RigidBody":
     """A body from its outer dimensions, the place of its centre of mass and its radius of gyration."""
     from rocking._dimensional.rigid_body import body_of_size  # noqa: PLC0415
@@ -70,13 +56,13 @@ def offset_mass(
 
 
 def two_edges(
-    left: Annotated[float, LEFT],
-    right: Annotated[float, RIGHT],
-    mass_height: Annotated[float, MASS_HEIGHT],
-    gyration: Annotated[float | None, GYRATION] = None,
-    top_height: Annotated[float | None, TOP_HEIGHT] = None,
-    inclination: Annotated[float, INCLINATION] = 0.0,
-    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+    left: Annotated[float, q.LEFT],
+    right: Annotated[float, q.RIGHT],
+    mass_height: Annotated[float, q.MASS_HEIGHT],
+    gyration: Annotated[float | None, q.GYRATION] = None,
+    top_height: Annotated[float | None, q.TOP_HEIGHT] = None,
+    inclination: Annotated[float, q.INCLINATION] = 0.0,
+    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
 ) -> "RigidBody":
     """A body from the distances of its edges from the centre of mass, and the height of that."""
     from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
@@ -87,18 +73,18 @@ def two_edges(
 
 
 def cylinder(
-    diameter: Annotated[float, DIAMETER],
-    height: Annotated[float, HEIGHT],
-    offset: Annotated[float, OFFSET] = 0.0,
-    mass_height: Annotated[float | None, MASS_HEIGHT] = None,
-    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+    diameter: Annotated[float, q.DIAMETER],
+    height: Annotated[float, q.HEIGHT],
+    offset: Annotated[float, q.OFFSET] = 0.0,
+    mass_height: Annotated[float | None, q.MASS_HEIGHT] = None,
+    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
 ) -> "Block | RigidBody":
     """A body on a round base, in the planar model, in which it does not wobble or roll."""
     gyration = (0.75 * diameter * diameter + height * height) ** 0.5 / math.sqrt(12.0)
     return offset_mass(diameter, height, offset, mass_height, gyration, gravity)
 
 
-def outline(vertices: Annotated[Any, VERTICES], gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY) -> "RigidBody":
+def outline(vertices: Annotated[Any, VERTICES], gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY) -> "RigidBody":
     """A body of uniform density from its outline, standing on its lowest edge."""
     from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
     from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
@@ -118,7 +104,7 @@ def mesh(
     path: Annotated[str, PATH],
     direction: Annotated[float, DIRECTION] = 0.0,
     unit: Annotated[str, UNIT] = "m",
-    gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
+    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
 ) -> "RigidBody":
     """A body of uniform density from a surface mesh, standing on its lowest points."""
     from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
@@ -129,7 +115,7 @@ def mesh(
 def with_wall(make: Callable[..., "Block | RigidBody"]) -> Callable[..., "Block | RigidBody"]:
     """The kind with two parameters more, `sides` and `rebound` of `rocking.RigidBody`."""
 
-    def wall(sides: Annotated[str, SIDES] = "both", rebound: Annotated[float | None, REBOUND] = None) -> None:
+    def wall(sides: Annotated[str, q.SIDES] = "both", rebound: Annotated[float | None, q.REBOUND] = None) -> None:
         pass
 
     @wraps(make)

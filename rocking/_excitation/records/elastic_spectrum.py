@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, one_of
 from rocking._excitation.records.floor import PERIODS, oscillator_root, oscillator_states, refined
 from rocking._excitation.records.record import Record
@@ -17,20 +18,13 @@ if TYPE_CHECKING:
 
     from rocking._numba.cancellation import StopFlag
 
-Array = NDArray[np.float64]
-
 STEPS_PER_PERIOD = 8
 """Steps of a period at least [-]: a largest displacement between samples exceeds these by at most 1/cos(pi/8) = 1.08,
 and Newton's method from the secant of the velocity finds it."""
 
-NEAR_LARGEST = 0.8
-"""Steps from this share of the largest displacement at samples on are searched [-]."""
-
-ITERATIONS = 5
-"""Of Newton's method for the time of zero velocity [-]; four reach 1e-15 of a step in the tests."""
-
-TERMS = 24
-"""Terms of the series of phi_1 and phi_2, abs(w) <= 2 pi/STEPS_PER_PERIOD [-]."""
+NEAR_LARGEST = 0.8  # steps from this share of the largest displacement at samples on are searched [-]
+ITERATIONS = 5  # of Newton's method for the time of zero velocity [-]; four reach 1e-15 of a step in the tests
+TERMS = 24  # terms of the series of phi_1 and phi_2, abs(w) <= 2 pi/STEPS_PER_PERIOD [-]
 
 
 def elastic_spectrum(

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, one_of
 from rocking._base.units import Scalar
 from rocking._excitation.records.record import TIME_STEP, Record
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag
-
-Array = NDArray[np.float64]
 
 MAX_SAMPLES = 2_000_000  # most samples of a result [-]
 PERIODS = 1e-3, 100.0  # shortest and longest period of a mode [s]

@@ -3,11 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
-
-Array = NDArray[np.float64]
 
 MEAN_PERIOD_BAND = 0.25, 20.0  # frequencies of the mean period [Hz]
 MEAN_PERIOD_RESOLUTION = 0.05  # largest spacing of the frequencies of the mean period [Hz] (Rathje et al. 2004)

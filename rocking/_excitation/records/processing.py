@@ -4,12 +4,10 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, integer, positive
 from rocking._base.units import Scalar
-
-Array = NDArray[np.float64]
 
 MAX_BASELINE_ORDER = 6  # largest degree of a baseline [-]: higher ones follow the motion itself
 MAX_RATIO = 1000  # largest numerator and denominator of the ratio of two time steps [-]

@@ -12,8 +12,9 @@ from functools import cached_property
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of
 from rocking._base.units import UNITS as QUANTITIES
@@ -65,12 +66,12 @@ class Record:
         If an argument is not as described.
     """
 
-    acceleration: NDArray[np.float64]
+    acceleration: Array
     time_step: float
     name: str
     source: str
     remarks: tuple[str, ...]
-    vertical: NDArray[np.float64] | None
+    vertical: Array | None
 
     def __init__(
         self,
@@ -133,7 +134,7 @@ class Record:
         return (self.samples - 1) * self.time_step
 
     @property
-    def times(self) -> NDArray[np.float64]:
+    def times(self) -> Array:
         """Times of the samples from the first [s], shape (samples,)."""
         return np.arange(self.samples, dtype=np.float64) * self.time_step
 
@@ -159,14 +160,14 @@ class Record:
         return 0.0 if self.vertical is None else float(np.abs(self.vertical).max())
 
     @cached_property
-    def velocity(self) -> NDArray[np.float64]:
+    def velocity(self) -> Array:
         """Ground velocity at the samples [m/s], zero at the first, read-only; not corrected for a baseline."""
         return measures.velocity(self.acceleration, self.time_step)
 
     @cached_property
-    def displacement(self) -> NDArray[np.float64]:
+    def displacement(self) -> Array:
         """Ground displacement at the samples [m], zero at the first, read-only; not corrected for a baseline."""
-        velocity: NDArray[np.float64] = self.velocity
+        velocity: Array = self.velocity
         return measures.displacement(self.acceleration, velocity, self.time_step)
 
     @property
@@ -209,7 +210,7 @@ class Record:
         """Mean period T_m [s] (Rathje et al. 1998); nan if no frequency lies between 0.25 and 20 Hz."""
         return measures.mean_period(self.acceleration, self.time_step)
 
-    def baseline_corrected(self, *, order: int = 1) -> Record:
+    def baseline_corrected(self, *, order: int | None = 1) -> Record:
         """The record without the drift of its velocity; the same for its vertical component.
 
         The velocity is fitted by a polynomial of degree `order` + 1 that is zero at the first sample; its derivative, a
@@ -217,16 +218,18 @@ class Record:
 
         Parameters
         ----------
-        order : int
-            Degree of what is subtracted from the acceleration, 0 to 6.
+        order : int or None
+            Degree of what is subtracted from the acceleration, 0 to 6; None gives the record as it is.
 
         Raises
         ------
         InvalidArgumentError
             If `order` is out of range, or the record has too few samples for it.
         """
+        if order is None:
+            return self
 
-        def corrected(a: NDArray[np.float64]) -> NDArray[np.float64]:
+        def corrected(a: Array) -> Array:
             return baseline(a, measures.velocity(a, self.time_step), self.duration, order)
 
         return self._processed(corrected, self.time_step, f"baseline of order {order} removed")
@@ -250,14 +253,12 @@ class Record:
         """
         step = number("time_step", time_step, *TIME_STEP, unit="s")
 
-        def resampled(a: NDArray[np.float64]) -> NDArray[np.float64]:
+        def resampled(a: Array) -> Array:
             return resample(a, self.time_step, step)
 
         return self._processed(resampled, step, f"resampled from {self.time_step:g} s, band-limited")
 
-    def _processed(
-        self, process: Callable[[NDArray[np.float64]], NDArray[np.float64]], time_step: float, what: str
-    ) -> Record:
+    def _processed(self, process: Callable[[Array], Array], time_step: float, what: str) -> Record:
         """The record with other samples of both components [m/s2]; its source says what was done."""
         source = f"{self.source}; {what}" if self.source else what
         vertical = None if self.vertical is None else process(self.vertical)

@@ -3,8 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Scalar
@@ -16,7 +17,7 @@ FLIGHT_MARGIN = 1e-9
 """Relative distance of `highest_vertical_scale` from the factor at which the acceleration reaches -g [-]."""
 
 
-def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> NDArray[np.float64]:
+def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> Array:
     """The factor of the vertical component as a float64 array of its own shape; 0 for a record that has none.
 
     Raises `InvalidArgumentError` if a factor is not in [0, 1e6], is neither 1 nor None for a record without a vertical

@@ -9,11 +9,8 @@ from matplotlib.axes import Axes
 from rocking._base.errors import InvalidArgumentError
 from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, axes_of, label_of, plain_numbers
 
-POINTS = 300
-"""Points of a fitted curve."""
-
-CURVES = {"lognormal": (VERMILION, "-"), "logistic": (BLUE, "--")}
-"""Colour and line of each kind of fitted curve."""
+POINTS = 300  # points of a fitted curve
+CURVES = {"lognormal": (VERMILION, "-"), "logistic": (BLUE, "--")}  # colour and line of each kind of fitted curve
 
 
 def fragility(data: xr.Dataset, ax: Axes | None = None) -> Axes:

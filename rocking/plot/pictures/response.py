@@ -17,11 +17,8 @@ from rocking._solver.peak_response import peak_response
 from rocking.plot.pictures.spectrum import shade_overturned
 from rocking.plot.style import BLUE, GREY, LABELS, VERMILION, axes_of
 
-SAMPLES = 600
-"""Amplitudes at which the curve is computed, beside the thresholds [-]."""
-
-BESIDE = 1e-7
-"""Relative distance from a threshold of the points on either side of it [-]."""
+SAMPLES = 600  # amplitudes at which the curve is computed, beside the thresholds [-]
+BESIDE = 1e-7  # relative distance from a threshold of the points on either side of it [-]
 
 
 def response(found: BodyResponse | Response, ax: Axes | None = None, **style: Any) -> Axes:

@@ -11,8 +11,8 @@ from dataclasses import replace
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import RecordFileError
 from rocking._base.units import UNITS
 from rocking._excitation.records.readers.layout import (
@@ -37,8 +37,6 @@ from rocking._excitation.records.readers.lines import (
     to_floats,
 )
 from rocking._excitation.records.record import Record
-
-Array = NDArray[np.float64]
 
 STEP_TOLERANCE = 0.02
 """Largest deviation of a time from the uniform grid, in steps [-]: times are often rounded to a few digits."""

@@ -16,8 +16,8 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import RecordFileError
 from rocking._base.units import unit_name
 
@@ -139,7 +139,7 @@ class TextFile:
             raise self.error(line, text.strip(), f"{expected}, an integer")
         return int(value)
 
-    def values(self, first: int) -> NDArray[np.float64]:
+    def values(self, first: int) -> Array:
         """All numbers from the line `first` on, any number on each line; blank lines only at the end.
 
         Columns of fixed width may touch where a sign separates the numbers.
@@ -169,14 +169,14 @@ class TextFile:
             found += map(to_float, parts)
         return found
 
-    def check_values(self, values: NDArray[np.float64]) -> None:
+    def check_values(self, values: Array) -> None:
         """Refuse fewer than two values, and values beyond the range of doubles."""
         if values.size < 2:
             raise self.error(None, f"{values.size} acceleration values", "at least 2")
         if not np.isfinite(values).all():
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
 
-    def checked_count(self, values: NDArray[np.float64], stated: int, line: int) -> tuple[str, ...]:
+    def checked_count(self, values: Array, stated: int, line: int) -> tuple[str, ...]:
         """The remark on a number of values that differs from the stated one, by as much as headers are usually off."""
         difference = abs(values.size - stated)
         if difference > COUNT_DIFFERENCE * stated:

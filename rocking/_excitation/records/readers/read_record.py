@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -70,7 +70,7 @@ def read_record(
         If a file cannot be read, an argument is out of range, or the components differ in step or length.
     """
     content, name = read_content("path", path), Path(path).name
-    stated: _Stated = {"unit": unit, "time_step": time_step, "skip": skip}
+    stated: dict[str, Any] = {"unit": unit, "time_step": time_step, "skip": skip}
     found = parse_record(content, name, **stated, component=component)
     if vertical is None:
         return found
@@ -79,14 +79,6 @@ def read_record(
     else:
         upwards = _vertical(content, name, vertical, f"a file, or a component of {name}", **stated)
     return _with_vertical(found, upwards)
-
-
-class _Stated(TypedDict):
-    """What the caller states of all files."""
-
-    unit: str | None
-    time_step: Scalar | None
-    skip: int | None
 
 
 def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
@@ -137,26 +129,17 @@ def parse_record(
     `vertical` is a column or trace of this file. `stop` cancels the work, which then raises `StoppedError`. Other
     parameters and errors as for `read_record`.
     """
-    found = _parsed(content, name, unit, time_step, component, skip, stop)
+    stated: dict[str, Any] = {"unit": unit, "time_step": time_step, "skip": skip, "stop": stop}
+    found = _parsed(content, name, component=component, **stated)
     if vertical is None:
         return found
-    allowed = f"a component of {name}"
-    return _with_vertical(found, _vertical(content, name, vertical, allowed, unit, time_step, skip, stop))
+    return _with_vertical(found, _vertical(content, name, vertical, f"a component of {name}", **stated))
 
 
-def _vertical(
-    content: bytes,
-    name: str,
-    vertical: str,
-    allowed: str,
-    unit: str | None,
-    time_step: Scalar | None,
-    skip: int | None,
-    stop: StopFlag | None = None,
-) -> Record:
+def _vertical(content: bytes, name: str, vertical: str, allowed: str, **stated: Any) -> Record:
     """The vertical component in the file of the horizontal one; `allowed` is what an error says of its name."""
     try:
-        return _parsed(content, name, unit, time_step, vertical, skip, stop)
+        return _parsed(content, name, component=vertical, **stated)
     except RecordFileError as error:
         raise InvalidArgumentError("vertical", vertical, f"{allowed} ({error})") from None
 
@@ -168,7 +151,7 @@ def _parsed(
     time_step: Scalar | None,
     component: str | None,
     skip: int | None,
-    stop: StopFlag | None,
+    stop: StopFlag | None = None,
 ) -> Record:
     """One component."""
     if unit is not None:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._excitation.records.readers.header import units_in
 from rocking._excitation.records.readers.lines import (
     MAX_SAMPLES,
@@ -26,7 +26,6 @@ from rocking._excitation.records.readers.lines import (
 )
 from rocking._excitation.records.record import Record
 
-Array = NDArray[np.float64]
 Lines = Iterator[tuple[int, bytes]]
 
 FIRST_LINES = 5  # lines in which the format is named
@@ -42,8 +41,7 @@ REFUSED = {
 """Names of formats that are not read, by a line at the start."""
 
 BLOCK = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?:points of\s+)?(?P<kind>accel|acc|veloc|vel|displ|disp)\w*\s*(?:points|pts|data)?",
-    re.I,
+    r"^\s*(?P<count>\d+)\s+(?:points of\s+)?(?P<kind>accel|acc|veloc|vel|displ|disp)\w*\s*(?:points|pts|data)?", re.I
 )
 """The line above a block of COSMOS and CSMIP."""
 
