@@ -21,7 +21,7 @@ from reference.exact_response import (
     RECOVERS,
     ExactResponse,
 )
-from reference.polynomial_roots import bernstein_bounds, roots
+from reference.polynomial_roots import bernstein_bounds, derivative, evaluate, roots
 
 CHATTER_LEFT = 1e-20
 """Rest is declared when all remaining flights together last less than this, in the time scales of pulse and block."""
@@ -182,15 +182,15 @@ class _Integration:
         if bernstein_bounds(series, length)[1] < float(self.peak):
             return
         # z is largest at a root of z' or at the end
-        slope = [k * c for k, c in enumerate(series)][max(zeros, 1) :]
+        slope = derivative(series)[max(zeros - 1, 0) :]
         for x in [*roots(slope, length), length]:
-            z = _value(series, x)
+            z = evaluate(series, x)
             if z > self.peak:
                 self.peak = z
 
     def _move(self, series: list[arb], x: arb) -> None:
-        self.z = _value(series, x)
-        self.v = (_value([k * c for k, c in enumerate(series)][1:], x) / self.size).mid()
+        self.z = evaluate(series, x)
+        self.v = (evaluate(derivative(series), x) / self.size).mid()
         at_end = self.last and x == 1
         self.tau = self.end if at_end else (self.tau + x * self.size).mid()
 
@@ -243,10 +243,3 @@ class _Integration:
     def _raise_peak(self, z: arb) -> None:
         if z.mid() > self.peak:
             self.peak = z.mid()
-
-
-def _value(series: list[arb], x: arb) -> arb:
-    total = arb(0)
-    for c in reversed(series):
-        total = total * x + c
-    return total.mid()

@@ -24,6 +24,19 @@ def _to_bernstein(degree: int) -> NDArray[np.float64]:
     return np.array(rows)
 
 
+def evaluate(coefficients: list[arb], x: arb) -> arb:
+    """Return the value at x."""
+    total = arb(0)
+    for c in reversed(coefficients):
+        total = total * x + c
+    return total.mid()
+
+
+def derivative(coefficients: list[arb]) -> list[arb]:
+    """Return the coefficients of the derivative."""
+    return [k * c for k, c in enumerate(coefficients)][1:]
+
+
 def bernstein_bounds(coefficients: list[arb], length: arb) -> tuple[float, float]:
     """Return the smallest and largest Bernstein coefficient on [0, length], which bound the polynomial (to 1e-12)."""
     scaled = _scaled_doubles(coefficients, float(length))

@@ -25,7 +25,7 @@ from reference.exact_response import (
     ExactResponse,
     working_precision,
 )
-from reference.polynomial_roots import bernstein_bounds, roots
+from reference.polynomial_roots import bernstein_bounds, derivative, evaluate, roots
 
 BITS = 170
 REST_VELOCITY = 1e-22  # velocity after an impact [-] below which the block rests, where the ground does not lift it
@@ -216,7 +216,7 @@ class _Integration:
         ):
             return "overturned"
         self._watch_peak(series, end, zeros)
-        self.z, self.v = _value(series, end), (_value(_slope(series), end) / size).mid()
+        self.z, self.v = evaluate(series, end), (evaluate(derivative(series), end) / size).mid()
         if impact is not None:
             self.s = (self.s + end * size).mid()
             return "impact"
@@ -242,8 +242,8 @@ class _Integration:
     def _watch_peak(self, series: list[arb], end: arb, zeros: int) -> None:
         if bernstein_bounds(series, end)[1] < float(self.peaks[self.side]):
             return
-        for x in [*roots(_slope(series)[max(zeros - 1, 0) :], end), end]:
-            z = _value(series, x)
+        for x in [*roots(derivative(series)[max(zeros - 1, 0) :], end), end]:
+            z = evaluate(series, x)
             if z > self.peaks[self.side]:
                 self.peaks[self.side] = z
 
@@ -296,14 +296,3 @@ class _Integration:
     def _reach(self, z: arb) -> None:
         """A peak on the present edge, in its units."""
         self.peaks[self.side] = max(self.peaks[self.side], (z * self.edges[self.side].ratio).mid(), key=float)
-
-
-def _slope(series: list[arb]) -> list[arb]:
-    return [k * c for k, c in enumerate(series)][1:]
-
-
-def _value(series: list[arb], x: arb) -> arb:
-    total = arb(0)
-    for c in reversed(series):
-        total = total * x + c
-    return total.mid()

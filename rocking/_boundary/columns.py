@@ -111,6 +111,7 @@ class Lines:
             uncounted = codes == UNCOUNTED
             coarse = uncounted if many else _between(uncounted)
             thinnest[coarse] = self.thinnest[line[coarse]]
+            # the first and the last run of a line reach the ends of the window: they stay, however thin
             edge = np.diff(line) != 0
             kept = np.append(True, edge) | np.append(edge, True) | (high - low >= thinnest)
             line, codes, low, high = line[kept], codes[kept], low[kept], high[kept]

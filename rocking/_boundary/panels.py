@@ -115,6 +115,7 @@ class Panel:
         """
         side = int(self.right.below.size > self.left.below.size)
         column, other = (self.right, self.left) if side else (self.left, self.right)
+        # predicted is the end of one region: one column has it between its two outer ones, the other column lacks it
         one_ends = column.below.size == 2 and column.codes[::2] == [other.codes[0], other.codes[-1]]
         if not one_ends or other.below.size > 1 or self.predicted >= PREDICTED:
             return 0.5
@@ -122,11 +123,11 @@ class Panel:
         if not distance < self.step:
             return 0.5
         margin = 0.45 * end
-        if SHORT * distance > margin:
+        if SHORT * distance > margin:  # still far: stay before the end
             distance -= SHORT * distance
-        elif distance + 1.1 * margin < self.step:
+        elif distance + 1.1 * margin < self.step:  # near: just beyond it
             distance += margin
-        else:
+        else:  # a column beyond it is there already: just before it
             distance -= margin
         share = min(max(distance, margin), self.step - margin) / self.step
         return 1.0 - share if side else share

@@ -203,6 +203,7 @@ def _judge(
     first, count, i, j = place
     error = 0.0
     if count > 1:
+        # the error between the two angles beside the point, measured when the cubes were made
         error = float(slices[lower][first + below, i, j].alpha_error)
         if size > 1:  # between slices: the larger of the two measured on either side, nan if either is
             error = np.maximum(error, float(slices[lower + 1][first + below, i, j].alpha_error))
@@ -214,10 +215,11 @@ def _judge(
         for e in range(size):
             node = slices[e][first + a, i, j]
             form = int(node.stencil)
+            # one cell without a stencil, one that overturns beside one that survives, or another way of overturning
             alike = node.outcome == outcome and node.impacts == impacts
             if form == NO_STENCIL or (form == OVERTURNS) != (kind == OVERTURNS) or (form == OVERTURNS and not alike):
                 return NO_STENCIL, error
-            kind = min(kind, form)
+            kind = min(kind, form)  # (1 - peak)^2 only if all cells have it
             error += abs(by_angle[a] * by_level[e]) * node.interpolation_error
     return kind, error
 

@@ -131,6 +131,7 @@ def keep_on_disk(make: Make, function: Callable[..., Any]) -> Any:
             _warn_not_kept(str(error))
         if compiled.stats.cache_misses.total() > known:
             return load_or_compile(signature)  # numba has compiled it: it writes last
+        # it failed before: compile without the disk
         uncached = make(cache=False)
         uncached.compile(signature)
         (overload,) = uncached.overloads.values()

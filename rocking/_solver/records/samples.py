@@ -142,7 +142,7 @@ def extremes_in_window(
     end = block.s + window  # from the left end of interval k
     while k < count:
         h = interval_length(block, samples, k)
-        inside = end < h
+        inside = end < h  # the window ends in this interval: its end counts, and no further sample
         if inside:
             f, vertical = ground_at(block, samples, k, end)
         else:

@@ -14,7 +14,6 @@ from typing import Any
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import any_lane, load, select, splat, store, store_where
 from rocking._numba.simd_exponentials import cosh_minus_one_and_sinh
-from rocking._solver.families.sinusoids import SERIES_LENGTH
 from rocking._solver.stages import columns as column
 from rocking._solver.stages.excitation import (
     expand_at_start,
@@ -80,10 +79,7 @@ def expand_start(pulse: Record, group: Record) -> None:
     store(series, 1, load(group.columns, column.W0))
     store(series, 2, q0 * -0.5)
     expand_at_start(pulse, group)  # row n + 2 becomes F_n
-    # two loops for one recurrence: the first has a fixed length, and is all that sinusoids need
-    for n in range(1, SERIES_LENGTH - 2):
-        store(series, n + 2, (load(series, n) - load(series, n + 2)) * (1.0 / ((n + 1.0) * (n + 2.0))))
-    for n in range(SERIES_LENGTH - 2, pulse.series_length - 2):
+    for n in range(1, pulse.series_length - 2):
         store(series, n + 2, (load(series, n) - load(series, n + 2)) * (1.0 / ((n + 1.0) * (n + 2.0))))
     group.expanded = 1
 
@@ -93,12 +89,8 @@ def series_states(pulse: Record, group: Record, h: SimdVector) -> Any:
     """z and w a time h after the start, by the series."""
     series, last = group.series, pulse.series_length - 1
     z, w = splat(0.0), splat(0.0)
-    for i in range(pulse.series_length - SERIES_LENGTH):  # none for sinusoids: the loop below has a fixed length
-        coefficient = load(series, last - i)
-        z = z * h + coefficient
-        w = w * h + coefficient * float(last - i)
-    for i in range(SERIES_LENGTH - 1):
-        n = SERIES_LENGTH - 1 - i
+    for i in range(last):
+        n = last - i
         coefficient = load(series, n)
         z = z * h + coefficient
         w = w * h + coefficient * float(n)
@@ -110,14 +102,8 @@ def series_derivatives(pulse: Record, group: Record, h: SimdVector) -> Any:
     """Second to fourth derivatives of z a time h after the start, by the series of `expand_start`."""
     series, last = group.series, pulse.series_length - 1
     second, third, fourth = splat(0.0), splat(0.0), splat(0.0)
-    for i in range(pulse.series_length - SERIES_LENGTH):
+    for i in range(last - 3):
         n = last - i
-        coefficient = load(series, n) * (n * (n - 1.0))
-        second = second * h + coefficient
-        third = third * h + coefficient * (n - 2.0)
-        fourth = fourth * h + coefficient * ((n - 2.0) * (n - 3.0))
-    for i in range(SERIES_LENGTH - 4):
-        n = SERIES_LENGTH - 1 - i
         coefficient = load(series, n) * (n * (n - 1.0))
         second = second * h + coefficient
         third = third * h + coefficient * (n - 2.0)

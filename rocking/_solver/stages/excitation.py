@@ -66,6 +66,7 @@ def start_particular_solution(pulse: Record, group: Record, sign: float, a: Simd
         squared, h = inverse * inverse, pulse.derivatives
         store(group.strength, 0, strength)
         store(group.decay, 0, inverse * (0.5 * math.sqrt(pulse.spread)))
+        # the coefficients of p by K, K', g and g', see `rocking._solver.stages.wavelets`
         store(group.arc, 0, strength * (h[0] + h[2] * squared))
         store(group.arc, 1, strength * (h[1] + h[3] * squared))
         store(group.arc, 2, strength * (h[2] * squared))
@@ -89,6 +90,7 @@ def start_particular_solution(pulse: Record, group: Record, sign: float, a: Simd
                 root = square_root(maximum((1.0 - slenderness) * (1.0 + slenderness), splat(0.0)))
                 cosine = select(at_uplift, slenderness * (-sign * pulse.amplitude[0]), cosine)
                 sine = select(at_uplift, root * (sign * pulse.amplitude[0]), sine)
+            # force cos(rate tau + ...) is a term of F; the particular solution of z'' - z = -F divides it by rate^2 + 1
             rate, force = omega * pulse.multiple[k], a * (sign * pulse.amplitude[k])
             particular = force / (rate * rate + 1.0)
             store(group.rate, k, rate)

@@ -39,16 +39,18 @@ def particular_solution(pulse: Record, group: Record) -> Any:
         load(group.decay, 0),
     )
     inverse = load(group.reciprocal_omega, 0)
+    # K is even in phi, its derivative odd: both from A and B at |phi|
     distance = absolute(phase) * (1.0 / math.sqrt(pulse.spread))
     near, far = g * scaled_erfc(c + distance), g * scaled_erfc(absolute(c - distance))
     beyond = c < distance
-    if any_lane(beyond):
+    if any_lane(beyond):  # a negative argument of erfcx, by the identity of the module
         far = select(beyond, 2.0 * exponential(c * (c - 2.0 * distance)) - far, far)
     scale = c * HALF_ROOT_PI
     even, odd = scale * (near + far), scale * inverse * (near - far)
     odd = select(phase < 0.0, odd * -1.0, odd)  # K and its derivative
     slope = phase * (-2.0 / pulse.spread)
     bend = slope * slope - 2.0 / pulse.spread
+    # p and its derivative: g' = slope g, g'' = bend g, omega^2 K'' = K - g
     m0, m1, m2, m3 = load(group.arc, 0), load(group.arc, 1), load(group.arc, 2), load(group.arc, 3)
     z = m0 * even + m1 * odd - g * (m2 + m3 * slope)
     w = m0 * odd + m1 * ((even - g) * inverse * inverse) - g * (m2 * slope + m3 * bend)

@@ -53,6 +53,7 @@ def start_series(steps: Record) -> None:
     store(steps.z, 0, z0)
     store(steps.z, 1, w0)
     store(steps.rate, 0, w0)
+    # alpha_s - alpha z = alpha (alpha_s/alpha - z); in the slender limit S = alpha_s/alpha - z and C = 1
     rest = load(steps.ratio, 0) - z0
     sines, cosines = sine_and_cosine(load(steps.alpha, 0) * rest)
     store(steps.s, 0, slender * rest + (1.0 - slender) * (sines / load(steps.sine_alpha, 0)))
