@@ -1,4 +1,4 @@
-"""Every case of the reference table: outcome, the peak within what the rounding of the input explains, amplification."""
+"""Every case of the reference table: outcome, peak within what the rounding of the input explains, amplification."""
 
 import numpy as np
 import pytest
