@@ -142,15 +142,6 @@ def test_a_motion_that_starts_with_a_jump_lifts_the_block_at_once() -> None:
     assert response.outcome == rocking.Outcome.RECOVERS
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
-def test_threads_and_order_of_the_blocks_change_no_bit(alpha: float | None) -> None:
-    slenderness = np.tile(np.linspace(0.2, 1.1, 97), 3)
-    first = rocking.peak_response(MOTION, **(GRID | {"slenderness": slenderness}), alpha=alpha, threads=1)
-    second = rocking.peak_response(MOTION, **(GRID | {"slenderness": slenderness[::-1]}), alpha=alpha, threads=2)
-    np.testing.assert_array_equal(first.peak_rotation, second.peak_rotation[::-1])
-    np.testing.assert_array_equal(first.impacts, second.impacts[::-1])
-
-
 def test_arguments_broadcast_and_slender_and_rigid_blocks_mix() -> None:
     p, s = np.array([1.5, 2.5])[:, None, None], np.array([0.3, 0.6, 0.9])[:, None]
     response = rocking.peak_response(MOTION, frequency_parameter=p, slenderness=s, restitution=0.8, alpha=[0.0, 0.3])
@@ -217,19 +208,3 @@ def test_a_sample_that_just_uplifts_the_block(alpha):
             alpha=alpha,
         )
         assert np.array_equal(np.isnan(found.peak_rotation), found.overturned)
-
-
-def test_the_response_of_a_block_does_not_depend_on_the_others_of_the_array() -> None:
-    p, scale = np.geomspace(0.5, 60.0, 40), np.where(np.arange(40) % 2, 0.4, 0.0)
-    motion = rocking.Record(
-        MOTION.acceleration, MOTION.time_step, vertical=0.5 * MOTION.acceleration[::-1], unit="m/s2"
-    )
-    given = {"slenderness": 0.3, "restitution": 0.5, "alpha": 0.2}
-    together = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given)
-    assert together.outcome.min() == 1
-    for k in range(40):
-        alone = rocking.peak_response(motion, frequency_parameter=p[k], vertical_scale=scale[k], **given)
-        assert alone.outcome == together.outcome[k]
-        np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[k])
-    apart = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given, threads=1)
-    np.testing.assert_array_equal(apart.peak_rotation, together.peak_rotation)
