@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+import pytest
+
 from stress.mutations import ROOT, imported_by_tests, modules
 
 
+@pytest.mark.long
 def test_tests_of_each_module_are_those_that_import_it() -> None:
     imported = imported_by_tests(ROOT)
     assert imported["tests/model/test_masonry_arch.py"]["rocking/_model/linkage.py"] == 1
