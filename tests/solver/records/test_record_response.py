@@ -1,14 +1,10 @@
 """Responses under records: order of convergence to pulses, invariances, chatter, limits, arguments."""
 
-import threading
-
 import numpy as np
 import pytest
-import xarray as xr
 
 import rocking
-from rocking._base.errors import InvalidArgumentError, StoppedError
-from rocking._numba.cancellation import StopFlag
+from rocking._base.errors import InvalidArgumentError
 from tests.solver.records.tables import record
 
 MOTION = record("synthetic_31", 0.01)
@@ -152,16 +148,6 @@ def test_arguments_broadcast_and_slender_and_rigid_blocks_mix() -> None:
     assert empty.shape == (0,)
 
 
-def test_responses_are_labelled() -> None:
-    slenderness = xr.DataArray([0.3, 0.6], dims="block")
-    response = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=slenderness, restitution=0.8)
-    assert response.peak_rotation.dims == ("block",)
-    assert float(response.frequency_parameter) == 2.0
-    plain = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=[0.3, 0.6], restitution=0.8)
-    assert plain.to_xarray().frequency_parameter.attrs["units"] == "rad/s"
-    assert "synthetic_31" in repr(plain)
-
-
 @pytest.mark.parametrize(
     ("change", "named"),
     [
@@ -178,17 +164,6 @@ def test_invalid_arguments_are_named(change: dict, named: str) -> None:
 def test_only_records_are_motions() -> None:
     with pytest.raises(InvalidArgumentError, match=r"napa\.at2"):
         rocking.peak_response("napa.at2", **GRID)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("alpha", ALPHAS)
-def test_work_can_be_stopped(alpha: float | None) -> None:
-    stop = StopFlag()
-    timer = threading.Timer(0.05, stop.set)
-    timer.start()
-    many = GRID | {"slenderness": np.linspace(0.3, 0.9, 300_000)}
-    with pytest.raises(StoppedError):
-        rocking.peak_response(MOTION, **many, alpha=alpha, stop=stop)
-    timer.cancel()
 
 
 @pytest.mark.parametrize("alpha", [None, 0.2, 1.2])
