@@ -33,7 +33,7 @@ def peak(stop, **groups):
 
 def under_record(alpha, stop):
     many = {"slenderness": np.linspace(0.3, 0.9, 300_000), "frequency_parameter": 2.3, "restitution": 0.87}
-    return rocking.peak_response(noise(1, 400, 0.02), **many, alpha=alpha, threads=1, stop=stop)
+    return rocking.peak_response(noise(1, 200, 0.02), **many, alpha=alpha, threads=1, stop=stop)
 
 
 def contact(stop):
@@ -64,6 +64,7 @@ def _loaded():
     for alpha in (None, 0.2):
         rocking.time_history("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
         rocking.peak_response("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
+        rocking.peak_response(noise(1), slenderness=0.5, frequency_parameter=2.0, restitution=0.9, alpha=alpha)
     rocking.peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
 
 
