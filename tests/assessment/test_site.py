@@ -122,7 +122,7 @@ def test_wrong_records_and_floors_are_refused(given, name) -> None:
 
 def test_sizes_and_samples_under_records() -> None:
     site = rocking.Site(3.0, records=[record(1), record(2, vertical=True)])
-    found = rocking.assess(rocking.Object("pier", width=0.32, height=1.2, tolerance=0.02), site, samples=200)
+    found = rocking.assess(rocking.Object("pier", width=0.32, height=1.2, tolerance=0.02), site, samples=500)
     (row,) = found.rows
     width, height = row["smallest_width"], row["largest_height"]
     for sizes in ([(width, 1.2), (0.998 * width, 1.2)], [(0.32, height), (0.32, height / 0.998)]):
@@ -130,7 +130,7 @@ def test_sizes_and_samples_under_records() -> None:
         share = {one["object"]: one["share"] for one in rocking.assess(near, site, sensitivity=False).rows}
         assert share["0"] == 0.0 < share["1"]
     rng = np.random.default_rng(4)
-    b, h, eta = rng.uniform(-1.0, 1.0, (3, 200))
+    b, h, eta = rng.uniform(-1.0, 1.0, (3, 500))
     width, height = 0.32 + 0.02 * b, 1.2 + 0.02 * h
     body = rocking.RigidBody(left=0.5 * width, right=0.5 * width, height=0.5 * height)
     shifted = np.clip(body.right.restitution + ETA_CHANGE * eta, 0.0, 1.0)

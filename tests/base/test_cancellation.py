@@ -2,16 +2,19 @@
 
 import threading
 import time
+from functools import partial
 
 import numpy as np
 import pytest
 
 import rocking
+from rocking._assessment.tables import objects_of_csv
 from rocking._base.errors import StoppedError
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._history.motion import build_motion
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking._spectra.cubes import spectra
+from tests.suites.motions import noise
 
 MANY = np.linspace(1 - 1e-6, 1 - 1e-7, 999)
 """Slendernesses just below uplift: an elastic block then has 200,000 impacts."""
@@ -28,6 +31,11 @@ def peak(stop, **groups):
     return rocking.peak_response("c2", **{"slenderness": MANY} | ELASTIC | groups, stop=stop)
 
 
+def under_record(alpha, stop):
+    many = {"slenderness": np.linspace(0.3, 0.9, 300_000), "frequency_parameter": 2.3, "restitution": 0.87}
+    return rocking.peak_response(noise(1, 200, 0.02), **many, alpha=alpha, threads=1, stop=stop)
+
+
 def contact(stop):
     return rocking.time_history("c2", slenderness=MANY[-1], **ELASTIC, alpha=0.2, contact=True, stop=stop)
 
@@ -40,6 +48,7 @@ def frequency(stop):
 WORK = {
     "arcs": peak,
     "steps": lambda stop: peak(stop, alpha=0.2),
+    **{f"record, {alpha}": partial(under_record, alpha) for alpha in (None, 0.25)},
     "threads": lambda stop: peak(stop, alpha=0.2, slenderness=np.repeat(MANY, 9), threads=2),
     "etas": lambda stop: peak(stop, slenderness=MANY[-1], restitution=np.linspace(0.99999, 1.0, 999)),
     "amplitude": lambda stop: rocking.thresholds("c2", **ELASTIC, alpha=0.2, stop=stop),
@@ -55,6 +64,7 @@ def _loaded():
     for alpha in (None, 0.2):
         rocking.time_history("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
         rocking.peak_response("c2", slenderness=0.5, frequency_ratio=1, restitution=0.9, alpha=alpha)
+        rocking.peak_response(noise(1), slenderness=0.5, frequency_parameter=2.0, restitution=0.9, alpha=alpha)
     rocking.peak_response("cosine", slenderness=0.999, frequency_ratio=0.05, restitution=1.0)  # has many impacts
 
 
@@ -79,13 +89,27 @@ def test_work_ends_soon_after_cancellation(name):
     assert ended[0] - asked < SOON
 
 
-def test_a_flag_set_in_advance_ends_the_work_at_once():
+MOTION, BLOCK, LEVELS = noise(1), rocking.Block(0.4, 1.6), {"intensity": [3.0, 6.0]}
+OF_RECORD = {"slenderness": 0.5, "restitution": 0.9, "frequency_parameter": 2.0}
+OF_PULSE = {"slenderness": 0.5, "restitution": 0.9, "frequency_ratio": 3.0}
+AT_ONCE = {
+    "response": lambda stop: rocking.peak_response("sine", **OF_PULSE, stop=stop),
+    "history": lambda stop: build_motion("sine", **OF_PULSE, stop=stop).events(),
+    "history of a record": lambda stop: rocking.time_history(MOTION, **OF_RECORD, stop=stop),
+    "fragility": lambda stop: rocking.fragility(MOTION, BLOCK, **LEVELS, stop=stop),
+    "sensitivity": lambda stop: rocking.suites.suite_sensitivity(MOTION, BLOCK, **LEVELS, stop=stop),
+    "table": lambda stop: objects_of_csv("width [m],height [m]\n0.3,1.2\n" + "\n" * 9, stop=stop),
+    "floor": lambda stop: rocking.floor_motion(MOTION, periods=0.5, stop=stop),
+    "site": lambda stop: rocking.Site(pga=3.0, pgv=0.3, floor_periods=0.5).find_motions(stop),
+}
+
+
+@pytest.mark.parametrize("name", AT_ONCE)
+def test_a_flag_set_in_advance_ends_the_work_at_once(name):
     stop = StopFlag()
     stop.set()
     with pytest.raises(StoppedError):
-        rocking.peak_response("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop)
-    with pytest.raises(StoppedError):
-        build_motion("sine", slenderness=0.5, frequency_ratio=3, restitution=0.9, stop=stop).events()
+        AT_ONCE[name](stop)
 
 
 def test_a_flag_that_is_not_set_changes_no_result():

@@ -5,6 +5,7 @@ import importlib
 import pickle
 import pkgutil
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +50,7 @@ EXAMPLES = {
         "sine", slenderness=0.3, restitution=0.85, window=(1.0, 10.0)
     ),
     "PulseFit": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK),
-    "VelocityPulse": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=BLOCK).velocity,
+    "VelocityPulse": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=[]).velocity,
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
     "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
     "Assessment": lambda: rocking.assess(rocking.Object("vase", width=0.2, height=1.0), rocking.Site(pga=3.0, pgv=0.4)),
@@ -90,9 +91,15 @@ def test_every_kind_of_result_has_an_example():
     assert kinds == EXAMPLES.keys()
 
 
-@pytest.mark.parametrize("make", EXAMPLES.values(), ids=EXAMPLES)
-def test_equal_results_are_equal(make):
-    one, other = make(), make()
+@cache
+def example(name):
+    """A result of this kind; not changed."""
+    return EXAMPLES[name]()
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_equal_results_are_equal(name):
+    one, other = example(name), EXAMPLES[name]()
     copy = pickle.loads(pickle.dumps(one))
     assert one is not other
     assert one == other == copy
@@ -104,9 +111,9 @@ def test_equal_results_are_equal(make):
         hash(one)
 
 
-@pytest.mark.parametrize("make", EXAMPLES.values(), ids=EXAMPLES)
-def test_results_that_differ_in_one_field_differ(make):
-    one = make()
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_results_that_differ_in_one_field_differ(name):
+    one = example(name)
     for field in dataclasses.fields(one):
         if field.compare:
             changed = pickle.loads(pickle.dumps(one))
@@ -125,7 +132,7 @@ RESULTS = (
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_results_are_said_in_words_and_exported_with_units(name):
-    one = EXAMPLES[name]()
+    one = example(name)
     assert repr(one).startswith("<rocking.")
     assert repr(one).count("\n") < 2
     labelled = one.to_xarray()

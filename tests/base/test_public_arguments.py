@@ -207,7 +207,7 @@ DECLARED = {one.name: one for one in vars(quantities).values() if isinstance(one
 
 def outside(quantity: Quantity) -> list[float]:
     """Numbers beyond the ends of a range."""
-    found = [math.nan, math.inf, -math.inf]
+    found = [math.nan, math.inf, -math.inf, 10**400]
     for end, away in ((quantity.lower, -1.0), (quantity.upper, 1.0)):
         if math.isfinite(end):
             found += [end + away * (0.5 + abs(end)), *([end] if quantity.closed not in ("both", SIDE[away]) else [])]

@@ -27,7 +27,7 @@ def curves(boundary):
 
 
 @pytest.mark.parametrize("alpha", [None, 0.3])
-@pytest.mark.parametrize("pulse", but_long(["sine", "-cosine", "half_sine", "rectangular", "c1"], "sine", "-cosine"))
+@pytest.mark.parametrize("pulse", but_long(["sine", "-cosine", "half_sine", "rectangular", "c1"], "-cosine"))
 def test_the_outcome_changes_at_every_vertex(pulse, alpha):
     nodes = 61 if alpha is None else 41
     boundary = rocking.overturning_boundary(pulse, restitution=0.9, alpha=alpha, nodes=nodes)

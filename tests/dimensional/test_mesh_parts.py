@@ -5,15 +5,10 @@ import struct
 
 import pytest
 
-import rocking
 from rocking import InvalidArgumentError
-from rocking._assessment.tables import objects_of_csv
-from rocking._base.errors import StoppedError
 from rocking._dimensional.mesh_parts import MAX_PARTS, with_few_parts
 from rocking._dimensional.table_reader import rows_of_sheet
-from rocking._numba.cancellation import StopFlag
 from tests.sheets import xlsx_bytes
-from tests.suites.motions import noise
 
 
 def glb(**tree):
@@ -53,16 +48,3 @@ def test_materials_are_left_out_of_an_obj_file():
 def test_a_sheet_with_a_cell_far_out_is_refused(last):
     with pytest.raises(InvalidArgumentError, match="1000000 cells"):
         rows_of_sheet(xlsx_bytes([["object"]], last=last), "table")
-
-
-def test_tables_and_floors_are_cancelled():
-    stop = StopFlag()
-    stop.set()
-    with pytest.raises(StoppedError):
-        objects_of_csv("width [m],height [m]\n0.3,1.2\n" + "\n" * 9, stop=stop)
-    with pytest.raises(StoppedError):
-        rocking.floor_motion(noise(1), periods=0.5, stop=stop)
-    site = rocking.Site(pga=3.0, pgv=0.3, floor_periods=0.5)
-    with pytest.raises(StoppedError):
-        site.find_motions(stop)
-    assert site.motions is site.motions

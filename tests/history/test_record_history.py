@@ -8,8 +8,6 @@ from scipy.integrate import solve_ivp
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import StoppedError
-from rocking._numba.cancellation import StopFlag
 from tests.solver.records.tables import record
 
 MOTION = record("napa_HNE", 0.005)
@@ -148,10 +146,3 @@ def test_without_uplift_nothing_moves() -> None:
     history = rocking.time_history(MOTION, **(BLOCK | {"slenderness": 1.5}))
     assert not history.rotation.any()
     assert history.attrs["outcome"] == "NO_UPLIFT"
-
-
-def test_a_stopped_history_raises() -> None:
-    stop = StopFlag()
-    stop.set()
-    with pytest.raises(StoppedError):
-        rocking.time_history(MOTION, **BLOCK, stop=stop)

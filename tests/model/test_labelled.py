@@ -37,6 +37,8 @@ def test_a_record_takes_them_too():
         RECORD, slenderness=S.values[:, None], frequency_parameter=OMEGA.values, restitution=0.9
     )
     np.testing.assert_array_equal(found.outcome.values, plain.outcome)
+    assert plain.to_xarray().frequency_parameter.attrs["units"] == "rad/s"
+    assert RECORD.name in repr(plain)
 
 
 @pytest.mark.parametrize(

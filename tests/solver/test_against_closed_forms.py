@@ -13,7 +13,7 @@ SIGNED = tuple(sign + name for name in PULSE_NAMES for sign in ("", "-"))
 @pytest.fixture(scope="module")
 def sine_cells():
     rng = np.random.default_rng(12)
-    n = 20_000
+    n = number(6_000, 40_000)
     slenderness, omega = rng.uniform(0.05, 0.98, n), np.exp(rng.uniform(-0.5, 2.5, n))
     eta = rng.uniform(0.3, 1.0, n)
     found = rocking.peak_response("sine", slenderness=slenderness, frequency_ratio=omega, restitution=eta)

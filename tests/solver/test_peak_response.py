@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import rocking
 from rocking import PULSE_NAMES, Outcome
 from rocking._model.fields import RESPONSE_FIELDS
-from rocking._solver.peak_response import MAX_CHUNK, peak_response
+from rocking._solver.peak_response import peak_response
 from tests.sampling import number
 
 FIELDS = tuple(field.name for field in RESPONSE_FIELDS)
@@ -66,18 +66,6 @@ def test_any_memory_layout_and_number_type():
     np.testing.assert_array_equal(backwards.peak_rotation[::-1], plain.peak_rotation)
     single = peak_response("sine", slenderness=np.float32(0.5), frequency_ratio=3, restitution=1)
     assert_identical(single, peak_response("sine", slenderness=0.5, frequency_ratio=3.0, restitution=1.0))
-
-
-@pytest.mark.parametrize("alpha", [None, 0.3])
-def test_threads_and_order_change_nothing(alpha):
-    question = cells(2 * MAX_CHUNK + 17 if alpha is None else MAX_CHUNK + 17, seed=1)
-    one = peak_response("sine", **question, alpha=alpha, threads=1)
-    assert_identical(one, peak_response("sine", **question, alpha=alpha, threads=2))
-    assert_identical(one, peak_response("sine", **question, alpha=alpha))
-    order = np.random.default_rng(2).permutation(one.peak_rotation.size)
-    shuffled = peak_response("sine", **{name: value[order] for name, value in question.items()}, alpha=alpha)
-    for name in FIELDS:
-        np.testing.assert_array_equal(getattr(shuffled, name), getattr(one, name)[order])
 
 
 def test_alpha_may_mix_slender_and_rigid():
@@ -141,20 +129,3 @@ def test_every_valid_cell_has_a_consistent_response(pulse, log_omega, log_slende
     elif impacts > 0:  # the only impact is that of free rocking which is followed by overturning
         assert (outcome, impacts) == (Outcome.OVERTURNED_AFTER_IMPACT, 1)
     assert not (found.chatter and impacts == 0)
-
-
-@pytest.mark.parametrize("alpha", [None, 0.35])
-def test_responses_do_not_depend_on_earlier_calls(alpha):
-    """The solver state is kept between calls, and its lanes hold the blocks of the last call."""
-    random = np.random.default_rng(9)
-    cells = {
-        "slenderness": random.uniform(0.05, 0.99, 60),
-        "frequency_ratio": np.exp(random.uniform(-1.0, 3.0, 60)),
-        "restitution": random.uniform(0.0, 1.0, 60),
-    }
-    for pulse in ("sine", "ricker", "-c2"):
-        together = peak_response(pulse, **cells, alpha=alpha, threads=1)
-        for k in random.permutation(60):
-            alone = peak_response(pulse, **{name: values[k] for name, values in cells.items()}, alpha=alpha)
-            for field in ("peak_rotation", "outcome", "impacts", "end_velocity", "first_impact_time"):
-                np.testing.assert_array_equal(getattr(alone, field), getattr(together, field)[k])

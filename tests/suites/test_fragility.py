@@ -9,9 +9,8 @@ from scipy.stats import norm
 
 import rocking
 from rocking._base.equality import equal_values
-from rocking._base.errors import InvalidArgumentError, StoppedError
+from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.frequency import critical_frequency_ratio
-from rocking._numba.cancellation import StopFlag
 from rocking.suites.fits import FitStatus, binomial_interval
 from tests.suites.motions import BLOCK, noise, sampled
 
@@ -210,13 +209,6 @@ def test_invalid_arguments_are_named(noisy, arguments, name):
     with pytest.raises(InvalidArgumentError) as error:
         rocking.fragility(given.pop("records"), given.pop("blocks"), **given)
     assert error.value.parameter == name
-
-
-def test_work_can_be_stopped(noisy):
-    stop = StopFlag()
-    stop.set()
-    with pytest.raises(StoppedError):
-        rocking.fragility(noisy, BLOCK, intensity=LEVELS, stop=stop)
 
 
 WIDTH = xr.DataArray([0.4, 0.6], dims="w", coords={"w": [4, 6]})

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._base.errors import InvalidArgumentError, StoppedError
-from rocking._numba.cancellation import StopFlag
+from rocking._base.errors import InvalidArgumentError
 from rocking.suites.table import sensitivity_table
 from tests.suites.motions import BLOCK, noise, sampled
 
@@ -112,10 +111,3 @@ def test_invalid_arguments_are_named(motions, arguments, name):
     with pytest.raises(InvalidArgumentError) as error:
         rocking.suites.suite_sensitivity(motions[:1], BLOCK, **({"intensity": [3.0]} | arguments))
     assert error.value.parameter == name
-
-
-def test_work_can_be_stopped(motions):
-    stop = StopFlag()
-    stop.set()
-    with pytest.raises(StoppedError):
-        rocking.suites.suite_sensitivity(motions, BLOCK, intensity=LEVELS, stop=stop)

@@ -1,10 +1,11 @@
-"""Every case of the reference table: outcome, and the peak within what the rounding of the input explains."""
+"""Every case of the reference table: outcome, peak within what the rounding of the input explains, amplification."""
 
 import numpy as np
 import pytest
 
 import rocking
-from tests.solver.records.tables import Row, rows
+from rocking.suites import record_amplification
+from tests.solver.records.tables import Row, record, rows
 
 ROUNDING = 2.2e-16
 ROWS = rows()
@@ -22,3 +23,23 @@ def test_outcome_and_peak_of_each_case(row: Row) -> None:
     else:
         allowed = 1000 * ROUNDING * max(1.0, row.amplification)
         assert float(response.peak_rotation) == pytest.approx(row.peak_rotation, rel=allowed)
+
+
+SENSITIVE = [row for row in ROWS if 0.1 < row.amplification < 1e2]
+
+
+@pytest.mark.parametrize("row", SENSITIVE[::6], ids=[str(k) for k in range(0, len(SENSITIVE), 6)])
+def test_the_amplification_is_that_of_the_table(row: Row) -> None:
+    assert float(record_amplification(row.motion, **row.groups)) == pytest.approx(row.amplification, rel=0.02)
+
+
+def test_overturning_and_resting_blocks_have_none() -> None:
+    motion = record("napa_HNE", 0.005)
+    found = record_amplification(motion, frequency_parameter=2.2, slenderness=[0.2, 0.45, 1.5], restitution=0.9)
+    np.testing.assert_array_equal(np.isnan(found), [True, False, True])
+
+
+def test_a_change_of_the_outcome_within_the_difference_is_infinite() -> None:
+    motion = record("napa_HNE", 0.005)
+    found = record_amplification(motion, frequency_parameter=2.2, slenderness=1.0, restitution=0.9)
+    assert np.isinf(found)

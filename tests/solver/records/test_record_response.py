@@ -1,14 +1,10 @@
 """Responses under records: order of convergence to pulses, invariances, chatter, limits, arguments."""
 
-import threading
-
 import numpy as np
 import pytest
-import xarray as xr
 
 import rocking
-from rocking._base.errors import InvalidArgumentError, StoppedError
-from rocking._numba.cancellation import StopFlag
+from rocking._base.errors import InvalidArgumentError
 from tests.solver.records.tables import record
 
 MOTION = record("synthetic_31", 0.01)
@@ -142,15 +138,6 @@ def test_a_motion_that_starts_with_a_jump_lifts_the_block_at_once() -> None:
     assert response.outcome == rocking.Outcome.RECOVERS
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
-def test_threads_and_order_of_the_blocks_change_no_bit(alpha: float | None) -> None:
-    slenderness = np.tile(np.linspace(0.2, 1.1, 97), 3)
-    first = rocking.peak_response(MOTION, **(GRID | {"slenderness": slenderness}), alpha=alpha, threads=1)
-    second = rocking.peak_response(MOTION, **(GRID | {"slenderness": slenderness[::-1]}), alpha=alpha, threads=2)
-    np.testing.assert_array_equal(first.peak_rotation, second.peak_rotation[::-1])
-    np.testing.assert_array_equal(first.impacts, second.impacts[::-1])
-
-
 def test_arguments_broadcast_and_slender_and_rigid_blocks_mix() -> None:
     p, s = np.array([1.5, 2.5])[:, None, None], np.array([0.3, 0.6, 0.9])[:, None]
     response = rocking.peak_response(MOTION, frequency_parameter=p, slenderness=s, restitution=0.8, alpha=[0.0, 0.3])
@@ -159,16 +146,6 @@ def test_arguments_broadcast_and_slender_and_rigid_blocks_mix() -> None:
     assert response.peak_rotation[1, 1, 1] == single.peak_rotation
     empty = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=[], restitution=0.8)
     assert empty.shape == (0,)
-
-
-def test_responses_are_labelled() -> None:
-    slenderness = xr.DataArray([0.3, 0.6], dims="block")
-    response = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=slenderness, restitution=0.8)
-    assert response.peak_rotation.dims == ("block",)
-    assert float(response.frequency_parameter) == 2.0
-    plain = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=[0.3, 0.6], restitution=0.8)
-    assert plain.to_xarray().frequency_parameter.attrs["units"] == "rad/s"
-    assert "synthetic_31" in repr(plain)
 
 
 @pytest.mark.parametrize(
@@ -189,17 +166,6 @@ def test_only_records_are_motions() -> None:
         rocking.peak_response("napa.at2", **GRID)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("alpha", ALPHAS)
-def test_work_can_be_stopped(alpha: float | None) -> None:
-    stop = StopFlag()
-    timer = threading.Timer(0.05, stop.set)
-    timer.start()
-    many = GRID | {"slenderness": np.linspace(0.3, 0.9, 300_000)}
-    with pytest.raises(StoppedError):
-        rocking.peak_response(MOTION, **many, alpha=alpha, stop=stop)
-    timer.cancel()
-
-
 @pytest.mark.parametrize("alpha", [None, 0.2, 1.2])
 def test_a_sample_that_just_uplifts_the_block(alpha):
     """Where |u| = 1 within rounding at a sample, flights of an inelastic block followed each other without end."""
@@ -217,19 +183,3 @@ def test_a_sample_that_just_uplifts_the_block(alpha):
             alpha=alpha,
         )
         assert np.array_equal(np.isnan(found.peak_rotation), found.overturned)
-
-
-def test_the_response_of_a_block_does_not_depend_on_the_others_of_the_array() -> None:
-    p, scale = np.geomspace(0.5, 60.0, 40), np.where(np.arange(40) % 2, 0.4, 0.0)
-    motion = rocking.Record(
-        MOTION.acceleration, MOTION.time_step, vertical=0.5 * MOTION.acceleration[::-1], unit="m/s2"
-    )
-    given = {"slenderness": 0.3, "restitution": 0.5, "alpha": 0.2}
-    together = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given)
-    assert together.outcome.min() == 1
-    for k in range(40):
-        alone = rocking.peak_response(motion, frequency_parameter=p[k], vertical_scale=scale[k], **given)
-        assert alone.outcome == together.outcome[k]
-        np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[k])
-    apart = rocking.peak_response(motion, frequency_parameter=p, vertical_scale=scale, **given, threads=1)
-    np.testing.assert_array_equal(apart.peak_rotation, together.peak_rotation)

@@ -61,18 +61,6 @@ def test_times_need_not_be_equidistant() -> None:
         rocking.peak_response(TRIANGLE, **{**groups, "frequency_ratio": 1e-9})
 
 
-@pytest.mark.parametrize("alpha", [None, 0.2])
-def test_the_response_of_a_block_does_not_depend_on_the_others_of_the_array(alpha: float | None) -> None:
-    """Low frequency ratios divide the sample intervals, each its own number of times."""
-    groups = {"slenderness": 0.4, "restitution": 0.85, "alpha": alpha}
-    omega = np.geomspace(1e-4, 20.0, 40)
-    together = rocking.peak_response(RANDOM, frequency_ratio=omega, **groups)
-    for k in range(40):
-        alone = rocking.peak_response(RANDOM, frequency_ratio=omega[k], **groups)
-        assert alone.outcome == together.outcome[k]
-        np.testing.assert_array_equal(alone.peak_rotation, together.peak_rotation[k])
-
-
 def test_mirrored_pulse_and_equality() -> None:
     groups = {"slenderness": 0.4, "frequency_ratio": 3.0, "restitution": 0.85}
     assert rocking.peak_response(SAW.mirrored(), **groups).peak_rotation == pytest.approx(
