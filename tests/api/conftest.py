@@ -1,6 +1,7 @@
 """A small results folder, and the service over it."""
 
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,6 +26,10 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
     *(f"suites/demonstration/{name}" for name in ("fragility", "outcomes", "sensitivity")),
 }  # fmt: skip
 """Names of the data sets in the results."""
+
+
+NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
+"""A record of the workflow."""
 
 
 @pytest.fixture(scope="session")

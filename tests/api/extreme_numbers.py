@@ -54,7 +54,7 @@ SECONDS = 60.0
 GRANTED = 0.3
 """Time limit of a request of heavy work in the service [s]; the answer is 504 then."""
 
-PART = 0.3
+PART = 0.1
 """Part of the calls of a sample that are made."""
 
 POWERS = (300, 30, 12, 6)
@@ -499,7 +499,7 @@ def unknown_constant(name: str) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, help="folder that the workflow filled")
-    parser.add_argument("--part", choices=["python", "routes", "commands"], help="only this part")
+    parser.add_argument("--part", choices=["all", "python", "routes", "commands"], default="all", help="only this part")
     parser.add_argument("--only", default="", help="part of the name of a function, command or route")
     parser.add_argument("--sample", type=int, metavar="SEED", help="some calls, one value of each kind")
     parser.add_argument("--verbose", action="store_true", help="print the time of each function, command and route")
@@ -523,7 +523,7 @@ def main() -> None:
             "routes": partial(walk_routes, walk, given.results),
             "commands": partial(walk_commands, walk, folder),
         }
-        for part in [given.part] if given.part else parts:
+        for part in parts if given.part == "all" else [given.part]:
             parts[part]()
     if given.verbose:
         slowest = "".join(f"{seconds:8.2f} s {name}\n" for name, seconds in walk.seconds.most_common(40))

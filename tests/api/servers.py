@@ -1,5 +1,6 @@
 """Real servers on the loopback, for tests."""
 
+import http.client
 import os
 import re
 import signal
@@ -62,6 +63,16 @@ def serving(results, log, command=(sys.executable, "-m", "rocking._cli"), cwd=RO
                     process.wait(timeout=30)
                 except subprocess.TimeoutExpired:
                     process.kill()
+
+
+def ask(port, method, path, media_type="application/octet-stream", content=""):
+    """Status and body of the answer to a request, by a client of plain Python, which takes little time."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=180)
+    connection.request(method, path, content, {"Content-Type": media_type})
+    response = connection.getresponse()
+    found = response.status, response.read()
+    connection.close()
+    return found
 
 
 @contextmanager

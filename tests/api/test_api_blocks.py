@@ -5,7 +5,6 @@ import io
 import math
 
 import pytest
-from rocking_api.models import blocks as models
 from rocking_api.routers import blocks
 
 import rocking
@@ -27,9 +26,6 @@ QUERY = {
 
 def get_response(client, **changes):
     return client.get("/v1/blocks/response", params=QUERY | changes)
-
-
-LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with its unit, such as 0.5 s, 500 ms"
 
 
 def test_the_response_equals_the_solver_in_si_units(client):
@@ -167,11 +163,6 @@ def test_margins_are_the_nearest_changes_of_outcome(client, peak_acceleration):
                 assert overturned(client, **start | {name: start[name] * factor ** (way * step)}) is here
 
 
-def test_the_url_repeats_the_request(client):
-    response = get_response(client, pulse="-cosine", restitution=0.9, gravity=3.71).json()
-    assert client.get(response["url"]).json() == response
-
-
 def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, monkeypatch):
     whole = get_response(client).json()
     monkeypatch.setattr(blocks, "SEARCH_SHARE", 0.0)
@@ -217,17 +208,6 @@ def test_many_blocks_as_json_and_csv(client):
     assert both["outcome"] == found["outcome"]
 
 
-def test_all_wrong_numbers_of_a_json_body_are_named_with_units(client):
-    row = {"width": 0.4, "height": "tall", "peak_acceleration": 4.0, "period": "short"}
-    response = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [row, row | {"height": 1.6}]})
-    problem = assert_problem(response, 422, "blocks[0].height")
-    assert problem["errors"] == [
-        {"name": "blocks[0].height", "value": "tall", "allowed": LENGTH},
-        {"name": "blocks[0].period", "value": "short", "allowed": TIME},
-        {"name": "blocks[1].period", "value": "short", "allowed": TIME},
-    ]
-
-
 def test_a_text_may_state_another_unit(client):
     stated = {"width": "40 cm", "height": "1600mm", "peak_acceleration": "0.5 g", "period": "500 ms"}
     found = client.get("/v1/blocks/response", params={"pulse": "sine", "mass_height": "80 cm"} | stated).json()
@@ -238,33 +218,6 @@ def test_a_text_may_state_another_unit(client):
     )
     many = client.post("/v1/blocks/response", json={"pulse": "sine", "blocks": [stated]}).json()
     assert many["width"] == [0.4]
-
-
-def test_every_row_of_a_table_with_an_error_is_named(client):
-    header, row = TABLE.splitlines()[:2]
-    body = "\n".join([header, row, row.replace("80", "tall"), row.replace("0.2,", "-20,")])
-    problem = assert_problem(
-        client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": "text/csv"}), 422
-    )
-    assert [(error["name"], error["value"]) for error in problem["errors"]] == [
-        ("blocks, row 3, height", "tall"),
-        ("blocks, row 4, width", "-20"),
-    ]
-
-
-@pytest.mark.parametrize(
-    ("body", "line", "reason"),
-    [
-        (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
-        (TABLE.replace("vase", "v" * 131_073), 2, "field larger than field limit"),
-        (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
-        (TABLE.replace("name", '"name'), 1, "unexpected end of data"),
-    ],
-)
-def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client, body, line, reason):
-    response = client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": "text/csv"})
-    problem = assert_problem(response, 422, f"blocks, line {line}")
-    assert reason in problem["value"]
 
 
 def test_names_come_out_as_they_went_in_but_for_formulas(client):
@@ -278,35 +231,6 @@ def test_names_come_out_as_they_went_in_but_for_formulas(client):
     assert [row["name"] for row in rows] == [*names[:4], *(f"'{name}" for name in names[4:])]
     assert {row["restitution"] for row in rows} == {"0.9"}
     assert client.post(url + "&format=json", content=sent.getvalue(), headers=headers).json()["name"] == names
-
-
-@pytest.mark.parametrize(
-    ("body", "kind", "name"),
-    [
-        ('{"blocks": []}', "application/json", "blocks"),
-        ('{"blocks": [{"width": 2, "peak_acceleration": 4, "period": 1}]}', "application/json", "blocks[0].height"),
-        ('{"blocks": [{"width": 2}]}', "application/json", "blocks[0].peak_acceleration"),
-        (TABLE.replace("[cm]", ""), "text/csv", "blocks, row 2, height"),
-        (TABLE.replace("[cm]", "[kg]"), "text/csv", "blocks, header"),
-        (TABLE.replace("80", "tall"), "text/csv", "blocks, row 2, height"),
-        (TABLE.replace("0.2,", "1e9,"), "text/csv", "blocks, row 2, width"),
-        ("CDF", "application/x-netcdf", "Content-Type"),
-    ],
-)
-def test_bodies_with_invalid_blocks_are_explained(client, body, kind, name):
-    response = client.post("/v1/blocks/response?pulse=sine", content=body, headers={"content-type": kind})
-    assert_problem(response, 415 if name == "Content-Type" else 422, name)
-
-
-def test_blocks_are_counted_as_rows_are_read(client, monkeypatch):
-    url, headers = "/v1/blocks/response?pulse=sine", {"content-type": "text/csv"}
-    for most, status in ((3, 200), (2, 413)):
-        monkeypatch.setattr(models, "MAX_BLOCKS", most)
-        assert client.post(url, json={"blocks": ROWS}).status_code == status
-        for end in ("\n", "\r\n", "\r"):
-            response = client.post(url, content=TABLE.replace("\n", end) + end, headers=headers)
-            assert response.status_code == status
-    assert assert_problem(response, 413, "blocks")["allowed"] == "at most 2"
 
 
 def test_an_impact_at_a_share_of_the_half_base_is_the_number(client):

@@ -5,7 +5,7 @@ import pytest
 import rocking
 from rocking._dimensional.body_kinds import WITHOUT_FILES as KINDS
 from tests.api.conftest import assert_problem
-from tests.sampling import number, sample
+from tests.sampling import but_long, number, sample
 
 RECORD = "time [s],a [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
 BLOCK = {"width": 0.4, "height": 1.6}
@@ -41,7 +41,7 @@ def test_the_same_parameters_in_the_body_and_in_the_query_have_the_same_answer(c
     content, params = ROUTES[route]
     inside = client.post(route, json=content | params)
     assert inside.status_code == (422 if route == "/v1/identify" else 200), inside.text  # three samples are too few
-    for name in sample([*params], number(2, len(params))):
+    for name in sample([*params], number(1, len(params))):
         rest = {key: value for key, value in params.items() if key != name}
         text = str(params[name]).lower() if isinstance(params[name], bool) else params[name]
         assert answer_of(client.post(route, params={name: text}, json=content | rest)) == answer_of(inside)
@@ -103,7 +103,7 @@ BODIES = {
 PULSE = {"pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
 
 
-@pytest.mark.parametrize("kind", BODIES)
+@pytest.mark.parametrize("kind", but_long(BODIES, "hollow", "two_edges", "structure"))
 def test_every_kind_of_body_is_asked_by_its_parameters_by_a_text_and_by_an_object(client, kind):
     given = BODIES[kind]
     made = rocking.body(kind, **given)

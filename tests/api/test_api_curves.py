@@ -1,61 +1,172 @@
-"""GET /v1/spectrum, /v1/overturning and /v1/history, in every format."""
+"""Spectrum, history, thresholds, map and boundaries, under a pulse by its name and by samples, in every format."""
 
 import csv
 import io
+import time
 
 import numpy as np
 import pytest
-import rocking_api.routers.overturning
 import xarray as xr
+from rocking_api.models.pulses import MAX_SAMPLES
+from rocking_api.routers import overturning
 
+import rocking
 from rocking._boundary.curves import join_curves
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_dataset, write_dataset
-from rocking._history.time_history import time_history
-from rocking._solver.peak_response import peak_response
-from tests.api.conftest import client_of
+from rocking._model.response import Outcome
+from tests.api.conftest import NAPA, assert_problem, client_of
 
+SAMPLES = {"acceleration": [0.0, 2.0, -1.0, 0.0], "time": [0.0, 0.1, 0.4, 1.0], "name": "ramp"}
+RAMP = rocking.SampledPulse(SAMPLES["acceleration"], SAMPLES["time"], name="ramp")
 GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
-BLOCK = {"pulse": "sine"} | GROUPS
-SPECTRUM = {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85, "points": 50}
-ROUTES = {
-    "/v1/spectrum": SPECTRUM,
-    "/v1/overturning": {"pulse": "sine", "restitution": 0.85},
-    "/v1/history": BLOCK,
+ONE = {"slenderness": 0.6, "restitution": 0.85}
+SHAPE = {"restitution": 0.85, "alpha_deg": 14.0}
+BLOCK = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
+BODIES = {
+    "/v1/response": GROUPS,
+    "/v1/spectrum": ONE | {"points": 50},
+    "/v1/history": GROUPS | {"samples": 50, "alpha_deg": 14.0, "contact": True},
+    "/v1/map": SHAPE | {"columns": 21, "rows": 12, "slenderness_min": 0.1, "slenderness_max": 1.1},
+    "/v1/overturning": {"restitution": 0.2},
+    "/v1/thresholds": SHAPE | {"frequency_ratio": 5.0},
+    "/v1/blocks/response": {"blocks": [BLOCK]},
+}
+SLENDER = np.radians(14.0)
+
+
+def post(client, route, pulse=SAMPLES, **changes):
+    return client.post(route, json=BODIES[route] | {"pulse": pulse} | changes)
+
+
+def answer(client, route, pulse=SAMPLES, **changes):
+    response = post(client, route, pulse, **changes)
+    assert response.status_code == 200, response.text
+    assert "Cache-Control" not in response.headers
+    return response.json()
+
+
+def numbers(values):
+    return np.array(values, dtype=float)
+
+
+@pytest.mark.parametrize("pulse", ["sine", "ramp"])
+def test_answers_are_those_of_the_solver(client, pulse):
+    given, motion = ("sine", "sine") if pulse == "sine" else (SAMPLES, RAMP)
+    peaks = rocking.peak_response(motion, **GROUPS)
+    assert answer(client, "/v1/response", given, method="auto" if pulse == "ramp" else "solver")["peak_rotation"] == [
+        float(peaks.peak_rotation)
+    ]
+
+    spectrum = answer(client, "/v1/spectrum", given)
+    along = rocking.peak_response(motion, **ONE, frequency_ratio=np.geomspace(0.5, 12.0, 50))
+    assert spectrum["frequency_ratio"] == np.geomspace(0.5, 12.0, 50).tolist()
+    assert spectrum["overturned"] == along.overturned.tolist()
+    assert any(spectrum["overturned"])
+    assert ("cube" in spectrum["source"]) is (pulse == "sine")
+    for peak, bound, exact in zip(spectrum["peak_rotation"], spectrum["error_bound"], along.peak_rotation, strict=True):
+        assert peak is None or abs(peak - exact) <= bound
+
+    history = answer(client, "/v1/history", given)
+    expected = rocking.time_history(motion, **GROUPS, samples=50, alpha=SLENDER, contact=True)
+    for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
+        assert history[name] == expected[name].values.tolist()
+    for name in ("horizontal_reaction", "normal_reaction", "friction_demand", "friction_demand_over_slope"):
+        assert history["contact"][name] == expected[name].values.tolist()
+    assert history["contact"]["largest_friction_demand"] == expected.largest_friction_demand
+    assert (history["contact"]["lifts_off"], history["contact"]["warnings"]) == (False, "")
+    assert history["outcome"] == expected.outcome
+    assert answer(client, "/v1/history", given, contact=False)["contact"] is None
+
+    area = answer(client, "/v1/map", given)
+    axes = {"slenderness": np.linspace(0.1, 1.1, 12)[:, None], "frequency_ratio": np.geomspace(0.5, 12.0, 21)}
+    grid = rocking.peak_response(motion, **axes, restitution=0.85, alpha=SLENDER)
+    assert {Outcome.NO_UPLIFT, Outcome.RECOVERS, Outcome.OVERTURNED_DIRECTLY} <= set(grid.outcome.ravel().tolist())
+    assert [Outcome[area["outcomes"][code]] for code in area["outcome"]] == grid.outcome.ravel().tolist()
+    np.testing.assert_allclose(numbers(area["peak_rotation"]), grid.peak_rotation.ravel(), rtol=0, atol=0.5001e-4)
+    assert (area["slenderness"][0], area["slenderness"][-1], len(area["frequency_ratio"])) == (0.1, 1.1, 21)
+
+    for alpha in (None, SLENDER):
+        changes = rocking.thresholds(motion, frequency_ratio=5.0, restitution=0.85, alpha=alpha)
+        found = answer(client, "/v1/thresholds", given, alpha_deg=alpha and 14.0)["thresholds"]
+        assert [one["amplitude"] for one in found] == changes.amplitude.tolist()
+        assert [one["impacts"] for one in found] == changes.impacts.tolist()
+        assert all(one["slenderness"] == 1 / one["amplitude"] for one in found)
+    one = rocking.Block(0.4, 1.6).response(motion, peak_acceleration=4.0, period=0.5)
+    assert answer(client, "/v1/blocks/response", given)["top_displacement"] == [one.displacement]
+
+
+def test_golden_thresholds_and_those_above_the_highest(client):
+    query = {"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.85}
+    found = client.get("/v1/thresholds", params=query).json()
+    amplitudes = [one["amplitude"] for one in found["thresholds"]]
+    assert amplitudes == pytest.approx([3.980175, 5.356347, 7.168129], abs=1e-6)
+    assert [one["overturns_above"] for one in found["thresholds"]] == [True, False, True]
+    assert found["thresholds"][-1]["outcome"] == "OVERTURNED_DIRECTLY"
+    assert found["largest_surviving_amplitude"] == amplitudes[0]
+    found = client.get("/v1/thresholds", params=query | {"highest": 2.0}).json()
+    assert (found["thresholds"], found["largest_surviving_amplitude"]) == ([], None)
+
+
+@pytest.mark.parametrize("route", BODIES)
+def test_the_answer_repeats_the_name_of_a_pulse_and_of_samples_the_digest(client, route):
+    found = answer(client, route)
+    assert (found["query"]["pulse"], found["query"]["pulse_digest"]) == ("ramp", RAMP.digest)
+    assert "acceleration" not in found["query"]
+    assert set(np.atleast_1d(found["source"])) == {"solver"}
+    found = answer(client, route, pulse="-sine")
+    assert (found["query"]["pulse"], found["query"].get("pulse_digest")) == ("-sine", None)
+
+
+def test_parameters_beside_samples_are_in_the_body(client):
+    one = {"pulse": SAMPLES, "restitution": 0.9}
+    for response, name in (
+        (client.post("/v1/spectrum?points=3", json=BODIES["/v1/spectrum"] | one), "points"),
+        (post(client, "/v1/spectrum", colour=1), "colour"),
+        (client.post("/v1/spectrum", json=one), "slenderness"),
+        (client.post("/v1/history", json=BODIES["/v1/history"]), "pulse"),
+        (post(client, "/v1/response", method="cube"), "pulse"),
+        (client.post("/v1/blocks/response?pulse=sine", json=BODIES["/v1/blocks/response"] | one), "pulse"),
+    ):
+        assert_problem(response, 422, name)
+
+
+RECORD = {"width": 0.5, "height": 2.0}
+FORMATS = {
+    # route, parameters, body, variables with one value for each row
+    "spectrum": ("/v1/spectrum", ONE | {"pulse": "sine", "points": 50}, None),
+    "history": ("/v1/history", GROUPS | {"pulse": "sine", "samples": 50}, None),
+    "map": ("/v1/map", {"pulse": "cosine", "restitution": 0.9, "columns": 21, "rows": 12}, None),
+    "subset": ("/v1/datasets/spectra/sine/eta-0.85/subset", {"slenderness_max": 0.1}, None),
+    "record": ("/v1/records/history", RECORD | {"samples": 300}, NAPA),
+    "scales": ("/v1/records/scales", RECORD | {"points": 5, "scale_max": 2.0}, NAPA),
 }
 
 
-def read_netcdf(response):
-    assert response.headers["content-type"] == "application/x-netcdf"
-    return xr.open_dataset(io.BytesIO(response.content), engine="scipy").load()
+@pytest.mark.parametrize("name", FORMATS)
+def test_csv_and_netcdf_hold_every_digit(client, name):
+    route, query, file = FORMATS[name]
+    method, body = ("GET", {}) if file is None else ("POST", {"content": file.read_bytes()})
+    text = client.request(method, route, params=query | {"format": "csv"}, **body)
+    assert text.headers["content-type"].startswith("text/csv")
+    rows = list(csv.DictReader(io.StringIO(text.text)))
+    binary = client.request(method, route, params=query, headers={"accept": "application/x-netcdf"}, **body)
+    assert binary.headers["content-type"] == "application/x-netcdf"
+    stored = xr.open_dataset(io.BytesIO(binary.content), engine="scipy").load()
+    compared = [column for column in ("peak_rotation", "rotation", "impacts") if column in rows[0]]
+    assert compared
+    for column in compared:
+        values = stored[column].values.ravel().astype(float)
+        values[values < -1e9] = np.nan  # unknown numbers of impacts
+        np.testing.assert_array_equal([float(row[column] or "nan") for row in rows], values)
+    for one in {"restitution", "slenderness"} & {*query}:
+        assert stored.attrs[one] == query[one]
+    if name in ("spectrum", "history", "record", "scales"):
+        given = client.request(method, route, params=query, **body).json()
+        np.testing.assert_array_equal(numbers(given[compared[0]]), stored[compared[0]])
 
 
-def read_csv(response):
-    assert response.headers["content-type"].startswith("text/csv")
-    return list(csv.DictReader(io.StringIO(response.text)))
-
-
-def test_spectrum_lies_within_its_bounds(client):
-    result = client.get("/v1/spectrum", params=SPECTRUM).json()
-    expected = peak_response("sine", slenderness=0.6, frequency_ratio=np.geomspace(0.5, 12.0, 50), restitution=0.85)
-    assert result["frequency_ratio"] == np.geomspace(0.5, 12.0, 50).tolist()
-    assert result["overturned"] == expected.overturned.tolist()
-    assert any(result["overturned"])
-    assert {"cube", "solver"} >= set(result["source"])
-    for peak, bound, exact in zip(result["peak_rotation"], result["error_bound"], expected.peak_rotation, strict=True):
-        assert peak is None or abs(peak - exact) <= bound
-
-
-def test_the_three_formats_of_a_spectrum_agree(client):
-    result = client.get("/v1/spectrum", params=SPECTRUM).json()
-    rows = read_csv(client.get("/v1/spectrum", params=SPECTRUM | {"format": "csv"}))
-    stored = read_netcdf(client.get("/v1/spectrum", params=SPECTRUM, headers={"accept": "application/x-netcdf"}))
-    assert [row["outcome"] for row in rows] == result["outcome"]
-    assert [float(row["peak_rotation"]) if row["peak_rotation"] else None for row in rows] == result["peak_rotation"]
-    np.testing.assert_array_equal(
-        stored["peak_rotation"], [np.nan if peak is None else peak for peak in result["peak_rotation"]]
-    )
-    assert stored.attrs["slenderness"] == 0.6
+CURVES = {"pulse": "sine", "restitution": 0.85}
 
 
 def test_traced_curves_are_cached(client, monkeypatch):
@@ -65,29 +176,40 @@ def test_traced_curves_are_cached(client, monkeypatch):
         traced.append(args)
         return overturning_boundary(*args, **kwargs)
 
-    monkeypatch.setattr(rocking_api.routers.overturning, "overturning_boundary", trace)
+    monkeypatch.setattr(overturning, "overturning_boundary", trace)
     query = {"pulse": "half_sine", "restitution": 0.8765}
     responses = [client.get("/v1/overturning", params=query | more) for more in ({}, {"alpha_deg": 0}, {})]
     assert len(traced) == 1
     assert responses[0].headers["etag"] == responses[2].headers["etag"]
     assert responses[0].json()["curves"] == responses[1].json()["curves"]
-    known = client.get("/v1/overturning", params=query, headers={"If-None-Match": responses[0].headers["etag"]})
-    assert known.status_code == 304
+    found = answer(client, "/v1/overturning")
+    curves = rocking.overturning_boundary(RAMP, restitution=0.2, nodes=overturning.NODES)
+    traced = [value for curve in found["curves"] for value in curve["slenderness"]]
+    assert traced == curves["slenderness"].values.tolist()
+    monkeypatch.setattr(overturning, "overturning_boundary", None)
+    doubled = SAMPLES | {"acceleration": [2.0 * value for value in SAMPLES["acceleration"]]}
+    for same in (SAMPLES, doubled):  # of one shape
+        assert answer(client, "/v1/overturning", pulse=same) == found
+    assert post(client, "/v1/overturning", pulse=SAMPLES | {"acceleration": [0, 1, -1, 0]}).status_code == 500
 
 
-def test_overturning_reads_the_curves_of_the_workflow(client, results):
-    result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
+def test_boundaries_are_those_of_the_workflow_in_every_format(client, results):
+    result = client.get("/v1/overturning", params=CURVES).json()
     stored = read_dataset(results / "overturning" / "sine" / "eta-0.85.nc")
     assert result["source"] == "dataset"
     assert result["data_version"] == client.get("/v1/datasets/overturning/sine/eta-0.85").json()["sha256"]
     assert [len(curve["slenderness"]) for curve in result["curves"]] == stored["row_size"].values.tolist()
-    np.testing.assert_array_equal(
-        np.concatenate([curve["slenderness"] for curve in result["curves"]]), stored["slenderness"]
-    )
+    points = [value for curve in result["curves"] for value in curve["slenderness"]]
+    np.testing.assert_array_equal(points, stored["slenderness"])
     assert {curve["outcome"] for curve in result["curves"]} == {"OVERTURNED_DIRECTLY", "OVERTURNED_AFTER_IMPACT"}
+    rows = list(csv.DictReader(io.StringIO(client.get("/v1/overturning", params=CURVES | {"format": "csv"}).text)))
+    content = client.get("/v1/overturning", params=CURVES | {"format": "nc"}).content
+    file = xr.open_dataset(io.BytesIO(content), engine="scipy").load()
+    assert len(rows) == file.sizes["point"] == len(points)
+    assert int(rows[-1]["curve"]) == file.sizes["curve"] - 1
 
 
-def test_overturning_returns_the_curves_of_the_requested_angle(own_results):
+def test_boundaries_are_those_of_the_requested_angle_and_traced_where_they_are_damaged(own_results):
     path = own_results / "overturning" / "sine" / "eta-0.85.nc"
     slender = read_dataset(path)
     alpha = np.radians(20)
@@ -97,74 +219,48 @@ def test_overturning_returns_the_curves_of_the_requested_angle(own_results):
     write_dataset(join_curves([slender, rigid]), path)
     with client_of(own_results) as client:
         for angle, stored in ((None, slender), (0, slender), (20, rigid)):
-            requested = ROUTES["/v1/overturning"] | ({} if angle is None else {"alpha_deg": angle})
+            requested = CURVES | ({} if angle is None else {"alpha_deg": angle})
             result = client.get("/v1/overturning", params=requested).json()
             assert result["source"] == "dataset"
             found = [s for curve in result["curves"] for s in curve["slenderness"]]
             assert found == stored["slenderness"].values.tolist()
         requested["alpha_deg"] = 10
         assert client.get("/v1/overturning", params=requested).json()["source"] == "solver"
+        path.write_bytes(b"not a netCDF file")
+        assert client.get("/v1/overturning", params=CURVES).json()["source"] == "solver"
+        path.unlink()
+        path.symlink_to(path)  # which cannot be read
+        assert client.get("/v1/overturning", params=CURVES).json()["source"] == "solver"
 
 
 @pytest.mark.parametrize("changes", [{"restitution": 0.5}, {"pulse": "half_sine"}])
-def test_overturning_traces_curves_that_are_not_stored(client, changes):
-    result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | changes).json()
+def test_boundaries_that_are_not_stored_are_traced(client, changes):
+    query = CURVES | changes
+    result = client.get("/v1/overturning", params=query).json()
     assert (result["source"], result["data_version"]) == ("solver", None)
     curve = max(result["curves"], key=lambda curve: len(curve["slenderness"]))
     assert curve["outcome"].startswith("OVERTURNED")
     for s, w in list(zip(curve["slenderness"], curve["frequency_ratio"], strict=True))[::40]:
-        beside = s * (1 + np.array([-1e-9, 1e-9]))
-        pulse, eta = changes.get("pulse", "sine"), changes.get("restitution", 0.85)
-        overturned = peak_response(pulse, slenderness=beside, frequency_ratio=w, restitution=eta).overturned
+        beside = {"slenderness": s * (1 + np.array([-1e-9, 1e-9])), "frequency_ratio": w}
+        overturned = rocking.peak_response(query["pulse"], **beside, restitution=query["restitution"]).overturned
         assert overturned[0] != overturned[1] or s < 0.02
 
 
-def test_damaged_curves_are_traced_instead(own_results):
-    (own_results / "overturning" / "sine" / "eta-0.85.nc").write_bytes(b"not a netCDF file")
-    with client_of(own_results) as client:
-        assert client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()["source"] == "solver"
+@pytest.mark.parametrize("form", ["json", "csv", "nc"])
+def test_a_pulse_that_overturns_nothing_has_no_boundaries(client, form):
+    response = post(client, "/v1/overturning", pulse=SAMPLES | {"period": 1e6}, format=form)
+    assert response.status_code == 200
+    assert form != "json" or response.json()["curves"] == []
 
 
-def test_overturning_as_csv_and_netcdf(client):
-    result = client.get("/v1/overturning", params=ROUTES["/v1/overturning"]).json()
-    rows = read_csv(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "csv"}))
-    stored = read_netcdf(client.get("/v1/overturning", params=ROUTES["/v1/overturning"] | {"format": "nc"}))
-    points = sum(len(curve["slenderness"]) for curve in result["curves"])
-    assert len(rows) == stored.sizes["point"] == points
-    assert int(rows[-1]["curve"]) == stored.sizes["curve"] - 1
-
-
-def test_history_equals_the_solver(client):
-    result = client.get("/v1/history", params=BLOCK | {"samples": 50}).json()
-    expected = time_history(BLOCK["pulse"], **GROUPS, samples=50)
-    for name in ("tau", "rotation", "angular_velocity", "ground_acceleration", "impact_time"):
-        assert result[name] == expected[name].values.tolist()
-    assert result["outcome"] == "RECOVERS"
-    assert result["peak_rotation"] == pytest.approx(max(map(abs, result["rotation"])), rel=0.05)
-
-
-def test_history_as_csv_and_netcdf(client):
-    rows = read_csv(client.get("/v1/history", params=BLOCK | {"format": "csv"}))
-    stored = read_netcdf(client.get("/v1/history", params=BLOCK | {"format": "nc"}))
-    assert [float(row["rotation"]) for row in rows] == stored["rotation"].values.tolist()
-
-
-def test_history_with_the_reactions_of_the_ground(client):
-    requested = BLOCK | {"alpha_deg": 20, "samples": 50, "contact": "true"}
-    result = client.get("/v1/history", params=requested).json()
-    expected = time_history(
-        BLOCK["pulse"],
-        **{key: BLOCK[key] for key in BLOCK if key != "pulse"},
-        alpha=np.radians(20),
-        samples=50,
-        contact=True,
-    )
-    for name in ("horizontal_reaction", "normal_reaction", "friction_demand", "friction_demand_over_slope"):
-        assert result["contact"][name] == expected[name].values.tolist()
-    assert result["contact"]["largest_friction_demand"] == expected.largest_friction_demand
-    assert (result["contact"]["lifts_off"], result["contact"]["warnings"]) == (False, "")
-    rows = read_csv(client.get("/v1/history", params=requested | {"format": "csv"}))
-    assert [float(row["friction_demand"]) for row in rows] == result["contact"]["friction_demand"]
-    stored = read_netcdf(client.get("/v1/history", params=requested | {"format": "nc"}))
-    np.testing.assert_array_equal(stored["normal_reaction"], expected["normal_reaction"])
-    assert client.get("/v1/history", params=BLOCK).json()["contact"] is None
+def test_long_work_under_samples_ends_at_the_time_limit(results):
+    rng = np.random.default_rng(1)
+    long = {"acceleration": rng.uniform(-1, 1, MAX_SAMPLES).tolist(), "period": 10.0}
+    with client_of(results, max_seconds=0.3) as client:
+        while client.get("/v1/thresholds?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
+            time.sleep(0.1)
+        assert post(client, "/v1/map", pulse=long, columns=300, rows=300, alpha_deg=20.0).status_code == 504
+        problem = post(client, "/v1/overturning", pulse=long, alpha_deg=20.0)
+        assert problem.status_code == 504
+        assert "POST /v1/map" in problem.json()["detail"]
+        assert client.get("/health").status_code == 200

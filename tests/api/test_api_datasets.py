@@ -161,19 +161,6 @@ def test_malformed_range_is_400(client, requested):
     assert_problem(client.get(URL, headers={"range": requested}), 400, "Range")
 
 
-@pytest.mark.parametrize(
-    "name",
-    ["spectra/sine/eta-0.99", "spectra", "../pyproject", "spectra/../../secret", "%2e%2e/x/y", ".hidden/x", "a//b"],
-)
-@pytest.mark.parametrize("suffix", ["", ".nc", ".zarr/.zmetadata"])
-def test_unknown_names_are_404(client, name, suffix):
-    assert_problem(client.get(f"/v1/datasets/{name}{suffix}"), 404)
-
-
-def test_unknown_zarr_key_is_404(client):
-    assert_problem(client.get(f"/v1/datasets/{NAME}.zarr/none/0.0"), 404)
-
-
 def test_zarr_keys_are_cached_by_the_same_etag(client):
     response = client.get(f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0")
     assert response.headers["content-type"] == "application/octet-stream"

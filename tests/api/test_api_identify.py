@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rocking_api.routers.identify import EDGE_COLUMNS, EXAMPLE, MAX_SAMPLES
+from rocking_api.routers.identify import EDGE_COLUMNS
 
 import rocking
 from benchmarks.accuracy.free_rocking import free_rocking
@@ -56,44 +56,6 @@ def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
     assert_problem(client.post(URL + "?degrees=false", content=body, headers=CSV), 422)
     radians = as_csv(trace, 1.0, "time [s],rotation [rad]")
     assert_problem(client.post(URL + "?degrees=true", content=radians, headers=CSV), 422)
-
-
-@pytest.mark.parametrize(
-    ("body", "name"),
-    [
-        ("{}", "time"),
-        ('{"time": [0, 1], "rotation": [0, 1], "extra": 1}', "extra"),
-        ('{"time": [0, 1], "rotation": [0]}', "rotation"),
-        (f'{{"time": {[20, *range(19)]}, "rotation": {[0.1] * 20}}}', "time"),
-        ('{"time": [0, 1e308, 1.7e308], "rotation": [1e-300, 1e300, 1e-308]}', "time"),
-        (f'{{"time": [{"0," * MAX_SAMPLES}1], "rotation": []}}', "time"),
-        (f'{{"time": [{"null," * 100_000}1], "rotation": []}}', "time"),
-    ],
-)
-def test_json_that_is_no_trace_is_refused_by_name(client, body, name):
-    assert_problem(client.post(URL, content=body), 422, name)
-    assert client.get("/health").status_code == 200
-
-
-@pytest.mark.parametrize("factor", [1e-300, 1e-200, 1e-100, 1e-30, 1e6])
-def test_times_that_are_no_seconds_are_refused(client, factor):
-    trace = EXAMPLE | {"time": [factor * time for time in EXAMPLE["time"]]}
-    assert "0.001 to 100000 s" in assert_problem(client.post(URL, json=trace), 422, "time")["allowed"]
-
-
-@pytest.mark.parametrize(
-    "body", ["", "time\n1\n2\n", "a,b,c\n1,2,3\n", "\x00" * 1000, "0,nan\n1,inf\n", "1,2\n" * 60_000]
-)
-def test_csv_that_is_no_trace_is_refused(client, body):
-    assert_problem(client.post(URL, content=body, headers=CSV), 422)
-    assert client.get("/health").status_code == 200
-
-
-def test_parameters_out_of_range_and_large_bodies_are_refused(client, trace):
-    for query, name in (("edges=3", "edges"), ("confidence=1", "confidence"), ("confidence=nan", "confidence")):
-        assert_problem(client.post(f"{URL}?{query}", json=trace), 422, name)
-    assert_problem(client.post(URL, content=" " * 2_000_000), 413, "body")
-    assert_problem(client.post(URL, json=trace, headers={"content-type": "text/xml"}), 415, "Content-Type")
 
 
 def test_frames_are_no_times(client):

@@ -73,8 +73,8 @@ def burst(server):
     return responses, waits
 
 
+@pytest.mark.long
 @pytest.mark.alone
-@pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="needs the delays that Linux tells")
 def test_health_responds_while_the_kernels_are_compiled_and_loaded(installed, tmp_path):
     """From an installed wheel. On two cores in use by others: 0.09 s at most while they are compiled, 0.02 s while they

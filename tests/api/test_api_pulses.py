@@ -44,10 +44,6 @@ def test_a_pulse_takes_its_parameters_in_its_text(client, capsys):
     assert_problem(client.get("/v1/response", params={"pulse": "sine(cycles=2)", **groups}), 422, "cycles")
 
 
-def test_samples_are_limited(client):
-    assert_problem(client.get("/v1/pulses", params={"samples": 1}), 422, "samples")
-
-
 def test_a_registered_pulse_is_listed_and_solved(tmp_path, monkeypatch):
     monkeypatch.setattr(pulses, "_REGISTERED", {})
     pulses.register(CHIRP)

@@ -2,7 +2,6 @@
 
 import io
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,23 +9,21 @@ import xarray as xr
 
 import rocking
 from rocking._excitation.records.readers.read_record import parse_record
-from rocking._excitation.records.record import UNITS
-from tests.api.conftest import assert_problem, client_of
+from tests.api.conftest import NAPA, assert_problem
 from tests.excitation.record_files import at2, rows
 
-ROOT = Path(__file__).parents[2]
-NAPA = (ROOT / "workflow/motions/napa_HNE.csv").read_bytes()
+RECORD = NAPA.read_bytes()
 BLOCK = {"width": 0.5, "height": 2.0}
 DAMAGED = b"time_s,acceleration_g\n0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n"
 
 
-def post(client, body=NAPA, route="response", **params):
+def post(client, body=RECORD, route="response", **params):
     return client.post(f"/v1/records/{route}", params=BLOCK | params, content=body)
 
 
 @pytest.fixture(scope="module")
 def motion():
-    return rocking.read_record(ROOT / "workflow/motions/napa_HNE.csv")
+    return rocking.read_record(NAPA)
 
 
 def test_the_response_is_that_of_the_library(client, motion):
@@ -162,49 +159,6 @@ def test_a_damaged_file_is_explained_by_its_line(client):
     problem = assert_problem(post(client, DAMAGED, name="damaged.csv"), 422, "record")
     assert "damaged.csv, line 4: found what; expected a number" in problem["detail"]
     assert problem["value"] == "what"
-
-
-@pytest.mark.parametrize("body", [b"", b"\0\1\2", b"<html>", b"{}", b"1\n2\n", b"a,b\n1,2\n"])
-def test_other_bodies_are_refused(client, body):
-    assert_problem(post(client, body, unit="g"), 422, "record")
-
-
-@pytest.mark.parametrize(
-    ("params", "name"),
-    [
-        ({"width": 0.0}, "width"),
-        ({"height": "x"}, "height"),
-        ({"scale": 0.0}, "scale"),
-        ({"restitution": 1.5}, "restitution"),
-        ({"restitution": "plastic"}, "restitution"),
-        ({"unit": "feet"}, "unit"),
-        ({"time_step": -1.0}, "time_step"),
-        ({"baseline_order": 7}, "baseline_order"),
-        ({"component": "Z"}, "record"),
-        ({"colour": 1}, "colour"),
-    ],
-)
-def test_invalid_parameters_are_named(client, params, name):
-    assert_problem(post(client, **params), 422, name)
-
-
-def test_units_are_stated_and_all_wrong_parameters_named(client):
-    problem = assert_problem(post(client, height="x", scale=0.0, unit="feet", baseline_order="y"), 422)
-    found = {one["name"]: one["allowed"] for one in problem["errors"]}
-    assert found == {
-        "height": "a number with its unit, such as 0.3 m, 30 cm",
-        "baseline_order": "an integer",
-        "scale": "[1e-06, 1e+06] [-]",
-        "unit": "one of " + " or".join(", ".join(map(repr, UNITS)).rsplit(",", 1)),
-    }
-    assert assert_problem(post(client, time_step="x"), 422, "time_step")["allowed"] == "a number [s]"
-
-
-def test_body_and_samples_are_limited(client, results):
-    with client_of(results, max_record_bytes=1000) as limited:
-        problem = assert_problem(post(limited), 413, "body")
-        assert "1000 bytes" in problem["allowed"]
-    assert_problem(post(client, route="history", samples=10**6), 413, "samples")
 
 
 def both_columns(motion, share=0.5):

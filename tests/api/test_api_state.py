@@ -227,10 +227,6 @@ def test_probes_may_ask_for_the_head_only(client, path):
     assert (head.status_code, head.headers["cache-control"]) == (whole.status_code, "no-store")
 
 
-def test_unknown_route_is_a_problem(client):
-    assert_problem(client.get("/v2/response"), 404)
-
-
 def test_an_internal_error_shows_no_details(results):
     app = create_app(Settings(results=results))
 

@@ -40,21 +40,6 @@ def test_csv_has_a_row_for_each_node(client, expected):
 
 
 @pytest.mark.parametrize(
-    ("params", "name"),
-    [
-        ({"slenderness_min": 0.6, "slenderness_max": 0.5}, "slenderness_max"),
-        ({"frequency_ratio_min": "nan"}, "frequency_ratio_min"),
-        ({"alpha_deg_max": "nan"}, "alpha_deg_max"),
-        ({"variables": "height"}, "variables"),
-        ({"format": "json"}, "format"),
-        ({"colour": 1}, "colour"),
-    ],
-)
-def test_other_requests_are_explained(client, params, name):
-    assert_problem(client.get(URL, params=params), 422, name)
-
-
-@pytest.mark.parametrize(
     ("params", "name", "value", "allowed"),
     [
         ({"alpha_deg_min": 30.5}, "alpha_deg_min", 30.5, "a range with nodes; they span 0 to 30 deg"),
@@ -82,13 +67,3 @@ def test_the_format_is_one_that_is_offered(client):
     assert client.get(URL, params=RANGES, headers={"accept": "application/json"}).content.startswith(b"CDF")
     assert client.get(URL, params=RANGES, headers={"accept": "application/json, text/csv"}).text.startswith("alpha,")
     assert client.get(URL, params={"format": "json"}).json()["allowed"] == "one of 'csv' or 'nc'"
-
-
-def test_only_cubes_have_parts(client):
-    assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")
-    assert_problem(client.get("/v1/datasets/spectra/none/subset"), 404, "name")
-
-
-def test_the_size_is_limited(results):
-    with client_of(results, max_points=100) as client:
-        assert_problem(client.get(URL), 413, "points")

@@ -160,8 +160,3 @@ def test_fragility_as_csv_has_the_counts_of_the_data_set(client, files):
     rows = [*csv.DictReader(io.StringIO(client.get(NAME, params={"format": "csv"}).text))]
     counts = files[0]["exceedances"].transpose("demand", "block", "intensity").values.ravel()
     assert [int(row["exceedances"]) for row in rows] == counts.tolist()
-
-
-def test_an_unknown_suite_or_format_is_refused(client):
-    assert_problem(client.get(NAME, params={"format": "pdf"}), 422, "format")
-    assert_problem(client.get("/v1/suites/none", params={"format": "nrml"}), 404, "name")

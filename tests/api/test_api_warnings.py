@@ -5,7 +5,6 @@ The pages render the list of the HTTP response (`tests/api/explorer/test_records
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +13,8 @@ from typer.testing import CliRunner
 
 import rocking
 from rocking._cli.app import app
-
-NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
+from tests.api.conftest import NAPA
+from tests.sampling import but_long
 
 
 def command_line(*arguments):
@@ -72,7 +71,7 @@ RECORDS = [
 ]
 
 
-@pytest.mark.parametrize(("width", "height", "scale", "texts"), RECORDS)
+@pytest.mark.parametrize(("width", "height", "scale", "texts"), but_long(RECORDS, RECORDS[1]))
 def test_warnings_under_a_record(client, width, height, scale, texts):
     python = rocking.Block(width, height).response(rocking.read_record(NAPA), scale=scale)
     params = {"width": width, "height": height, "scale": scale, "name": NAPA.name}

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.sampling import ALL, SEED
+from tests.sampling import ALL, SEED, number
 
 ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="limits the memory of a process as Linux does")
-@pytest.mark.parametrize("part", ["python", "routes", "commands"])
+@pytest.mark.parametrize("part", number(["all"], ["python", "routes", "commands"]))
 def test_every_number_is_answered_or_refused(results, part):
     argv = [sys.executable, "-m", "tests.api.extreme_numbers", str(results), "--part", part]
     argv += [] if ALL else ["--sample", str(SEED)]

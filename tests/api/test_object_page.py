@@ -1,7 +1,6 @@
 """The page of one object as the service renders it: numbers of the package, meshes, damaged and hostile files."""
 
 import io
-import json
 import re
 import struct
 import subprocess
@@ -19,7 +18,8 @@ from rocking_api.routers import object_page
 
 import rocking
 from tests.api.conftest import assert_problem
-from tests.sampling import number
+from tests.api.test_uploads import glb_file as glb
+from tests.sampling import but_long, number
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -129,7 +129,7 @@ def test_other_faults_of_an_address(client):
         assert 'aria-current="page"' in client.get("/object", params={"shape": shape}).text
 
 
-@pytest.mark.parametrize("ending", ["stl", "ply", "obj", "glb"])
+@pytest.mark.parametrize("ending", but_long(["stl", "ply", "obj", "glb"], "obj", "glb"))
 def test_a_mesh_is_the_object_that_it_shows(client, slab, ending):
     content = slab.export(file_type=ending)
     if ending == "glb":  # y upwards in that format is z here, as trimesh reads it
@@ -143,27 +143,16 @@ def test_a_mesh_is_the_object_that_it_shows(client, slab, ending):
     assert "is not closed" not in response.text
 
 
-def test_an_open_mesh_is_doubted(client, slab):
+def test_an_open_mesh_is_doubted_and_the_defect_of_another_named(client, slab):
     gap = slab.copy()
     gap.update_faces(np.arange(len(gap.faces)) > 0)
     assert "The mesh is not closed" in posted(client, gap.export(file_type="stl"), "gap.stl", unit="mm").text
-
-
-def test_the_defect_of_a_mesh_is_named(client):
     ball = trimesh.creation.icosphere(3, 500.0)
     rough = np.flatnonzero(ball.triangles_center[:, 0] + 500.0 * np.sin(0.01 * ball.triangles_center[:, 2]) > -200.0)
     ball.update_faces(rough)
     problem = assert_problem(posted(client, ball.export(file_type="stl"), "rock.stl", unit="mm"), 422, "mesh")
     assert "open edges around" in problem["allowed"]
     assert "MiB" not in problem["detail"]
-
-
-def glb(tree, binary=b""):
-    """A GLB file of a tree and a binary part."""
-    text = json.dumps(tree).encode()
-    text += b" " * (-len(text) % 4)
-    body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
-    return struct.pack("<III", 0x46546C67, 2, 12 + len(body)) + body
 
 
 def scene(count, **parts):
@@ -195,7 +184,7 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("name", but_long(HOSTILE, "count.stl", "index.obj", "other.glb", "nested.glb"))
 def test_damaged_and_hostile_meshes_are_refused(client, name):
     problem = assert_problem(posted(client, HOSTILE[name], name), 422, "mesh")
     assert problem["value"] == name
@@ -247,7 +236,7 @@ def test_a_process_that_exceeds_its_memory_or_fails_is_an_error_of_the_file(clie
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
-@pytest.mark.parametrize("limit", ["SECONDS = 0", "MEMORY = 2**20"])
+@pytest.mark.parametrize("limit", but_long(["SECONDS = 0", "MEMORY = 2**20"], "MEMORY = 2**20"))
 def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path, limit):
     path = tmp_path / "slab.stl"
     slab.subdivide_loop(7).export(path)  # 196,608 triangles, of 50 bytes each

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import httpx2
+import pytest
 
 import workflow.run
 from rocking._solver import chunks
@@ -46,6 +47,7 @@ def test_the_memory_of_a_run_is_limited_where_the_system_tells_it(monkeypatch):
     assert workflow.run._memory_limit([]) == []
 
 
+@pytest.mark.long
 def test_the_library_is_imported_without_modules_of_posix():
     code = """
 import os, sys

@@ -4,7 +4,6 @@ import asyncio
 import os
 import socket
 import threading
-import time
 
 import pytest
 import uvicorn
@@ -23,35 +22,44 @@ LIMIT = 30_000  # [ms] for any one thing to appear: the machine may be busy
 expect.set_options(timeout=LIMIT)
 
 
-class Service:
-    """The service of a results folder on a port of its own; it can be slow, busy, or stopped and started again."""
+class Service(uvicorn.Server):
+    """The service of a results folder on a port of its own; it can be late, busy, or stopped and started again."""
 
     def __init__(self, results):
         self.results = results
-        self.seconds = 0.0  # that answers under /v1, and to forms, are late
+        self.delay = 0.0  # of answers under /v1, and to forms [s]
         self.refusals = 0  # times that it is busy instead
         self.kept = {}  # messages of answers, by request
         with socket.create_server(("127.0.0.1", 0)) as probe:
             self.port = probe.getsockname()[1]
+        self.address = f"http://127.0.0.1:{self.port}"
         self.start()
-
-    @property
-    def address(self):
-        return f"http://127.0.0.1:{self.port}"
 
     def start(self):
         self.app = create_app(Settings(results=self.results))
         config = uvicorn.Config(self, port=self.port, ws="none", log_level="error", timeout_graceful_shutdown=1)
-        self.server = uvicorn.Server(config)
-        self.thread = threading.Thread(target=self.server.run)
+        super().__init__(config)
+        self.listens, self.answers = threading.Event(), asyncio.Event()
+        self.answers.set()
+        self.thread = threading.Thread(target=self.run)
         self.thread.start()
-        deadline = time.monotonic() + 60
-        while not self.server.started and time.monotonic() < deadline:
-            time.sleep(0.02)
+        assert self.listens.wait(60)
+
+    async def startup(self, sockets=None):
+        await super().startup(sockets)
+        self.loop = asyncio.get_running_loop()
+        self.listens.set()
 
     def stop(self):
-        self.server.should_exit = True
+        self.should_exit = True
         self.thread.join(timeout=60)
+
+    def hold(self):
+        """Answer no more requests under /v1, and no forms, until `release`."""
+        self.loop.call_soon_threadsafe(self.answers.clear)
+
+    def release(self):
+        self.loop.call_soon_threadsafe(self.answers.set)
 
     async def __call__(self, scope, receive, send):
         if scope["type"] == "http" and (scope["path"].startswith("/v1/") or scope["method"] == "POST"):
@@ -59,9 +67,8 @@ class Service:
                 self.refusals -= 1
                 await JSONResponse({"detail": "busy"}, 503, {"Retry-After": "1"})(scope, receive, send)
                 return
-            end = time.monotonic() + self.seconds
-            while self.seconds and time.monotonic() < end:  # those that wait are let go when it recovers
-                await asyncio.sleep(0.02)
+            await asyncio.sleep(self.delay)
+            await self.answers.wait()
             if not scope["path"].startswith(("/v1/datasets", "/v1/suites")):
                 await self._answer_once(scope, receive, send)
                 return
@@ -88,7 +95,12 @@ class Service:
                 await send(message)
 
             await self.app(scope, received, sent)
-            if messages[0]["status"] < 500 and messages[-1].get("body") and not messages[-1].get("more_body"):
+            if (
+                messages
+                and messages[0]["status"] < 500
+                and messages[-1].get("body")
+                and not messages[-1].get("more_body")
+            ):
                 self.kept[request] = messages
             return
         for message in self.kept[request]:
@@ -105,8 +117,10 @@ def running_service(results):
 @pytest.fixture
 def service(running_service):
     yield running_service
-    running_service.seconds, running_service.refusals = 0.0, 0
-    if not running_service.thread.is_alive():
+    running_service.delay, running_service.refusals = 0.0, 0
+    if running_service.thread.is_alive():
+        running_service.release()
+    else:
         running_service.start()
 
 
@@ -139,17 +153,33 @@ def browser(launch):
     browser.close()
 
 
-@pytest.fixture
-def open_page(browser, address):
-    """Opens a page of the service; afterwards, its console has no message, and no other host was asked."""
-    wrong, contexts = [], []
+@pytest.fixture(scope="module")
+def context_of(browser, address):
+    """Contexts of the browser by their options: pages of one context share what is loaded once."""
+    made = {}
 
-    def opened(path="/", *, failing=False, reduced_motion="reduce", **options):  # an animation occupies a processor
-        options |= {"base_url": address, "locale": "en-GB", "reduced_motion": reduced_motion}
-        context = browser.new_context(**options)
-        context.set_default_timeout(LIMIT)
-        contexts.append(context)
-        page = context.new_page()
+    def context(**options):
+        key = repr(sorted(options.items()))
+        if key not in made:
+            made[key] = browser.new_context(base_url=address, locale="en-GB", **options)
+            made[key].set_default_timeout(LIMIT)
+        return made[key]
+
+    yield context
+    for one in made.values():
+        one.close()
+
+
+@pytest.fixture
+def open_page(context_of, address):
+    """Opens a page of the service; afterwards, its console has no message, and no other host was asked."""
+    wrong, pages = [], []
+
+    def opened(path="/", *, failing=False, width=1280, height=720, scheme="light", motion="reduce", **options):
+        page = context_of(**options).new_page()
+        pages.append(page)
+        page.set_viewport_size({"width": width, "height": height})
+        page.emulate_media(color_scheme=scheme, reduced_motion=motion)  # an animation occupies a processor
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.on("console", lambda message: _is_unexplained(message.text, failing) and wrong.append(message.text))
         page.on(
@@ -160,8 +190,8 @@ def open_page(browser, address):
         return page
 
     yield opened
-    for context in contexts:
-        context.close()
+    for page in pages:
+        page.close()
     assert wrong == []
 
 

@@ -1,10 +1,19 @@
-"""Two ways to use a page: the keyboard alone, and touch on a phone. Each action waits until its field is there."""
+"""Two ways to use a page: the keyboard alone, and touch on a phone. Each action waits until its field is there.
+
+And the record that both upload.
+"""
 
 from typing import ClassVar
 
 import pytest
 
-PHONE = {"has_touch": True, "viewport": {"width": 390, "height": 844}}
+import rocking
+from rocking._base.constants import STANDARD_GRAVITY
+from tests.api.conftest import NAPA
+
+HEADER = "time_s,acceleration_g\n"
+
+PHONE = {"has_touch": True, "width": 390, "height": 844}
 
 
 class Keyboard:
@@ -71,3 +80,22 @@ class Touch:
         field.scroll_into_view_if_needed()
         box = field.bounding_box()
         self.page.touchscreen.tap(box["x"] + 8 + share * (box["width"] - 16), box["y"] + box["height"] / 2)
+
+
+def short_record():
+    """The strong part of a record: fast to upload, to solve and to fit."""
+    motion = rocking.read_record(NAPA)
+    part = motion.acceleration[800:2400] / STANDARD_GRAVITY
+    rows = (f"{k * motion.time_step:.3f},{value!r}" for k, value in enumerate(part.tolist()))
+    return (HEADER + "\n".join(rows)).encode()
+
+
+def choose_record(page, name, content):
+    """Choose a file on the page of records, and wait for its answers, or for what is wrong with it."""
+    page.locator("#file").set_input_files({"name": name, "mimeType": "text/csv", "buffer": content})
+    page.wait_for_function(
+        """name => document.getElementById("file-problem").textContent ||
+        ["#answer", "#scales .picture", "#pulse .picture"].map((box) => document.querySelector(box)).every(
+            (box) => box.dataset.shown.includes(name) && box.ariaBusy === "false")""",
+        arg=name,
+    )

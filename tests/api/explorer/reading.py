@@ -2,6 +2,7 @@
 
 import base64
 import io
+import re
 from urllib.parse import parse_qs
 
 import numpy as np
@@ -11,6 +12,9 @@ from playwright.sync_api import Page
 BLOCK = "/?width=0.4+m&height=1.6+m&acceleration=0.4+g&period=0.5+s&restitution=momentum"
 MAP = "/?pulse=sine"  # the map of the groups, without a block
 POINT = "/?frequency_ratio=4&slenderness=0.7"
+SITE = "&pga=0.3&pga_unit=g&pgv=30&pgv_unit=cm/s"
+SLAB = "/object?shape=rectangle&width=40&depth=15&height=120&name=slab" + SITE
+HEADSTONE = "/object?shape=outline&vertices=0,0%0A30,0%0A30,100%0A10,120%0A0,100" + SITE
 
 COMPLETE = {
     "/": "() => document.querySelector('.headline') && document.querySelectorAll('.downloads a[href]').length >= 7",
@@ -32,6 +36,25 @@ def settle(page: Page):
         const [map, lines] = [JSON.parse(drawn), JSON.parse(curves)];
         return map.columns === 400 && map.restitution === lines.restitution && map.pulse === lines.pulse;
     }""")
+
+
+def set_time(page: Page, time):
+    """Move the slider of the animation, also to where it has no step."""
+    page.evaluate(
+        "t => { const s = document.getElementById('time'); s.step = 'any'; s.value = t; "
+        "s.dispatchEvent(new Event('input')) }",
+        float(time),
+    )
+
+
+def stated_rotation(page: Page):
+    """The largest rotation in the answer [deg]."""
+    return float(re.search(r"at most ([\d.]+)°", page.locator("#answer").inner_text())[1])
+
+
+def is_dimmed(page: Page, box):
+    """Whether a part of the page is shown as an answer to another question."""
+    return page.evaluate("box => Number(getComputedStyle(document.querySelector(box)).opacity) < 0.5", box)
 
 
 def query(page: Page):

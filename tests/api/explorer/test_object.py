@@ -11,10 +11,6 @@ from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import query
 from tests.sampling import but_long
 
-SITE = "&pga=0.3&pga_unit=g&pgv=30&pgv_unit=cm/s"
-SLAB = "/object?shape=rectangle&width=40&depth=15&height=120&name=slab" + SITE
-HEADSTONE = "/object?shape=outline&vertices=0,0%0A30,0%0A30,100%0A10,120%0A0,100" + SITE
-
 
 def lowest_of(one):
     found = rocking.assess(one, rocking.Site(pga="0.3 g", pgv="30 cm/s"), sensitivity=False).directions()

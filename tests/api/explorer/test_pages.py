@@ -1,21 +1,32 @@
-"""The pages of the data sets and of the state of the service."""
+"""The pages of the data sets, of the suites and of the state of the service."""
 
 import hashlib
 import io
+import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from playwright.sync_api import expect
 
 from tests.api.conftest import NAMES
+from tests.api.explorer.hands import Keyboard, Touch
 from tests.api.explorer.reading import query
 from tests.sampling import but_long
 
 
-def test_data_sets_are_listed_and_filtered(open_page):
-    page = open_page("/datasets")
-    status = page.locator("#status")
+@pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
+def test_data_sets_are_listed_filtered_and_opened(open_page, address, by):
+    page = open_page("/datasets?pulse=sine&eta=0.85", **by.options)
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    status, hand = page.locator("#status"), by(page)
+    expect(status).to_contain_text("2 of")
+    page.locator("#filter").fill("nothing of this name")
+    expect(status).to_contain_text("0 of")
+    assert "filter=nothing" in page.url
+    page.get_by_role("button", name="Show all").click()
     expect(status).to_contain_text(f"{len(NAMES)} of {len(NAMES)} data sets")
+    assert page.evaluate("location.search") == ""
     titles = page.locator("#groups h3").all_inner_texts()
     assert page.locator("#groups tbody tr:visible").count() == 4  # a line for each pulse and suite
     page.get_by_role("button", name="demonstration").click()
@@ -26,7 +37,7 @@ def test_data_sets_are_listed_and_filtered(open_page):
     assert page.locator("#groups h3:visible").all_inner_texts() == titles[2:]
     page.locator("#filter").fill("")
     page.locator("#pulse").select_option(label="One full cosine")
-    page.locator("#eta").select_option("0.9")
+    hand.choose("#eta", "0.9")
     expect(status).to_contain_text(f"1 of {len(NAMES)} data sets")
     expect(page.locator("#groups tr.folder:visible")).to_contain_text("1 file, η 0.9")
     row = page.locator("#groups tbody tr:not(.folder):visible")
@@ -42,6 +53,16 @@ def test_data_sets_are_listed_and_filtered(open_page):
     table = np.loadtxt(io.StringIO(waiting.value.path().read_text()), delimiter=",", skiprows=1, usecols=(1, 2))
     assert table[:, 0].min() > 0.479
     assert table[:, 0].max() < 0.521
+    for button, name, part in (
+        ("tr:not([hidden]) td button", "spectra/cosine/eta-0.90", {"slenderness": 91}),
+        ("tbody:not([hidden]) .folder .downloads button", "spectra/cosine", {"restitution": 1}),
+    ):
+        hand.press(button)
+        expect(status).to_have_text(f"Copied the line for {name}.")
+        line = page.evaluate("navigator.clipboard.readText()")
+        assert line == f'xarray.open_zarr("{address}/v1/datasets/{name}.zarr")'
+        with xr.open_zarr(re.search(r'"(.*?)"', line)[1]) as opened:
+            assert opened.sizes.items() >= part.items()
 
 
 def test_the_state_is_told(open_page):
@@ -81,18 +102,25 @@ def test_a_suite_is_reported_for_each_limit_state(open_page):
     expect(page.locator("nav")).to_be_hidden()
     expect(page.locator("#choice")).to_be_hidden()
     expect(report).to_be_visible()
-
-
-def test_without_a_suite_the_page_says_how_to_make_one(open_page):
-    page = open_page("/state")
     page.route("**/v1/suites?", lambda route: route.fulfill(json={"suites": [], "version": "0"}))
     page.goto("/suites")
     expect(page.locator("#status")).to_contain_text("make reproduce CONFIG=workflow/config/suite.yaml")
     expect(page.locator("#suite")).to_be_hidden()
 
 
-@pytest.mark.parametrize("path", but_long(["/datasets", "/state", "/records", "/suites"], "/suites"))
-def test_they_fit_a_phone(open_page, path):
-    page = open_page(path, viewport={"width": 320, "height": 640})
-    expect(page.locator("h1")).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+def test_numbers_of_labels_are_round_and_on_the_safe_side(open_page):
+    """Of axes, and of values at which the outcome changes."""
+    page = open_page("/state")
+    ticks = "async () => (await import('/static/explorer/chart.js')).logAxis('PGV').splits(null, 0, 11.7, 145)"
+    assert page.evaluate(ticks) == [20, 30, 40, 50, 60, 70, 80, 90, 100]
+    values = [4.700067, 13.1270943, 1.1338454, 0.0099999, 999.99951, 1e-7, 5.0]
+    found = page.evaluate(
+        """values => import("/static/explorer/labels.js").then(({ threshold }) =>
+            values.map(value => [threshold(value, true), threshold(value, false)]))""",
+        values,
+    )
+    for value, texts in zip(values, found, strict=True):
+        down, up = map(float, texts)
+        assert value * 0.98 < down < value < up < value * 1.02
+    assert found[0] == ["4.7", "4.71"]
+    assert found[2] == ["1.13", "1.14"]

@@ -2,36 +2,22 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from playwright.sync_api import expect
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import parse_record
+from tests.api.conftest import NAPA
+from tests.api.explorer.hands import HEADER, Keyboard, Touch, choose_record, short_record
+from tests.api.explorer.reading import set_time, stated_rotation
+from tests.sampling import but_long
 
-NAPA = Path(__file__).parents[3] / "workflow/motions/napa_HNE.csv"
 BLOCK = rocking.Block(0.5, 2.0)  # that of the form
-HEADER = "time_s,acceleration_g\n"
 
-
-def short_record():
-    """The strong part of a record: fast to upload, to solve and to fit."""
-    motion = rocking.read_record(NAPA)
-    part = motion.acceleration[800:2400] / 9.80665
-    rows = (f"{k * motion.time_step:.3f},{value!r}" for k, value in enumerate(part.tolist()))
-    return (HEADER + "\n".join(rows)).encode()
-
-
-def choose(page, name, content):
-    page.locator("#file").set_input_files({"name": name, "mimeType": "text/csv", "buffer": content})
-    page.wait_for_function(
-        """name => document.getElementById("file-problem").textContent ||
-        ["#answer", "#scales .picture", "#pulse .picture"].map((box) => document.querySelector(box)).every(
-            (box) => box.dataset.shown.includes(name) && box.ariaBusy === "false")""",
-        arg=name,
-    )
+BY_HAND = pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
 
 
 @pytest.fixture(scope="module")
@@ -44,17 +30,30 @@ def motion(content):
     return parse_record(content, "short.csv")
 
 
-def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, motion):
-    page = open_page("/records")
-    choose(page, "short.csv", content)
+def choose_files(page, hand, files):
+    with page.expect_file_chooser() as waiting:
+        hand.press("#file")
+    kind = "application/octet-stream"
+    waiting.value.set_files([{"name": name, "mimeType": kind, "buffer": content} for name, content in files.items()])
+
+
+@BY_HAND
+def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_page, content, motion, by):
+    page = open_page("/records", **by.options)
+    hand, caption = by(page), page.locator("#scales-caption")
+    expect(page.locator("#dropped")).to_contain_text("South Napa 2014")
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
+    expect(caption).to_contain_text("overturns from")
+
+    choose_files(page, hand, {"short.csv": content})
+    expect(page.locator("#answer")).to_have_attribute("data-shown", re.compile("short.csv"))
     expected = BLOCK.response(motion)
     expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
-    assert page.locator("#answer .margin").inner_text() == f"I{expected.margin[1:]}."
+    expect(page.locator("#answer .margin")).to_have_text(f"I{expected.margin[1:]}.")
     assert page.locator("#answer ul li").all_inner_texts()[: len(expected.warnings)] == expected.warnings
     assert expected.thresholds.value[0] > 1.0
     expect(page.locator(".verdict")).to_have_class("verdict survives")
-    said = float(re.search(r"at most ([\d.]+)°", page.locator("#answer").inner_text())[1])
-    assert said == pytest.approx(math.degrees(expected.rotation), rel=0.006)
+    assert stated_rotation(page) == pytest.approx(math.degrees(expected.rotation), rel=0.006)
 
     expect(page.locator("#rotation canvas")).to_be_visible()
     history = rocking.time_history(
@@ -66,69 +65,58 @@ def test_a_file_gives_outcome_motion_thresholds_and_pulse(open_page, content, mo
         samples=4000,
     )
     peak = int(np.abs(history.rotation.values).argmax())
-    page.evaluate(
-        "t => { const s = document.getElementById('time'); s.step = 'any'; s.value = t; "
-        "s.dispatchEvent(new Event('input')) }",
-        float(history.tau[peak]),
-    )
+    page.wait_for_function("() => document.querySelector('#scales .picture').dataset.shown.includes('short.csv')")
+    set_time(page, history.tau[peak])
     angle = float(page.locator("#stage").get_attribute("data-angle"))
     assert angle == pytest.approx(BLOCK.alpha * float(history.rotation[peak]), rel=1e-3)
 
-    caption = page.locator("#scales-caption")
     expect(caption).to_contain_text("overturns from")
     first = float(re.search(r"overturns from ([\d.]+)", caption.inner_text())[1])
     exact = float(BLOCK.thresholds(motion).value[0])
     assert first == pytest.approx(exact, rel=1e-3)
     assert first < exact
-
     expect(page.locator("#pulse-caption")).to_contain_text("of the energy of the velocity")
     expect(page.locator("#pulse-caution")).to_contain_text("does not replace it")
 
-    page.locator("#open-report").click()
+    page.evaluate("window.print = () => { window.printed = !document.getElementById('report').hidden }")
+    hand.press("#open-report")
     report = page.locator("#report")
     for heading in ("Block", "Ground motion", "Result", "Margins", "Warnings", "Equations", "Assumptions", "Program"):
         expect(report.get_by_role("heading", name=heading, exact=True)).to_be_visible()
     expect(report).to_contain_text(motion.digest)
     expect(report).to_contain_text(f"overturns from {first}")
     assert report.locator("canvas").count() == 3
+    hand.press("#report button.main")
+    assert page.evaluate("window.printed")
     report.get_by_role("button", name="Back").click()
     expect(page.locator("#your-block")).to_be_visible()
 
-
-def test_an_example_is_loaded_and_follows_the_slider_of_its_factor(open_page):
-    page = open_page("/records")
-    expect(page.locator("#dropped")).to_contain_text("South Napa 2014")
-    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
-    expect(page.locator("#scales-caption")).to_contain_text("overturns from")
-    page.locator("#factor").fill("0.6")
-    page.locator("#factor").dispatch_event("change")
-    expect(page.locator("#scale")).to_have_value("3.98")
+    hand.slide("#factor", 0.8)
     expect(page.locator(".verdict")).to_have_text("It overturns.")
-    expect(page.locator("#scales-caption")).to_contain_text("dashed: the factor 3.98")
+    factor = float(page.locator("#scale").input_value())
+    assert factor == pytest.approx(10**0.6, rel=0.05)
+    assert BLOCK.response(motion, scale=factor).overturned
+    expect(caption).to_contain_text(f"dashed: the factor {page.locator('#scale').input_value()}")
 
-
-def test_a_file_can_be_dropped(open_page, content):
-    page = open_page("/records")
-    expect(page.locator(".verdict")).to_be_visible()  # of the example
     page.evaluate(
         """text => {
             const transfer = new DataTransfer();
-            transfer.items.add(new File([text], "short.csv"));
+            transfer.items.add(new File([text], "dropped.csv"));
             document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true }));
         }""",
         content.decode(),
     )
-    expect(page.locator("#dropped")).to_contain_text("short.csv")
-    page.wait_for_function("() => document.getElementById('answer').dataset.shown.includes('short.csv')")
-    assert page.locator("#file").evaluate("field => field.files[0].name") == "short.csv"
+    expect(page.locator("#dropped")).to_contain_text("dropped.csv")
+    page.wait_for_function("() => document.getElementById('answer').dataset.shown.includes('dropped.csv')")
+    assert page.locator("#file").evaluate("field => field.files[0].name") == "dropped.csv"
 
 
-def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, motion):
+def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, content, motion):
     page = open_page("/records")
-    choose(page, "damaged.csv", (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode())
+    choose_record(page, "damaged.csv", (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode())
     expect(page.locator("#file-problem")).to_have_text("damaged.csv, line 4: found what; expected a number")
     expect(page.locator("#answer")).to_be_hidden()
-    choose(page, "plain.txt", "\n".join(map(repr, (motion.acceleration / 9.80665).tolist())).encode())
+    choose_record(page, "plain.txt", "\n".join(map(repr, (motion.acceleration / STANDARD_GRAVITY).tolist())).encode())
     expect(page.locator("#file-problem")).to_contain_text("the field “Unit of the samples”")
     page.locator("#unit").select_option("g")
     page.locator("#ask").click()
@@ -139,8 +127,7 @@ def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, moti
     expect(page.locator(".verdict")).to_be_visible()
     expect(page.locator("#file-problem")).to_be_hidden()
 
-
-def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_surviving(open_page, content, motion):
+    # a block that a weaker record overturns is not shown as surviving
     block = rocking.Block(0.2, 1.0)
     factors = np.arange(0.5, 3.0, 0.01)
     outcomes = rocking.peak_response(
@@ -152,25 +139,53 @@ def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_surviving(open_p
     )
     survived = np.flatnonzero(~outcomes.overturned)
     factor = float(factors[survived[survived > outcomes.overturned.argmax()][0]])
-    page = open_page("/records")
     for name, value in (("width", "0.2"), ("height", "1"), ("scale", f"{factor:.2f}")):
         page.locator(f"#{name}").fill(value)
-    choose(page, "short.csv", content)
+    choose_record(page, "short.csv", content)
     expect(page.locator(".verdict")).to_have_class("verdict overturns")
     expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     expect(page.locator("#answer .margin")).to_contain_text("It overturns from")
 
 
-def test_values_at_which_the_outcome_changes_are_rounded_to_the_safe_side(open_page):
-    page = open_page("/records")
-    values = [4.700067, 13.1270943, 1.1338454, 0.0099999, 999.99951, 1e-7, 5.0]
-    found = page.evaluate(
-        """values => import("/static/explorer/labels.js").then(({ threshold }) =>
-            values.map(value => [threshold(value, true), threshold(value, false)]))""",
-        values,
+def components():
+    """Two horizontal components and an upward one, which is a third of the second: names, values [g], step [s]."""
+    east, north = (rocking.read_record(NAPA.with_name(f"napa_HN{end}.csv")) for end in "EN")
+    first, second = (one.acceleration[800:2400] / STANDARD_GRAVITY for one in (east, north))
+    return {"NAPA_090": first, "NAPA_000": second, "NAPA_UP": second / 3.0}, east.time_step
+
+
+def at2(values, step):
+    rows = "\n".join(f"{value:.9E}" for value in values)
+    head = f"PEER\nSouth Napa\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=  {len(values)}, DT= {step:.4f} SEC\n"
+    return (head + rows).encode()
+
+
+@BY_HAND
+def test_does_it_overturn_with_the_other_components(open_page, by, tmp_path):
+    page = open_page("/records", **by.options)
+    values, step = components()
+    files = {f"{name}.AT2": at2(samples, step) for name, samples in values.items()}
+    hand = by(page)
+    if by is Keyboard:
+        choose_files(page, hand, files)
+    else:  # the columns of one file, which are named in the form
+        table = np.column_stack([step * np.arange(len(values["NAPA_UP"])), *values.values()])
+        rows = "\n".join(",".join(f"{value:.9E}" for value in row) for row in table)
+        choose_files(page, hand, {"mine.csv": f"time_s,east (g),north (g),up (g)\n{rows}".encode()})
+        expect(page.locator("#file-problem")).to_contain_text("the field “Component”")
+        for field, name in {"component": "east", "second": "north", "vertical": "up"}.items():
+            hand.write(f"#{field}", name)
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    first, second = (
+        BLOCK.response(rocking.read_record(tmp_path / f"NAPA_{end}.AT2", vertical=tmp_path / "NAPA_UP.AT2"))
+        for end in ("090", "000")
     )
-    for value, texts in zip(values, found, strict=True):
-        down, up = map(float, texts)
-        assert value * 0.98 < down < value < up < value * 1.02
-    assert found[0] == ["4.7", "4.71"]
-    assert found[2] == ["1.13", "1.14"]
+    alone = BLOCK.response(rocking.read_record(tmp_path / "NAPA_090.AT2"))
+    assert first.margin != alone.margin
+    expect(page.locator("#second-answer")).to_contain_text("Under the second component")
+    expect(page.locator("#second-answer")).to_contain_text(f"I{second.margin[1:]}.")
+    expect(page.locator("#second-answer")).to_contain_text("of the two.")
+    expect(page.locator(".margin")).to_have_text(f"I{first.margin[1:]}.")
+    marked = "() => document.getElementById('factor-marks').style.background.includes('gradient')"
+    page.wait_for_function(marked)

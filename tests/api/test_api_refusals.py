@@ -1,0 +1,536 @@
+"""What is wrong is refused by name, with its value and what is allowed; afterwards the service answers.
+
+Each kind of fault once for each route that meets it: values, bodies, sizes, types.
+"""
+
+import gzip
+import json
+import time
+from urllib.parse import urlencode
+
+import anyio
+import numpy as np
+import pytest
+import xarray as xr
+from rocking_api.http.errors import error_response
+from rocking_api.models import blocks as block_models
+from rocking_api.models.pulses import MAX_BODY, MAX_SAMPLES
+from rocking_api.routers import assess, identify
+from rocking_api.routers.response import MAX_JSON
+
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._excitation.records.record import UNITS
+from tests.api.conftest import NAPA, assert_problem, client_of
+from tests.excitation.record_files import at2
+from tests.sampling import number
+
+POINT = {"pulse": "sine", "slenderness": "0.6", "frequency_ratio": "6", "restitution": "0.85"}
+BLOCK = {"pulse": "sine", "width": "0.4", "height": "1.6", "peak_acceleration": "4", "period": "0.5"}
+SIZE = {"width": "0.4", "height": "1.6"}
+SUBSET = "/v1/datasets/spectra/sine/eta-0.85/subset"
+ROUTES = {
+    "/v1/response": POINT,
+    "/v1/blocks/response": BLOCK,
+    "/v1/thresholds": {key: POINT[key] for key in ("pulse", "frequency_ratio", "restitution")},
+    "/v1/spectrum": {key: POINT[key] for key in ("pulse", "slenderness", "restitution")} | {"points": "20"},
+    "/v1/history": POINT | {"samples": "20", "duration": "9"},
+    "/v1/overturning": {key: POINT[key] for key in ("pulse", "restitution")},
+    "/v1/map": {key: POINT[key] for key in ("pulse", "restitution")} | {"columns": "3", "rows": "3"},
+}
+NO_NUMBERS = ["1e400", "-1e400", "nan", "-nan", "inf", "Infinity", "1e", "0x10", "", " ", "١", "1,5", "9" * 5000]
+NO_NUMBERS += ["null", "true", "[]", "{}", "\x00", "%00", "<script>", "' OR 1=1 --", "../../etc/passwd", "\ud7ff"]
+
+JSON, CSV, NC = "application/json", "text/csv", "application/x-netcdf"
+
+
+@pytest.fixture(autouse=True)
+def _soon(client):
+    began = time.monotonic()
+    yield
+    assert client.get("/health").status_code == 200
+    assert time.monotonic() - began < 30
+
+
+def post(client, route, content, media_type=JSON, **query):
+    address = f"{route}{'&' if '?' in route else '?'}{urlencode(query)}"
+    return client.post(address, content=content, headers={"content-type": media_type})
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_no_number_and_no_second_value_is_accepted(client, route):
+    for name, value in ROUTES[route].items():
+        for wrong in NO_NUMBERS:
+            if (name, wrong) != ("restitution", "true"):
+                assert_problem(client.get(route, params=ROUTES[route] | {name: wrong}), 422, name)
+        twice = client.get(route, params=[*ROUTES[route].items(), (name, value)])
+        assert assert_problem(twice, 422, name)["allowed"] == "one value"
+
+
+WRONG = {
+    "/v1/response": (
+        POINT,
+        [
+            *({"pulse": "sinus"}, {"restitution": 1.01}, {"restitution": -0.1}, {"slenderness": 0}),
+            *({"slenderness": -1}, {"slenderness": 1e-10}, {"slenderness": "much"}, {"frequency_ratio": "-inf"}),
+            *({"frequency_ratio": 0}, {"frequency_ratio": 1e7}, {"frequency_ratio": 1e-7}, {"method": "guess"}),
+            *({"absolute_tolerance": -1}, {"absolute_tolerance": "nan"}, {"alpha_deg": 95}, {"alpha_deg": 1e-9}),
+            *({"tolerence": 1e-6}, {"frequency_ratio": 40, "method": "cube"}, {"slenderness": 0.01, "method": "cube"}),
+            *({"restitution": 0.7, "method": "cube"}, {"pulse": "-ricker", "method": "cube"}),
+            *({"alpha_deg": 80, "method": "cube"}, {"absolute_tolerance": 1e-13, "method": "cube"}),
+        ],
+    ),
+    SUBSET: (
+        {},
+        [
+            *({"slenderness_max": 0.5, "slenderness_min": 0.6}, {"frequency_ratio_min": "nan"}),
+            *({"alpha_deg_max": "nan"}, {"variables": "height"}, {"format": "json"}, {"colour": 1}),
+        ],
+    ),
+    "/v1/pulses": ({}, [{"samples": 1}]),
+    "/v1/datasets": ({}, [{"page": 2}, {"limit": 0}]),
+    "/v1/datasets.zip": ({}, [{"page": 2}]),
+    "/v1/datasets/spectra/sine/eta-0.85": ({}, [{"page": 2}]),
+    "/v1/suites": ({}, [{"limit": 0}]),
+    "/v1/suites/demonstration": ({}, [{"format": "pdf"}]),
+}
+"""By route, ordinary parameters and changes of them; the first of a change is wrong."""
+
+
+@pytest.mark.parametrize("route", WRONG)
+def test_a_wrong_value_is_named_with_what_is_allowed(client, route):
+    ordinary, wrong = WRONG[route]
+    for changes in wrong:
+        name, value = next(iter(changes.items()))
+        problem = assert_problem(client.get(route, params=ordinary | changes), 422, name)
+        assert str(problem["value"]).startswith(str(value)) or float(problem["value"]) == value
+
+
+def test_all_that_is_missing_or_wrong_is_named_up_to_a_number(client):
+    problem = assert_problem(client.get("/v1/response?pulse=saw&slenderness=x&restitution=3&colour=1"), 422)
+    assert [one["name"] for one in problem["errors"]] == [
+        "pulse", "slenderness", "frequency_ratio", "restitution", "colour",
+    ]  # fmt: skip
+    _, first, missing, above, unknown = problem["errors"]
+    assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
+    assert missing == {"name": "frequency_ratio", "allowed": "required in the query"}
+    assert unknown["allowed"].startswith(
+        "one of pulse, alpha_deg, method, absolute_tolerance, slenderness, frequency_ratio"
+    )
+    assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
+    assert (problem["parameter"], problem["value"]) == ("pulse", "saw")
+    assert problem["detail"].startswith("5 parameters are missing or wrong: `pulse` = 'saw' is not allowed")
+    outside = assert_problem(client.get("/v1/response", params=POINT | {"slenderness": -1, "restitution": 2}), 422)
+    assert [one["name"] for one in outside["errors"]] == ["slenderness", "restitution"]
+    unknown = {f"unknown_{k}": 1 for k in range(50)}
+    problem = assert_problem(client.get("/v1/response", params=POINT | unknown), 422, "unknown_0")
+    assert len(problem["errors"]) == 20
+    assert problem["detail"].startswith("50 parameters")
+
+
+def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(client):
+    url, csv = "/v1/response", {"headers": {"content-type": CSV}, "content": "slenderness\n0.4\n"}
+    body = {"pulse": "sine", "frequency_ratio": 5, "restitution": 0.85}
+    assert assert_problem(client.post(url, json=body), 422, "slenderness")["allowed"] == "required in the body"
+    unknown = assert_problem(client.post(url, json=body | {"slenderness": 1, "colour": 1}), 422, "colour")
+    assert unknown["detail"].startswith("there is no parameter `colour` in the body; allowed: one of pulse")
+    query = "?frequency_ratio=5&restitution=0.85"
+    assert assert_problem(client.post(url + query, **csv), 422, "pulse")["allowed"] == "required in the query"
+    unknown = assert_problem(client.post(url + query + "&pulse=sine&colour=1", **csv), 422, "colour")
+    assert unknown["allowed"].endswith(", in the query")
+    column = assert_problem(client.post(url + "?restitution=1&pulse=sine", **csv), 422, "frequency_ratio")
+    assert column["allowed"] == "required: a column of the body or a parameter in the URL"
+    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
+    missing = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block]}), 422, "pulse")
+    assert missing["allowed"] == "required in the query, or in a JSON body"
+    blocks = {"blocks": [{"width": 0.4}], "colour": 1}
+    problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
+    assert "`blocks[0].period` is missing in the body" in problem["detail"]
+    assert "there is no parameter `colour` in the body" in problem["detail"]
+
+
+LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with its unit, such as 0.5 s, 500 ms"
+
+
+def test_wrong_numbers_are_named_with_units_in_json_in_tables_and_of_records(client):
+    row = {"width": 0.4, "height": "tall", "peak_acceleration": 4.0, "period": "short"}
+    response = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [row, row | {"height": 1.6}]})
+    assert assert_problem(response, 422, "blocks[0].height")["errors"] == [
+        {"name": "blocks[0].height", "value": "tall", "allowed": LENGTH},
+        {"name": "blocks[0].period", "value": "short", "allowed": TIME},
+        {"name": "blocks[1].period", "value": "short", "allowed": TIME},
+    ]
+    header, first = TABLE.splitlines()[:2]
+    body = "\n".join([header, first, first.replace("80", "tall"), first.replace("0.2,", "-20,")])
+    problem = assert_problem(post(client, "/v1/blocks/response", body, CSV, pulse="sine"), 422)
+    assert [(error["name"], error["value"]) for error in problem["errors"]] == [
+        ("blocks, row 3, height", "tall"),
+        ("blocks, row 4, width", "-20"),
+    ]
+    wrong = SIZE | {"height": "x", "scale": 0.0, "unit": "feet", "baseline_order": "y"}
+    problem = assert_problem(client.post("/v1/records/response", params=wrong, content=NAPA.read_bytes()), 422)
+    assert {one["name"]: one["allowed"] for one in problem["errors"]} == {
+        "height": LENGTH,
+        "baseline_order": "an integer",
+        "scale": "[1e-06, 1e+06] [-]",
+        "unit": "one of " + " or".join(", ".join(map(repr, UNITS)).rsplit(",", 1)),
+    }
+    step = client.post("/v1/records/response", params=SIZE | {"time_step": "x"}, content=NAPA.read_bytes())
+    assert assert_problem(step, 422, "time_step")["allowed"] == "a number [s]"
+
+
+RECORD = "time [s],a [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
+TABLE = "name,width [m],height [cm],peak_acceleration [m/s2],period [ms],restitution\nvase,0.2,80,4,500,\n"
+NESTED = "[" * 100_000 + "]" * 100_000
+GROUPS = '{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":%s}'
+NO_JSON = [
+    *("", "{", "\x00", "{" * 100_000, '{"pulse":' * 50_000, NESTED, GROUPS % NESTED, '{"pulse": ["\\x"]}'),
+    *(GROUPS % f"[{entries}]" for entries in ("1,", ",1", "1,,2", "1 2", "1,true,[", "1,}", "nope")),
+    *(GROUPS % f"[{entries}]" for entries in ("1," * 500_000, "null," * 9_000)),
+    GROUPS % ("9" * 100_000),
+    '{"pulse":"\\ud800"' + GROUPS[15:] % 1,
+]
+NO_GROUPS = [
+    *("null", "[]", "[1, 2]", '"text"', GROUPS.replace("0.9", '0.9,"x":1') % 1),
+    *(GROUPS % one for one in ('{"0":1}', '"0.5x"', "[null]", "[[1]]", "[NaN]", "1e999", "-1")),
+    *(GROUPS % one for one in ("[1,null]", '[1,"2x"]', '[1,2],"restitution":[1,2,3]', '1,"slenderness":2')),
+    '{"pulse":["sine"]' + GROUPS[15:] % 1,
+    GROUPS.replace("0.9", '0.9,"' + "x" * 100_000 + '":1') % 1,
+]
+
+
+def test_bodies_that_are_no_json_or_no_groups_are_refused_in_few_words(client):
+    for media_type in (JSON, CSV, NC):
+        for status, bodies in ((400, NO_JSON), (422, NO_GROUPS)):
+            for body in bodies:
+                response = post(client, "/v1/response", body, media_type)
+                assert_problem(response, status if media_type == JSON else 422)
+                assert len(response.content) < 2000
+    assert_problem(post(client, "/v1/response", b"\xff\xfe\x00"), 400)
+    for body in ("", "[" * 100_000, "[" + "9" * 5000, r'[{"\ud800": 1}]', r'[{"name": "\ud800", "width": 0.4}]'):
+        assert "line 1 column" in assert_problem(post(client, ASSESS, body), 400, "body")["value"]
+
+
+BATCH, BLOCKS, RESPONSE = "/v1/response", "/v1/blocks/response?pulse=sine", "/v1/records/response?width=0.4&height=1.6"
+FIVE = BATCH + "?pulse=sine"
+OBJECTS = [{"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}]
+SHORT = {"acceleration": [1.0, 0.0], "time_step": 0.1}
+ASSESS, IDENTIFY = "/v1/assess?pga=3&pgv=0.3&shapes=sine&sensitivity=false", "/v1/identify"
+
+
+def json_of(**body):
+    return json.dumps(body)
+
+
+BODIES = [
+    (BATCH + "?eta=0.4", GROUPS % 1, JSON, "eta"),
+    (FIVE, "slenderness,frequency_ratio\n0.5,5\n", CSV, "restitution"),
+    *((FIVE, body, CSV, "body") for body in ("slenderness,mass\n0.5,5\n", "slenderness\n\xff\n")),
+    *((FIVE, f"slenderness,frequency_ratio,restitution\n0.5,5{rest}\n", CSV, "body") for rest in ("", ",x")),
+    (FIVE + "&slenderness=0.4", "slenderness\n0.5\n", CSV, "slenderness"),
+    (FIVE + "&restitution=0.4&frequency_ratio=x", "slenderness\n0.5\n", CSV, "frequency_ratio"),
+    (FIVE + "&eta=0.4", "slenderness\n0.5\n", CSV, "eta"),
+    *((FIVE, body, NC, "body") for body in ("\x89HDF\r\n", "CDF\x01\x00\x00")),
+    (BLOCKS, json_of(blocks=[]), JSON, "blocks"),
+    (BLOCKS, json_of(blocks=[{"width": 2, "peak_acceleration": 4, "period": 1}]), JSON, "blocks[0].height"),
+    (BLOCKS, json_of(blocks=[{"width": 2}]), JSON, "blocks[0].peak_acceleration"),
+    (BLOCKS, TABLE.replace("[cm]", ""), CSV, "blocks, row 2, height"),
+    (BLOCKS, TABLE.replace("[cm]", "[kg]"), CSV, "blocks, header"),
+    (BLOCKS, TABLE.replace("80", "tall"), CSV, "blocks, row 2, height"),
+    (BLOCKS, TABLE.replace("0.2,", "1e9,"), CSV, "blocks, row 2, width"),
+    *((RESPONSE + "&unit=g", body, CSV, "record") for body in ("", "\0\1\2", "<html>", "{}", "1\n2\n", "a,b\n1,2\n")),
+    (RESPONSE, at2("NPTS= 10, DT= .01", body="0.1 0.2\n"), CSV, "record"),
+    (IDENTIFY, "{}", JSON, "time"),
+    (IDENTIFY, json_of(time=[0, 1], rotation=[0, 1], extra=1), JSON, "extra"),
+    (IDENTIFY, json_of(time=[0, 1], rotation=[0]), JSON, "rotation"),
+    (IDENTIFY, json_of(time=[20, *range(19)], rotation=[0.1] * 20), JSON, "time"),
+    (IDENTIFY, json_of(time=[0, 1e308, 1.7e308], rotation=[1e-300, 1e300, 1e-308]), JSON, "time"),
+    (IDENTIFY, json_of(time=[0] * (identify.MAX_SAMPLES + 1), rotation=[]), JSON, "time"),
+    (IDENTIFY, json_of(time=[None] * 100_000, rotation=[]), JSON, "time"),
+    *((IDENTIFY, body, CSV, None) for body in ("", "time\n1\n2\n", "a,b,c\n1,2,3\n", "\x00" * 1000)),
+    *((IDENTIFY, body, CSV, None) for body in ("0,nan\n1,inf\n", "1,2\n" * 60_000)),
+    *((ASSESS, body, JSON, "objects") for body in ("{}", "[1]", "[]", "[{}]", '[{"name": [1], "width": 1}]')),
+    *((ASSESS, body, CSV, "objects") for body in ("", "a,b\n1,2\n", "name,width,height\nbust,1,2\n")),
+    *((ASSESS, body, CSV, "objects") for body in ("name,width [m],height [m]\n", "v" * 140_000, '"' * 999, "\0,\0\n")),
+    (ASSESS, json_of(objects=OBJECTS, records=[SHORT], hazard={}), JSON, "hazard"),
+    (ASSESS, json_of(objects=OBJECTS, records=[SHORT | {"acceleration": []}]), JSON, "acceleration"),
+    (ASSESS, json_of(objects=OBJECTS, records=[SHORT | {"unit": "ly"}]), JSON, "unit"),
+    (ASSESS, json_of(objects=OBJECTS, records=3), JSON, "records"),
+    (ASSESS, json_of(objects=OBJECTS, mesh="/etc/passwd"), JSON, "mesh"),
+    (ASSESS, json_of(objects=[{"path": "/etc/passwd"}]), JSON, "objects"),
+]
+"""Address, body, its type, and the parameter that is named, perhaps within another one."""
+
+
+@pytest.mark.parametrize(("route", "body", "media_type", "name"), BODIES, ids=range(len(BODIES)))
+def test_a_wrong_body_is_refused_by_name(client, route, body, media_type, name):
+    problem = assert_problem(post(client, route, body.encode("latin-1"), media_type), 422)
+    assert name is None or name in json.dumps(problem)
+
+
+SITES = [
+    ("pgv=0.3", "pga"),
+    ("pga=3", "site"),
+    ("pga=3&pgv=0.3&period_min=0.2&period_max=1", "site"),
+    ("pga=3&period_min=0.2", "periods"),
+    ("pga=3&period_min=1&period_max=0.2", "periods"),
+    ("pga=-3&pgv=0.3", "pga"),
+    ("pga=3&pgv=nan", "pgv"),
+    ("pga=3&pgv=1000", "pgv"),
+    ("pga=3&period_min=1e-9&period_max=1", "period_min"),
+    ("pga=3&pgv=0.3&shapes=", "shapes"),
+    ("pga=3&pgv=0.3&shapes=sine,square", "shapes"),
+    ("pga=3&pgv=0.3&hazard=1", "hazard"),
+    ("pga=3&pgv=0.3&samples=1.5&floor_periods=0.5&shapes=sine", "samples"),
+    *((f"pga=3&pgv=0.3&floor_periods={wrong}", "floor_periods") for wrong in ("0", "a")),
+    ("pga=3&pgv=0.3&samples=1000000", "samples"),
+]
+OF_RECORDS = [
+    *({"width": 0.0}, {"height": "x"}, {"scale": 0.0}, {"restitution": 1.5}, {"restitution": "plastic"}),
+    *({"unit": "feet"}, {"time_step": -1.0}, {"baseline_order": 7}, {"colour": 1}, {"vertical": "up"}),
+]
+
+
+def test_wrong_parameters_beside_a_body_are_named(client):
+    for query, name in SITES:
+        assert_problem(client.post(f"/v1/assess?{query}", json=OBJECTS), 422, name)
+    record = NAPA.read_bytes()
+    for wrong in OF_RECORDS:
+        assert_problem(client.post("/v1/records/response", params=SIZE | wrong, content=record), 422, next(iter(wrong)))
+    assert_problem(client.post(RESPONSE, params={"component": "Z"}, content=record), 422, "record")
+    scales = "/v1/records/scales?width=0.5&height=2"
+    assert_problem(client.post(scales + "&scale_min=2&scale_max=1", content=record), 422, "scale_max")
+    assert_problem(client.post(scales + "&points=1", content=record), 422, "points")
+    for query, name in (("edges=3", "edges"), ("confidence=1", "confidence"), ("confidence=nan", "confidence")):
+        assert_problem(client.post(f"{IDENTIFY}?{query}", json=identify.EXAMPLE), 422, name)
+    for factor in (1e-300, 1e-200, 1e-100, 1e-30, 1e6):
+        trace = identify.EXAMPLE | {"time": [factor * time for time in identify.EXAMPLE["time"]]}
+        problem = assert_problem(client.post(IDENTIFY, json=trace), 422, "time")
+        assert "0.001 to 100000 s" in problem["allowed"]
+
+
+@pytest.mark.parametrize(
+    ("body", "line", "reason"),
+    [
+        (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
+        (TABLE.replace("vase", "v" * 131_073), 2, "field larger than field limit"),
+        (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
+        (TABLE.replace("name", '"name'), 1, "unexpected end of data"),
+    ],
+    ids=range(4),
+)
+def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client, body, line, reason):
+    problem = assert_problem(post(client, BLOCKS, body, CSV), 422, f"blocks, line {line}")
+    assert reason in problem["value"]
+
+
+@pytest.mark.parametrize("route", ["/v1/response", "/v1/assess", "/v1/spectrum", "/v1/records/response", IDENTIFY])
+def test_types_and_codings_that_are_not_read_are_refused(client, route):
+    if "records" not in route:
+        assert_problem(post(client, route, "<x/>", "application/xml"), 415, "Content-Type")
+    bomb = gzip.compress(b" " * number(1_000_000, 50_000_000))
+    for coding in ("gzip", "deflate", "br", "gzip, identity"):
+        headers = {"content-type": JSON, "content-encoding": coding}
+        assert_problem(client.post(route, content=bomb, headers=headers), 415, "Content-Encoding")
+
+
+@pytest.mark.parametrize("declared", ["²", "1e3", "-1", "", "9" * 6000])
+def test_odd_lengths_of_a_body(client, declared):
+    headers = {"content-type": JSON, "content-length": declared.encode("latin-1")}
+    assert client.post("/v1/response", content=b"{}", headers=headers).status_code in (413, 422)
+
+
+def test_a_netcdf_file_of_a_wrong_size_or_damaged_anywhere(client):
+    whole = bytes(xr.Dataset({"slenderness": ("point", np.linspace(0.1, 0.9, 50))}).to_netcdf(engine="scipy"))
+    bodies, random = [], np.random.default_rng(5)
+    where = whole.index(b"point") + 8  # after the name, padded: the length of the dimension
+    bodies.extend(whole[:where] + length.to_bytes(4, "big") + whole[where + 4 :] for length in (51, 10**6, 2**31 - 1))
+    for body in bodies:
+        assert post(client, FIVE, body, NC, frequency_ratio=5, restitution=0.9).status_code in (413, 422)
+    for _ in range(number(50, 300)):
+        body = bytearray(whole)
+        for position in random.integers(4, len(body), 3):
+            body[position] = random.integers(256)
+        body = bytes(body[: random.integers(4, len(body) + 1)])
+        assert post(client, FIVE, body, NC, frequency_ratio=5, restitution=0.9).status_code in (200, 413, 422)
+
+
+NAMES = [
+    *("..%2f..%2fpyproject", "%2e%2e%2f%2e%2e%2fpyproject", "..%252f..%252fpyproject", "....//....//pyproject"),
+    *("spectra%2f..%2f..%2fsecret", "spectra/sine/eta-0.85.nc%00", "spectra\\sine\\eta-0.85", "/etc/passwd"),
+    *("%2fetc%2fpasswd", "file:%2f%2f%2fetc%2fpasswd", "spectra/sine/%2e/eta-0.85", "~root/x", "a" * 256),
+    *("spectra/" + "a" * 256, "a" * 5000, "a/" * 2000 + "a", "spectra/\ud7ff/x", "spectra/sine/eta-0.99", "spectra"),
+    *("../pyproject", "spectra/../../secret", "%2e%2e/x/y", ".hidden/x", "a//b", "no/such"),
+]
+
+
+def test_names_lead_to_nothing_but_data_sets_and_static_files(client):
+    for name in NAMES:
+        for suffix in ("", ".nc", ".zarr/.zmetadata", ".zarr/../../../x"):
+            assert_problem(client.get(f"/v1/datasets/{name}{suffix}"), 404)
+    for key in ("../../eta-0.85.nc", "..%2f..%2fx", "%00", "a" * 5000, ".zmetadata/../x", "", "none/0.0"):
+        assert client.get(f"/v1/datasets/spectra/sine/eta-0.85.zarr/{key}").status_code == 404
+    for path in ("/static/../app.py", "/static/..%2fapp.py", "/static/%2e%2e/app.py", "/static/%00", "/v2/response"):
+        assert client.get(path).status_code == 404
+    for name in ("none", "%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
+        assert client.get(f"/v1/suites/{name}").status_code == 404
+    assert_problem(client.get("/v1/suites/none"), 404, "name")
+    assert_problem(client.get("/v1/suites/none", params={"format": "nrml"}), 404, "name")
+    assert_problem(client.get("/v1/datasets/spectra/none/subset"), 404, "name")
+    assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")  # no cube
+
+
+@pytest.mark.parametrize(
+    ("header", "value"),
+    [
+        ("accept", "application/json;q=" + "9" * 5000),
+        ("accept", ",".join(["text/csv;q=x"] * 2000)),
+        ("if-none-match", '"' + "a" * 20_000),
+        ("range", "bytes=" + ",".join(f"{k}-{k}" for k in range(3000))),
+        ("range", "bytes=0-" + "9" * 5000),
+        ("if-range", "\x80"),
+        ("accept-encoding", "gzip;q=nan"),
+        ("content-type", "application/json; charset=" + "x" * 5000),
+        ("x-request-id", "\x80\x81"),
+        ("host", "[::::"),
+        ("origin", "null"),
+    ],
+)
+def test_odd_headers(client, header, value):
+    for url in ("/v1/response?pulse=sine&slenderness=2&frequency_ratio=1&restitution=1", "/v1/datasets", "/",
+                "/v1/datasets/spectra/sine/eta-0.85.nc"):  # fmt: skip
+        assert client.get(url, headers={header: value.encode("latin-1")}).status_code < 500
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_half_of_a_pair_of_escapes_is_repeated_as_text(count):
+    errors = [InvalidArgumentError(f"a{number} \ud800", "b \udc00", "c \udfff") for number in range(count)]
+    response = anyio.run(error_response, None, errors[0] if count == 1 else SeveralArgumentsError(errors))
+    problem = json.loads(response.body)
+    assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a0 \ud800", r"b \udc00", r"c \udfff"]
+    assert r"\ud800" in problem["detail"]
+    assert len(problem.get("errors", [])) == (0 if count == 1 else 2)
+
+
+COUNTS = {"/v1/spectrum": ["points"], "/v1/history": ["samples"], "/v1/map": ["columns", "rows"]}
+
+
+@pytest.mark.parametrize("route", COUNTS)
+def test_counts_that_are_none_or_beyond_all_doubles(client, route):
+    for name in COUNTS[route]:
+        for count in ("-1", "0", "1", "1e3", "10.5", "9" * 30, "9" * 400, "-" + "9" * 400):
+            response = client.get(route, params=ROUTES[route] | {name: count})
+            assert_problem(response, 413 if response.status_code == 413 else 422, name)
+
+
+def test_sizes_are_limited(results, monkeypatch):
+    """One service with small limits; bodies with and without their length."""
+    monkeypatch.setattr(assess, "MAX_OBJECTS", 2)
+    monkeypatch.setattr(block_models, "MAX_BLOCKS", 2)
+    limits = {"max_points": 3, "max_body_bytes": 2000, "max_record_bytes": 1000, "max_samples": 200}
+    batch = {"pulse": "sine", "frequency_ratio": 5.0, "restitution": 0.85}
+    row = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
+    grid = xr.Dataset(coords={"slenderness": [0.5, 0.6], "frequency_ratio": [5.0, 6.0]})
+    with client_of(results, **limits) as client:
+        for count, status in ((3, 200), (4, 413)):
+            response = client.post("/v1/response", json=batch | {"slenderness": [0.5] * count})
+            assert response.status_code == status
+        assert_problem(response, 413, "points")
+        assert_problem(post(client, FIVE, bytes(grid.to_netcdf(engine="scipy")), NC, restitution=1), 413, "points")
+        assert_problem(post(client, "/v1/response", " " * 2001), 413, "body")
+        assert_problem(post(client, FIVE, iter([b"slenderness\n", *[b"0.5\n"] * 1000]), CSV), 413, "body")
+        assert "1000 bytes" in assert_problem(post(client, RESPONSE, NAPA.read_bytes(), CSV), 413, "body")["allowed"]
+        assert_problem(client.get(SUBSET), 413, "points")
+        query = {"pulse": "sine", "restitution": 0.85}
+        for columns, rows, wrong in ((20, 10, None), (20, 11, "columns"), (3, 90, "rows")):
+            response = client.get("/v1/map", params=query | {"columns": columns, "rows": rows})
+            assert response.status_code == (200 if wrong is None else 413)
+            assert wrong is None or assert_problem(response, 413, wrong)
+        assert_problem(
+            post(client, RESPONSE.replace("response", "history"), RECORD, CSV, samples=10**6), 413, "samples"
+        )
+        for count, status in ((2, 200), (3, 413)):
+            assert client.post(BLOCKS, json={"blocks": [row] * count}).status_code == status
+            lines = [TABLE.splitlines()[0], *TABLE.splitlines()[1:] * count]
+            for end in ("\n", "\r\n", "\r"):
+                response = post(client, BLOCKS, end.join([*lines, ""]), CSV)
+                assert response.status_code == status
+            objects = client.post("/v1/assess?pga=3&pgv=0.3&shapes=sine&sensitivity=false", json=OBJECTS * count)
+            assert objects.status_code == status
+        assert assert_problem(response, 413, "blocks")["allowed"] == "at most 2"
+        problem = assert_problem(objects, 413, "objects")
+        assert (problem["value"], problem["allowed"]) == (3, "at most 2")
+        table = "width [m],height [m]\n" + "0.4,1.6\n" * 3
+        assert_problem(post(client, ASSESS, table, CSV), 413, "objects")
+
+
+def test_large_bodies_are_limited_by_route(client, monkeypatch):
+    whole = GROUPS % ("[1.5" + ", 1.5" * 200_000 + "]")
+    body = whole + " " * (MAX_JSON - len(whole))
+    assert post(client, BATCH, body).json()["query"]["points"] == 200_001
+    problem = assert_problem(post(client, BATCH, body + " "), 413, "body")
+    assert problem["allowed"] == f"at most {MAX_JSON} bytes in JSON; send larger tables as CSV or netCDF"
+    assert_problem(post(client, ASSESS, " " * (assess.MAX_BODY + 1), CSV), 413, "body")
+    assert_problem(post(client, IDENTIFY, " " * (identify.MAX_BODY + 1)), 413, "body")
+    assert_problem(post(client, "/v1/map", "0" * (MAX_BODY + 1)), 413, "body")
+    monkeypatch.setattr("rocking._assessment.site.MOST_SAMPLES", 3000)
+    assert_problem(client.post(ASSESS + "&floor_periods=1", json=OBJECTS), 422, "floor_periods")
+    monkeypatch.setattr(assess, "MAX_PAIRS", 0)
+    assert_problem(client.post(ASSESS, json=OBJECTS), 413, "objects")
+
+
+OF_PULSES = {
+    "/v1/response": {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85},
+    "/v1/spectrum": {"slenderness": 0.4, "restitution": 0.85, "points": 5},
+    "/v1/history": {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "samples": 20},
+    "/v1/map": {"restitution": 0.85, "columns": 4, "rows": 3},
+    "/v1/overturning": {"restitution": 0.2},
+    "/v1/thresholds": {"frequency_ratio": 5.0, "restitution": 0.85},
+    "/v1/blocks/response": {"blocks": [{"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}]},
+}
+PULSES = [
+    ({"acceleration": [0, 1, "a"]}, "pulse.acceleration[2]"),
+    ({"acceleration": [0, 1, None]}, "pulse.acceleration[2]"),
+    ({"acceleration": [0, 1e400, 0]}, "pulse.acceleration[1]"),
+    ({"acceleration": [0, [1], 0]}, "pulse.acceleration[1]"),
+    ({"acceleration": [0, 0]}, "pulse.acceleration"),
+    ({"acceleration": [1]}, "pulse.acceleration"),
+    ({"acceleration": [1.0] * (MAX_SAMPLES + 1)}, "pulse.acceleration"),
+    ({"acceleration": "0,1,0"}, "pulse.acceleration"),
+    ({"acceleration": {}}, "pulse.acceleration"),
+    ({"acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulse.time[2]"),
+    ({"acceleration": [0, 1, 0], "time": [0, 2]}, "pulse.time"),
+    ({"acceleration": [0, 1, 0], "time": [0, 1e-300, 1e300]}, "pulse.time"),
+    ({"acceleration": [0, 1, 0], "period": -1}, "pulse.period"),
+    ({"acceleration": [0, 1, 0], "period": 1e300}, "pulse.period"),
+    ({"acceleration": [0, 1, 0], "name": ""}, "pulse.name"),
+    ({"acceleration": [0, 1, 0], "dt": 1}, "pulse.dt"),
+    ({}, "pulse.acceleration"),
+    ([], "pulse"),
+    (5, "pulse"),
+    ("triangle", "pulse"),
+]
+
+
+@pytest.mark.parametrize("route", OF_PULSES)
+def test_an_error_of_the_samples_of_a_pulse_names_the_element(client, route):
+    for pulse, name in PULSES:
+        body = json.dumps(OF_PULSES[route] | {"pulse": pulse})
+        problem = assert_problem(client.post(route, content=body), 422, name)
+        assert len(json.dumps(problem)) < 2000
+
+
+def test_hostile_samples_of_a_pulse_are_refused_soon(client):
+    numbers = json.dumps(OF_PULSES["/v1/map"] | {"pulse": {"acceleration": [1.2345678901234567] * MAX_SAMPLES}})
+    began = time.process_time()
+    for body in (
+        '{"pulse": ' + '{"acceleration": ' * 20_000,
+        '{"pulse": {"acceleration": ' + "[" * 400_000,
+        '{"pulse": {"acceleration": [' + "1" * 400_000 + "]}}",
+        '{"pulse": {"acceleration": [' + '"a",' * 120_000 + "1]}}",
+        '{"pulse": {"acceleration": [' + "1e999," * 70_000 + "1]}}",
+        '{"pulse": {' + ",".join(f'"k{k}": 1' for k in range(40_000)) + "}}",
+        '{"a": "' + "\\u0000" * 60_000 + '"}',
+    ):
+        assert client.post("/v1/map", content=body).status_code in (400, 422)
+    assert client.post("/v1/map", content=numbers).status_code == 200
+    assert time.process_time() - began < 10.0
