@@ -75,60 +75,40 @@ def summary(values: NDArray[np.float64]) -> dict[str, float]:
     return {"median": float(np.median(finite)), "largest": float(np.max(finite))}
 
 
+TABLES = {
+    "family | cells | rigid | survive | impacts up to | wrong outcomes | events | unexplained"
+    " | time median | largest | per impact": (
+        "{name} | {cells} | {rigid} | {survive} | {max_impacts} | {outcome} | {events} | {unexplained}"
+        " | {time[median]:.2g} | {time[largest]:.2g} | {time[slow_per_impact]:.2g}"
+    ),
+    "family | error median | largest | conditioning up to | over explained median | largest"
+    " | uplift | impact | bound": (
+        "{name} | {peak[median]:.1e} | {peak[largest]:.1e} | {largest_conditioning:.1e}"
+        " | {peak_in_ulps[median]:.2g} | {peak_in_ulps[largest]:.2g}"
+        " | {uplift_time_in_ulps[largest]:.2g} | {impact_time_in_ulps[largest]:.2g} | {beyond_error_bound}"
+    ),
+    "family | mirror | neighbours | size x 4 | units x 1024"
+    " | size x 3.7 outcomes | largest | units mm and ms outcomes | largest": (
+        "{name} | {same[mirror][identical]} | {same[neighbours][identical]} | {same[size_4][identical]}"
+        " | {same[units_1024][identical]} | {same[size_3.7][other_outcomes]} | {same[size_3.7][largest_in_ulps]:.2g}"
+        " | {same[units_mm_ms][other_outcomes]} | {same[units_mm_ms][largest_in_ulps]:.2g}"
+    ),
+}
+"""Heads of the tables, and a row: outcomes and times; errors; cells that keep their bits, and changes of the others."""
+
+
 def markdown(records: Mapping[str, Mapping[str, Any]]) -> str:
     """Return the tables."""
-    tables = {
-        outcomes: (
-            *("cells", "rigid", "survive", "impacts up to", "wrong outcomes", "events", "unexplained"),
-            *("time median", "largest", "per impact"),
-        ),
-        numbers: (
-            *("error median", "largest", "conditioning up to", "over explained median", "largest"),
-            *("uplift", "impact", "bound"),
-        ),
-        invariance: (
-            *("mirror", "neighbours", "size x 4", "units x 1024"),
-            *("size x 3.7 outcomes", "largest", "units mm and ms outcomes", "largest"),
-        ),
-    }
+    rows = []
+    for name, record in records.items():
+        wrong = {kind: sum(cell["wrong"] == kind for cell in record["wrong"]) for kind in ("outcome", "events")}
+        counts = {"name": name, "unexplained": len(unexplained(record)), **wrong}
+        rows.append({**record, **counts, "same": record["symmetries"]})
     texts = []
-    for line, headings in tables.items():
-        rows = [["family", *headings], ["---"] * (1 + len(headings))]
-        rows += [[name, *line(record)] for name, record in records.items()]
-        texts.append("".join("| " + " | ".join(cells) + " |\n" for cells in rows))
+    for head, row in TABLES.items():
+        lines = [head, " | ".join(["---"] * len(head.split("|"))), *(row.format_map(one) for one in rows)]
+        texts.append("".join(f"| {line} |\n" for line in lines))
     return "\n".join(texts)
-
-
-def outcomes(record: Mapping[str, Any]) -> list[str]:
-    """Return the outcomes of the blocks, and the times relative to an ordinary cell."""
-    wrong = record["wrong"]
-    return [
-        *(str(record[key]) for key in ("cells", "rigid", "survive", "max_impacts")),
-        *(str(sum(cell["wrong"] == kind for cell in wrong)) for kind in ("outcome", "events")),
-        str(len(unexplained(record))),
-        *(f"{record['time'][key]:.2g}" for key in ("median", "largest", "slow_per_impact")),
-    ]
-
-
-def numbers(record: Mapping[str, Any]) -> list[str]:
-    """Return relative errors of the peak, and errors over the effect of one ulp of the input."""
-    return [
-        *(f"{record['peak'][key]:.1e}" for key in ("median", "largest")),
-        f"{record['largest_conditioning']:.1e}",
-        *(f"{record['peak_in_ulps'][key]:.2g}" for key in ("median", "largest")),
-        *(f"{record[key]['largest']:.2g}" for key in ("uplift_time_in_ulps", "impact_time_in_ulps")),
-        str(record["beyond_error_bound"]),
-    ]
-
-
-def invariance(record: Mapping[str, Any]) -> list[str]:
-    """Return cells identical in all bits; where the groups are rounded, other outcomes and the largest change."""
-    found = record["symmetries"]
-    rounded = [found[symmetry] for symmetry in ("size_3.7", "units_mm_ms")]
-    return [
-        *(str(found[symmetry]["identical"]) for symmetry in EXACT_SYMMETRIES),
-        *(text for part in rounded for text in (str(part["other_outcomes"]), f"{part['largest_in_ulps']:.2g}")),
-    ]
 
 
 def unexplained(record: Mapping[str, Any]) -> list[Any]:

@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.checkout_worker import INPUTS
-from benchmarks.checkouts import Checkout
+from benchmarks.checkouts import INPUTS, Checkout
 from benchmarks.measure import arguments, progress, save
 from rocking._base.source_tree import PROJECT, SourceTree
 from rocking._excitation.pulses import PULSE_NAMES

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
 
 import openseespy.opensees as ops
 
-import rocking
+from benchmarks.accuracy.siconos import HEIGHT, PERIOD, WIDTH, rows
 from rocking._base.constants import STANDARD_GRAVITY
 
-WIDTH, HEIGHT, DENSITY, PERIOD = 0.4, 1.6, 2500.0, 0.5
+DENSITY = 2500.0
 DURATION = 3.0
 """Time after which a body that has not overturned is taken to survive: several swings after the pulse."""
 
@@ -67,10 +66,11 @@ def analysis(test: str, integrator: tuple[str | float, ...], kind: str) -> None:
     ops.analysis(kind)
 
 
-def peak_rotation(peak_acceleration: float, strain: float) -> float:
-    """Return the largest rotation [rad], nan if the body overturns."""
+def peak_rotation(level: float, strain: float) -> tuple[float, float]:
+    """Return the largest rotation [rad], nan if the body overturns under a pulse of `level` g, and the time [s]."""
+    begun = time.perf_counter()
     model(strain)
-    samples = [peak_acceleration * math.sin(2.0 * math.pi * i / 2000.0) for i in range(2001)]
+    samples = [level * STANDARD_GRAVITY * math.sin(2.0 * math.pi * i / 2000.0) for i in range(2001)]
     ops.timeSeries("Path", 2, "-dt", PERIOD / 2000.0, "-values", *samples)
     ops.pattern("UniformExcitation", 2, 1, "-accel", 2)
     analysis("RelativeNormUnbalance", ("Newmark", 0.5, 0.25), "Transient")
@@ -86,24 +86,10 @@ def peak_rotation(peak_acceleration: float, strain: float) -> float:
             step = min(LONGEST_STEP, 1.5 * step)
         peak = max(peak, abs(ops.nodeDisp(2, 3)))
         if peak > math.pi / 2.0:
-            return math.nan
-    return peak
-
-
-def rows() -> Iterator[str]:
-    """Yield the rows of the table of docs/other-software.md: peak rotation over alpha, and the time of OpenSees."""
-    block = rocking.Block(width=WIDTH, height=HEIGHT)
-    for level in (0.3, 0.4, 0.6):
-        acceleration = level * STANDARD_GRAVITY
-        ours = block.response("sine", peak_acceleration=acceleration, period=PERIOD, thresholds=False)
-        cells = [f"{level} g", f"{float(ours.peak_rotation):.3f}"]
-        for strain in STRAINS:
-            start = time.perf_counter()
-            found = peak_rotation(acceleration, strain) / float(block.alpha)
-            cells.append(f"{found:.3f} ({time.perf_counter() - start:.0f} s)")
-        yield f"| {' | '.join(cells)} |".replace("nan", "overturns")
+            return math.nan, time.perf_counter() - begun
+    return peak, time.perf_counter() - begun
 
 
 if __name__ == "__main__":
-    found = list(rows())  # printed at the end: OpenSees writes to the same stream
+    found = list(rows(peak_rotation, STRAINS, digits=3))  # printed at the end: OpenSees writes to the same stream
     print("\n".join(found))

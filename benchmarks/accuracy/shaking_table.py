@@ -20,7 +20,7 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.stats import binomtest
 
 import rocking
-from benchmarks.figures.shaking_table import draw
+from benchmarks.figures.outcomes import draw_tests
 from benchmarks.measure import arguments
 
 Flags = NDArray[np.bool_]
@@ -102,7 +102,7 @@ def main(command_line: list[str] | None = None) -> None:
             print(f"  {ends[0]:.2f} to {ends[1]:.2f} m/s: measured {measured}, computed {model[part].mean():.2f}")
         for run, fallen in outcomes[specimen].drop(columns="measured").items():
             print(f"  {run!s:14} {(fallen == fell).mean():.1%}")
-    draw(pd.DataFrame(rows, columns=COLUMNS), given.figure)
+    draw_tests(pd.DataFrame(rows, columns=COLUMNS), given.figure)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import rocking
@@ -28,15 +28,6 @@ THRESHOLD_STEPS = STEPS[:2]
 
 PYTHON = os.environ.get("SICONOS_PYTHON", "/usr/bin/python3")
 BLOCK = Path(__file__).with_name("siconos_block.py")
-
-
-def is_installed() -> bool:
-    """Whether `PYTHON` has Siconos."""
-    try:
-        found = subprocess.run([PYTHON, "-P", "-c", "import siconos.kernel"], capture_output=True, check=False)
-    except FileNotFoundError:
-        return False
-    return found.returncode == 0
 
 
 def peak_rotation(level: float, step: float) -> tuple[float, float]:
@@ -58,21 +49,31 @@ def threshold(step: float, low: float = 0.4, high: float = 0.6) -> tuple[float, 
     return high, total
 
 
-def rows() -> Iterator[str]:
-    """Yield the rows of the table of docs/other-software.md: peak rotation over alpha or threshold, and the time."""
+def rows(
+    program: Callable[[float, float], tuple[float, float]], settings: Iterable[float], digits: int
+) -> Iterator[str]:
+    """Yield rows of docs/other-software.md: the peak rotation over alpha, by the package and by a program.
+
+    A program is called with a peak acceleration [g] and each of its settings, and returns the rotation and its time.
+    """
     block = rocking.Block(width=WIDTH, height=HEIGHT)
     for level in LEVELS:
         ours = block.response("sine", peak_acceleration=f"{level} g", period=PERIOD, thresholds=False)
-        cells = [f"{level} g", f"{float(ours.peak_rotation):.4f}"]
-        for step in STEPS:
-            peak, seconds = peak_rotation(level, step)
-            cells.append(f"{peak / float(block.alpha):.4f} ({seconds:.1f} s)")
+        cells = [f"{level} g", f"{float(ours.peak_rotation):.{digits}f}"]
+        for peak, seconds in (program(level, setting) for setting in settings):
+            cells.append(f"{peak / float(block.alpha):.{digits}f} ({seconds:.1f} s)")
         yield f"| {' | '.join(cells)} |".replace("nan", "overturns")
+
+
+def threshold_row() -> str:
+    """Return the last row of the table of Siconos."""
+    block = rocking.Block(width=WIDTH, height=HEIGHT)
     lowest = block.response("sine", peak_acceleration="0.3 g", period=PERIOD).thresholds.lowest / STANDARD_GRAVITY
     cells = [f"{one:.4f} g ({seconds:.0f} s)" for one, seconds in map(threshold, THRESHOLD_STEPS)]
-    yield f"| lowest threshold | {lowest:.4f} g | {' | '.join(cells)} | - |"
+    return f"| lowest threshold | {lowest:.4f} g | {' | '.join(cells)} | - |"
 
 
 if __name__ == "__main__":
-    for row in rows():
+    for row in rows(peak_rotation, STEPS, digits=4):
         print(row, flush=True)
+    print(threshold_row())

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 import rocking
 from benchmarks.accuracy.record_sampling import FILES
-from benchmarks.figures.standards import draw
+from benchmarks.figures.outcomes import draw_checks
 from benchmarks.measure import arguments, progress
 from rocking._assessment.columns import CLAUSES
 from rocking._assessment.objects import Bodies
@@ -74,7 +74,7 @@ def main(command_line: list[str] | None = None) -> None:
     print(f"{len(table)} cases, {table['uplifts'].sum()} uplift, {table['overturned'].sum()} overturn")
     shares = {"of overturned": "{:.1%}".format, "of others": "{:.1%}".format}
     print(counts(table).to_string(float_format="{:.0f}".format, formatters=shares))
-    draw(table, CLAUSES, given.figure)
+    draw_checks(table, CLAUSES, given.figure)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """What a user waits for after the installation: `python -m benchmarks.cost.first_call`.
 
-All is measured in an installation of the wheel (`benchmarks.installation`): the first response of a process, the
-README's first command, and the service until it listens; each with kernels that must be compiled, and with those on
-disk. Then the bytes of the wheel, the packages and the kernels, and the memory of a process after its first response.
+All is measured in an installation of the wheel (`benchmarks.installation`): the first response of a process and the
+README's first command, each with kernels that must be compiled, and with those on disk. Then the bytes of the wheel,
+the packages and the kernels, and the memory of a process after its first response.
 """
 
 from __future__ import annotations
@@ -59,16 +59,6 @@ def measured(programs: Path, packages: Path, folder: Path) -> dict[str, Any]:
         began = time.perf_counter()
         run(rocking, *README_COMMAND)
         times["command"] = time.perf_counter() - began
-        if state == "compiled":
-            remove_kernels(packages)
-        began = time.perf_counter()
-        serve = [rocking, "serve", "--port", "0"]
-        with subprocess.Popen(serve, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True) as service:
-            assert service.stderr is not None
-            next(line for line in service.stderr if "running on http" in line)
-            times["service"] = time.perf_counter() - began
-            service.terminate()
-            service.communicate()
         found["seconds"][state] = times
     return found | {"kernels_bytes": sum(size(path) for path in kernels_of(packages))}
 

@@ -1,10 +1,9 @@
 """Load on the service: `python -m benchmarks.cost.service [--results FOLDER] [--workers 2]`.
 
-Measured are the start, requests for one block over 1, 16 and 64 connections, batches of a thousand to a million blocks
-in binary and to ten thousand in JSON, and the memory of all processes, pages that several share counted once (PSS). One
-worker is bound to the first core, the load to the last; several workers share all cores with the load. The blocks are
-random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85. wrk sends the requests for one block (apt-get install wrk):
-without it they are not measured.
+Measured are the start, requests for one block, one after the other on one connection, batches of a thousand to a
+million blocks in binary and to ten thousand in JSON, and the memory of all processes, pages that several share counted
+once (PSS). One worker is bound to the first core, the client to the last; several workers share all cores with it. The
+blocks are random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85.
 """
 
 from __future__ import annotations
@@ -12,14 +11,13 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
-import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
 
@@ -31,19 +29,6 @@ from benchmarks.measure import arguments, finish, progress, spread, versions
 
 SERVER = "import os; os.sched_setaffinity(0, %s); from rocking._cli.app import app; app()"
 POINT = "/v1/response?pulse={}&restitution=0.85&alpha_deg={:g}&slenderness=%.9f&frequency_ratio=%.9f"
-LUA = """
-math.randomseed({seed})
-request = function()
-  local s = 0.05 + 0.9 * math.random()
-  local w = 0.5 * math.exp(3.178 * math.random())
-  return wrk.format("GET", string.format("{path}", s, w))
-end
-done = function(summary, latency, requests)
-  local e = summary.errors
-  io.write(string.format("RESULT %d %d %d %d %d\\n", summary.requests, summary.duration,
-    e.connect + e.read + e.write + e.status + e.timeout, latency:percentile(50), latency:percentile(99)))
-end
-"""
 
 
 class Service:
@@ -51,13 +36,15 @@ class Service:
 
     def __init__(self, process: subprocess.Popen[bytes], port: int) -> None:
         self.process = process
-        self.port = port
+        self.connection = HTTPConnection("127.0.0.1", port, timeout=300)
 
     def ask(self, path: str, body: bytes | None = None, media_type: str = "application/json") -> bytes:
         """GET, or POST with a body."""
-        request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", body, {"Content-Type": media_type})
-        with urllib.request.urlopen(request, timeout=300) as answer:
-            content: bytes = answer.read()
+        self.connection.request("POST" if body else "GET", path, body, {"Content-Type": media_type})
+        answer = self.connection.getresponse()
+        content = answer.read()
+        if answer.status != 200:
+            raise SystemExit(content.decode())
         return content
 
     def processes(self) -> list[Path]:
@@ -97,6 +84,7 @@ def service(results: Path, workers: int, point: str) -> Iterator[tuple[Service, 
                     time.sleep(0.005)
                 one = Service(process, int(listening[1]))
                 started = time.perf_counter() - began
+                os.sched_setaffinity(0, {cores[-1]} if workers == 1 else {*cores})
                 one.ask(point % (0.6, 6.0))
                 yield one, {"listens_s": started, "first_answer_s": time.perf_counter() - began}
             finally:
@@ -104,26 +92,19 @@ def service(results: Path, workers: int, point: str) -> Iterator[tuple[Service, 
                 process.wait(60)
 
 
-def load(one: Service, path: str, connections: int, seconds: float) -> dict[str, Any]:
-    """Send requests by wrk; every one has other groups, so that no response comes from a cache."""
-    before = one.processor_seconds()
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".lua") as script:
-        script.write(LUA.format(seed=connections, path=path))
-        script.flush()
-        options = ["-t1", f"-c{connections}", f"-d{max(1, round(seconds))}s", "--timeout", "30s", "-s", script.name]
-        command = ["taskset", "-c", str(max(os.sched_getaffinity(0))), "wrk", *options, f"http://127.0.0.1:{one.port}"]
-        printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    match = re.search(r"RESULT (\d+) (\d+) (\d+) (\d+) (\d+)", printed)
-    assert match, printed
-    count, microseconds, errors, median, last = map(int, match.groups())
+def load(one: Service, path: str, seconds: float) -> dict[str, float]:
+    """Ask for single blocks for some seconds; each has other groups, so that no response comes from a cache."""
+    blocks = zip(*random_blocks(100_000).values(), strict=True)
+    times, before, end = [], one.processor_seconds(), time.perf_counter() + seconds
+    while (began := time.perf_counter()) < end:
+        one.ask(path % next(blocks))
+        times.append(1e3 * (time.perf_counter() - began))
     return {
-        "connections": connections,
-        "questions": count,
-        "per_second": 1e6 * count / microseconds,
-        "median_ms": median / 1e3,
-        "p99_ms": last / 1e3,
-        "processor_ms": 1e3 * (one.processor_seconds() - before) / count,
-        "errors": errors,
+        "questions": len(times),
+        "per_second": len(times) / seconds,
+        "median_ms": float(np.median(times)),
+        "p99_ms": float(np.quantile(times, 0.99)),
+        "processor_ms": 1e3 * (one.processor_seconds() - before) / len(times),
     }
 
 
@@ -163,18 +144,17 @@ def main(command_line: list[str] | None = None) -> None:
     """Measure, print, write the record; `--seconds` of each load, `--rounds` of the batches."""
     asked = arguments(
         __doc__, command_line, results=Path("results"), pulse="sine", alpha_deg=0.0, workers=1, seconds=5.0,
-        connections=[1, 16, 64], points=[1_000, 10_000, 100_000, 1_000_000], json_points=[1_000, 10_000], rounds=3,
+        points=[1_000, 10_000, 100_000, 1_000_000], json_points=[1_000, 10_000], rounds=3,
         out=Path("results/benchmarks/service.json"),
     )  # fmt: skip
     groups = {"pulse": asked.pulse, "restitution": 0.85, "alpha_deg": asked.alpha_deg}
     point = POINT.format(asked.pulse, asked.alpha_deg)
     names = versions("rocking", "fastapi", "uvicorn", "uvloop", "httptools", "numpy")
-    record: dict[str, Any] = {"versions": names, "workers": asked.workers, "points": []}
+    record: dict[str, Any] = {"versions": names, "workers": asked.workers}
     with service(asked.results, asked.workers, point) as (one, start):
         record |= {"start": start, "memory": {"at first": one.memory()}}
-        for connections in asked.connections if shutil.which("wrk") else ():
-            progress(f"{connections} connections")
-            record["points"].append(load(one, point, connections, asked.seconds))
+        progress("single blocks")
+        record["points"] = load(one, point, asked.seconds)
         record["memory"]["after points"] = one.memory()
         progress("batches")
         sizes = {"netcdf": asked.points, "json": asked.json_points}
@@ -189,7 +169,7 @@ def table(record: dict[str, Any]) -> str:
     """All of it as tables."""
     parts = {
         "start": pd.DataFrame([record["start"]]),
-        "requests for one block": pd.DataFrame(record["points"]),
+        "requests for one block": pd.DataFrame([record["points"]]),
         "batches": pd.json_normalize(record["batches"]),
         "memory": pd.DataFrame(record["memory"]).T,
     }

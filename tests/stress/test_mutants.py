@@ -4,8 +4,7 @@ import sqlite3
 import subprocess
 from pathlib import Path
 
-from stress.imports import ImportGraph
-from stress.mutants import ordered_tests, run_tests, sample
+from stress.mutants import ImportGraph, ordered_tests, run_tests, sample
 
 ROOT = Path(__file__).parents[2]
 
