@@ -5,11 +5,11 @@ often narrow: of 140 pairs of objects and records half of these ranges are narro
 10 to 200 times, and there are others of 0.001 % and less. `lowest_overturning` tries strengths from that of uplift on,
 `resolution` apart. Each response has a reach: how far above and below in strength one of its peaks comes to the
 unstable equilibrium, by the derivative of the peak (`rocking._solver.records.estimate`). An interval is halved while it
-is wider than half the reach at one of its ends, down to a 4096th of the resolution; then while it is wider than an 8th
-and a 32nd of it; all this as long as the body has had fewer than `BUDGET` responses in a `WINDOW`. Close below the
-lowest that overturns the intervals are as narrow as a 32nd of their distance from it. All of these are estimates; each
-that is the lowest so far is confirmed by the solver, there or close by, and the change of outcome below the lowest is
-bisected with it. A narrower range can be missed.
+is wide beside the reach at one of its ends, by two limits one after the other (`MULTIPLES`, `WIDER`), down to a 4096th
+of the resolution; all this as long as the body has had fewer than `BUDGET` responses in a `WINDOW`. Close below the
+lowest that overturns the intervals are as narrow as a 32nd of their distance from it. All of these are estimates: at
+the end of each window the solver confirms the lowest, there or close by, or else the next ones, and the change of
+outcome below the lowest is bisected with it. A narrower range can be missed.
 """
 
 from __future__ import annotations
@@ -49,10 +49,14 @@ PARTS = 4096
 CLOSE, CLOSE_RATIO = PARTS, 32
 """Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
-MULTIPLES = 2.0, 8.0, 32.0
-"""An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other."""
+MULTIPLES, WIDER = (4.0, 16.0), 512.0
+"""An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other.
 
-WINDOW, BUDGET = 16, 2000
+They are more by the factor 1 + `WIDER` width/resolution: in a wide interval the response may change in a way that no
+derivative at its ends shows.
+"""
+
+WINDOW, BUDGET = 16, 3000
 """Intervals of the resolution that are searched together, from the weakest on; responses of a body in them after which
 only those close below the lowest that overturns are halved."""
 
@@ -199,7 +203,9 @@ class _Search:
         self.unit, self.budget = math.log1p(resolution) / PARTS, BUDGET * min(RESOLUTION / resolution, 1.0)
         with np.errstate(divide="ignore"):
             self.enough = np.log(enough / start) / self.unit  # place
-        self.first = np.full(start.size, math.inf)  # place of the lowest that overturns
+        self.first = np.full(start.size, math.inf)  # place of the lowest that overturns, by an estimate or confirmed
+        self.known = self.first.copy()  # that is confirmed
+        self.hits = np.empty((2, 0), dtype=np.intp)  # lines and places that overturn by an estimate
         self.tried = np.zeros(start.size)  # responses in the window
 
     def strength(self, line: Index, place: Index | Array) -> Array:
@@ -207,24 +213,29 @@ class _Search:
         return np.asarray(np.minimum(self.start[line] * np.exp(self.unit * place), self.limit[line]))
 
     def reach(self, line: Index, place: Index) -> Array:
-        """Reaches of the responses, 0 where a body overturns, in parts; confirms the lowest that overturn."""
-        strength = self.strength(line, place)
-        overturned, reach = self.lines.estimated(line, strength)
+        """Reaches of the responses, 0 where a body overturns, in parts."""
+        overturned, reach = self.lines.estimated(line, self.strength(line, place))
         self.tried += np.bincount(line, minlength=self.tried.size)
-        left = overturned.copy()
-        while (left := left & (place < self.first[line])).any():
-            hits = np.flatnonzero(left)
-            lowest = hits[np.unique(line[hits], return_index=True)[1]]
-            left[lowest] = False
-            for shift in SHIFTS:
-                at = np.maximum(place[lowest] + shift, 0.0)
-                confirmed = self.lines.overturned(line[lowest], self.strength(line[lowest], at))
-                own, at = line[lowest[confirmed]], at[confirmed]
-                self.first[own] = np.minimum(self.first[own], at)
-                lowest = lowest[~confirmed]
-                if not lowest.size:
-                    break
+        hits = np.stack([line, place])[:, overturned]
+        self.hits = np.concatenate([self.hits, hits], axis=1)
+        np.minimum.at(self.first, *hits)
         return np.where(overturned[:, None], 0.0, reach / self.unit)
+
+    def confirm(self) -> None:
+        """Confirm the lowest that overturn by an estimate; where the solver does not, the next ones."""
+        while (left := np.flatnonzero(self.first < self.known)).size:
+            for shift in SHIFTS:
+                at = np.maximum(self.first[left] + shift, 0.0)
+                confirmed = self.lines.overturned(left, self.strength(left, at))
+                own = left[confirmed]
+                self.known[own] = np.minimum(self.known[own], at[confirmed])
+                left = left[~confirmed]
+                if not left.size:
+                    break
+            line, place = self.hits
+            self.hits = self.hits[:, place > self.first[line] + SHIFTS[-1]]
+            self.first = self.known.copy()
+            np.minimum.at(self.first, *self.hits)
 
     def settled(self) -> Bools:
         """Whether a strength is known that is low enough."""
@@ -246,10 +257,12 @@ class _Search:
             intervals = window if intervals is None else intervals.with_others(window)
             for multiple in MULTIPLES:
                 intervals = self.refined(intervals, multiple)
-            before: Index | None = None
-            while before is None or (self.first < before).any():  # what is close below the lowest
+            before = np.zeros(0)
+            while not np.array_equal(before, self.first):  # what is close below the lowest
                 before = self.first.copy()
                 intervals = self.refined(intervals, MULTIPLES[-1])
+                if np.array_equal(before, self.first):
+                    self.confirm()
             solved_to += WINDOW * PARTS
             # those close below a later one are looked at again
             lines = lines[np.isinf(self.first[lines]) & (solved_to - CLOSE < end[lines]) & (solved_to < last[lines])]
@@ -262,13 +275,13 @@ class _Search:
         """The intervals, and those into which they are divided as long as one is to be halved."""
         done = [intervals.take(np.empty(0, dtype=np.intp))]
         while True:
-            intervals = intervals.take((intervals.low < self.first[intervals.line]) & ~self.settled()[intervals.line])
             gap = intervals.high - intervals.low
             used = np.where(self.tried[intervals.line] < self.budget, multiple, 0.0)
             below = self.first[intervals.line] - intervals.low
             close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
-            near = gap * used > np.minimum(intervals.low_reach, intervals.high_reach)
-            halved = (gap > 1) & (near | close)
+            near = used * gap * (1.0 + WIDER * gap / PARTS) > np.minimum(intervals.low_reach, intervals.high_reach)
+            searched = (below > 0.0) & ~self.settled()[intervals.line]
+            halved = (gap > 1) & (near | close) & searched
             done.append(intervals.take(~halved))
             if not halved.any():
                 return done[0].with_others(*done[1:])
@@ -285,15 +298,15 @@ class _Search:
 
     def bisected(self, known: Index) -> Array:
         """The lowest strengths of bodies for which one is known, with the change of outcome below it."""
-        place = self.first[known]
+        place = self.known[known]
         low = np.where(np.isfinite(self.enough[known]), place, np.maximum(place - 1.0, 0.0))
         found = np.full(self.start.size, math.nan)
-        over = np.ones(known.size, dtype=np.bool_)
+        over, step = np.ones(known.size, dtype=np.bool_), 1.0
         while (down := np.flatnonzero(over & (low < place))).size:
             over[down] = self.lines.overturned(known[down], self.strength(known[down], low[down]))
-            down = down[over[down]]
+            down, step = down[over[down]], 2.0 * step
             place[down] = low[down]
-            low[down] = np.maximum(low[down] - 1.0, 0.0)
+            low[down] = np.maximum(low[down] - step, 0.0)
         high, under = (self.strength(known, each) for each in (place, low))
         while (wide := np.flatnonzero(high / under - 1.0 > RELATIVE_ERROR)).size:
             middle = np.sqrt(under[wide] * high[wide])
