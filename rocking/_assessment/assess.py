@@ -90,7 +90,7 @@ def assess(
     One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
     to 1. `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
     between the factors tried can be missed. Under pulses this distance is 0.05 to 0.23 %. Under records, and pulses on
-    a floor, it is at most `resolution`, and a 64th of it where the object may overturn
+    a floor, it is at most `resolution`, down to a 4096th of it where the object may overturn
     (`rocking._boundary.scan.lowest_overturning`). For changed objects and samples it is four times as large. The sizes
     tried are 6.7 % apart, 0.8 % where the factor is close to 1; the smallest width and the largest height are then
     refined to 0.1 %.

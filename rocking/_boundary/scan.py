@@ -5,11 +5,11 @@ often narrow: of 140 pairs of objects and records half of these ranges are narro
 10 to 200 times, and there are others of 0.001 % and less. `lowest_overturning` tries strengths from that of uplift on,
 `resolution` apart. Each response has a reach: how far above and below in strength one of its peaks comes to the
 unstable equilibrium, by the derivative of the peak (`rocking._solver.records.estimate`). An interval is halved while it
-is wider than half the reach at one of its ends, down to a 4096th of the resolution; then while it is wider than an 8th
-and a 32nd of it; all this as long as the body has had fewer than `BUDGET` responses in a `WINDOW`. Close below the
-lowest that overturns the intervals are as narrow as a 32nd of their distance from it. All of these are estimates; each
-that is the lowest so far is confirmed by the solver, there or close by, and the change of outcome below the lowest is
-bisected with it. A narrower range can be missed.
+is wide beside the reach at one of its ends, by two limits one after the other (`MULTIPLES`, `WIDER`), down to a 4096th
+of the resolution; all this as long as the body has had fewer than `BUDGET` responses in a `WINDOW`. Close below the
+lowest that overturns the intervals are as narrow as a 32nd of their distance from it. All of these are estimates: at
+the end of each window the solver confirms the lowest, there or close by, or else the next ones, and the change of
+outcome below the lowest is bisected with it. A narrower range can be missed.
 """
 
 from __future__ import annotations
@@ -49,10 +49,14 @@ PARTS = 4096
 CLOSE, CLOSE_RATIO = PARTS, 32
 """Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
-MULTIPLES = 2.0, 8.0, 32.0
-"""An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other."""
+MULTIPLES, WIDER = (4.0, 16.0), 512.0
+"""An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other.
 
-WINDOW, BUDGET = 16, 2000
+They are more by the factor 1 + `WIDER` width/resolution: in a wide interval the response may change in a way that no
+derivative at its ends shows.
+"""
+
+WINDOW, BUDGET = 16, 3000
 """Intervals of the resolution that are searched together, from the weakest on; responses of a body in them after which
 only those close below the lowest that overturns are halved."""
 
@@ -229,7 +233,7 @@ class _Search:
                 if not left.size:
                     break
             line, place = self.hits
-            self.hits = self.hits[:, place > self.first[line]]
+            self.hits = self.hits[:, place > self.first[line] + SHIFTS[-1]]
             self.first = self.known.copy()
             np.minimum.at(self.first, *self.hits)
 
@@ -275,7 +279,7 @@ class _Search:
             used = np.where(self.tried[intervals.line] < self.budget, multiple, 0.0)
             below = self.first[intervals.line] - intervals.low
             close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
-            near = gap * used > np.minimum(intervals.low_reach, intervals.high_reach)
+            near = used * gap * (1.0 + WIDER * gap / PARTS) > np.minimum(intervals.low_reach, intervals.high_reach)
             searched = (below > 0.0) & ~self.settled()[intervals.line]
             halved = (gap > 1) & (near | close) & searched
             done.append(intervals.take(~halved))
@@ -297,12 +301,12 @@ class _Search:
         place = self.known[known]
         low = np.where(np.isfinite(self.enough[known]), place, np.maximum(place - 1.0, 0.0))
         found = np.full(self.start.size, math.nan)
-        over = np.ones(known.size, dtype=np.bool_)
+        over, step = np.ones(known.size, dtype=np.bool_), 1.0
         while (down := np.flatnonzero(over & (low < place))).size:
             over[down] = self.lines.overturned(known[down], self.strength(known[down], low[down]))
-            down = down[over[down]]
+            down, step = down[over[down]], 2.0 * step
             place[down] = low[down]
-            low[down] = np.maximum(low[down] - 1.0, 0.0)
+            low[down] = np.maximum(low[down] - step, 0.0)
         high, under = (self.strength(known, each) for each in (place, low))
         while (wide := np.flatnonzero(high / under - 1.0 > RELATIVE_ERROR)).size:
             middle = np.sqrt(under[wide] * high[wide])

@@ -12,8 +12,9 @@ Each flight carries the derivatives of z and w with respect to the logarithm of 
     z'' = -pull (V S + F C),   dF/d ln g = F,  dV/d ln g = V - 1,  dS/dz = s' C,  dC/dz = c' S
 
 and at an impact with the velocity w at a time that changes by -dz/w. At a peak z of a flight, (1 - z)/|dz/d ln g| is
-about how far away in ln g it reaches the unstable equilibrium, above g or below it by the sign of the derivative; the
-smallest of all peaks, and of the same for z + w at the end of the record, are the reaches of the response.
+about how far away in ln g it reaches the unstable equilibrium, above g or below it by the sign of the derivative. It is
+divided by z, since a low peak seldom grows so far. The smallest of all peaks, and the same for z + w at the end of the
+record without that division, are the reaches of the response.
 """
 
 from __future__ import annotations
@@ -218,7 +219,8 @@ def take_step(lanes: FloatArray, f: FloatArray, vertical: FloatArray, upright: b
     )
     turns = in_use & (w > 0.0) & (end_w <= 0.0)
     if any_lane(turns):
-        left = maximum(select(on_right, load(lanes, RATIO), load(lanes, RATIO + 1)) - maximum(z, end_z), 0.0)
+        top = maximum(z, end_z)
+        left = maximum(select(on_right, load(lanes, RATIO), load(lanes, RATIO + 1)) - top, 0.0) / maximum(top, TINY)
         up, down = load(lanes, UP), load(lanes, DOWN)
         store(lanes, UP, select(turns, minimum(up, left / maximum(dz, TINY)), up))
         store(lanes, DOWN, select(turns, minimum(down, left / maximum(-1.0 * dz, TINY)), down))
