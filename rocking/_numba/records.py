@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.extending import intrinsic
 
@@ -46,20 +45,3 @@ def constant_fields(numbers: Mapping[str, float]) -> Any:
         return types.void(target), lower
 
     return set_constants
-
-
-def _copy_lane(_: Any, source: Any, lane: Any, target: Any) -> Any:
-    def lower(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-        start = builder.bitcast(values[0], ir.IntType(8).as_pointer())
-        for name in target.fields:
-            row = builder.gep(start, [ir.Constant(ir.IntType(64), source.offset(name))])
-            place = builder.gep(builder.bitcast(row, ir.DoubleType().as_pointer()), [values[1]])
-            converted = context.cast(builder, builder.load(place), types.float64, target.typeof(name))
-            _assign(context, builder, target, values[2], name, converted)
-        return context.get_dummy_value()
-
-    return types.void(source, lane, target), lower
-
-
-copy_lane: Any = intrinsic(_copy_lane)
-"""copy_lane(source, lane, target): set a record from one lane of a record that has a row of doubles for each field."""

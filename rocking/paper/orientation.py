@@ -286,10 +286,8 @@ def admissible_exponents(
 
     Parameters
     ----------
-    target : Orientation
-        Orientation of the left side.
-    factors : mapping of str to Orientation
-        The arguments of the response function; those without orientation are free and left out of the answer.
+    target, factors
+        As for `is_homogeneous`; factors without orientation are free and left out of the answer.
     largest : int
         Largest absolute value of an exponent, >= 0; at most 1,000,000 combinations are tried.
 

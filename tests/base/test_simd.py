@@ -19,6 +19,7 @@ from rocking._numba.simd import (
     splat,
     square_root,
     store,
+    store_where,
 )
 from rocking._numba.simd_error_function import scaled_erfc
 from rocking._numba.simd_exponentials import arccosine, cosh_minus_one_and_sinh, exponential
@@ -59,13 +60,16 @@ def combine(x, found):
     small, large = load(x, 0) < 3.0, load(x, 0) >= 10.0
     middle = ~(small | large)
     store(found, 0, select(middle, load(x, 0), splat(-1.0)))
+    store_where(found, 1, middle, load(x, 0))
+    store_where(found, 1, large, -1.0)
     return lane_bits(small), any_lane(large & small)
 
 
 def test_masks_combine_lane_by_lane():
-    x, found = np.arange(float(LANES))[None], np.zeros((1, LANES))
+    x, found = np.arange(float(LANES))[None], np.full((2, LANES), 7.0)
     assert combine(x, found) == (0b111, False)
     np.testing.assert_array_equal(found[0], np.where((x[0] >= 3.0) & (x[0] < 10.0), x[0], -1.0))
+    np.testing.assert_array_equal(found[1], np.where(x[0] < 3.0, 7.0, found[0]))
 
 
 @kernel

@@ -8,7 +8,6 @@ import math
 from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
-from rocking._numba.records import copy_lane
 from rocking._numba.simd import (
     LANES,
     absolute,
@@ -155,20 +154,16 @@ def chatter_ends_in_rest(pulse: Record, group: Record, u0: SimdVector, w: SimdVe
 
 @kernel
 def write_responses(group: Record, done: int, responses: Record) -> None:
-    """Write the responses of the lanes whose bits are set in `done`, each at once."""
-    columns, response = group.columns, group.response
-    peak = load(columns, column.PEAK)
-    store(response.peak_rotation, 0, peak)
-    store(response.exceeded_alpha, 0, select(peak <= 1.0, splat(0.0), splat(1.0)))  # also where it is nan
-    store(response.peak_mode, 0, load(columns, column.MODE))
-    store(response.outcome, 0, load(group.outcome, 0))
-    store(response.impacts, 0, load(columns, column.IMPACTS))
-    store(response.chatter, 0, load(columns, column.CHATTER))
-    store(response.uplift_time, 0, load(columns, column.UPLIFT_TIME))
-    store(response.first_impact_time, 0, load(columns, column.FIRST_TIME))
-    store(response.first_impact_velocity, 0, load(columns, column.FIRST_VELOCITY))
-    store(response.end_rotation, 0, load(group.free_z, 0))
-    store(response.end_velocity, 0, load(group.free_w, 0))
+    """Write the responses of the lanes whose bits are set in `done`."""
+    columns = group.columns
     for lane in range(LANES):
-        if (done >> lane) & 1:
-            copy_lane(response, lane, responses[group.place[lane]])
+        if not (done >> lane) & 1:
+            continue
+        response, peak = responses[group.place[lane]], columns[column.PEAK, lane]
+        response.peak_rotation, response.exceeded_alpha = peak, not (peak <= 1.0)  # also where it is nan
+        response.peak_mode, response.outcome = int(columns[column.MODE, lane]), int(group.outcome[lane])
+        response.impacts, response.chatter = int(columns[column.IMPACTS, lane]), columns[column.CHATTER, lane] > 0.0
+        response.uplift_time = columns[column.UPLIFT_TIME, lane]
+        response.first_impact_time = columns[column.FIRST_TIME, lane]
+        response.first_impact_velocity = columns[column.FIRST_VELOCITY, lane]
+        response.end_rotation, response.end_velocity = group.free_z[lane], group.free_w[lane]

@@ -10,7 +10,7 @@ from rocking._excitation.wavelets import MAX_POLYNOMIAL
 from rocking._numba.compilation import Record
 from rocking._numba.simd import LANES
 from rocking._solver.families.wavelets import WAVELET_SERIES_LENGTH
-from rocking._solver.state import RESPONSE_RECORD, aligned_record
+from rocking._solver.state import aligned_record
 
 BLOCK_SIZE = 1536
 """Cells of a block, which passes all stages before the next: their rows fit into the second-level cache."""
@@ -66,7 +66,6 @@ def _group_layout() -> np.dtype[np.void]:
             ("arc", np.float64, (MAX_POLYNOMIAL, LANES)),  # coefficients of its particular solution
             ("node_shape", np.float64, pieces),  # f at equidistant phases of each piece of the pulse, and df/dphi
             ("node_slope", np.float64, pieces),
-            ("response", [(name, np.float64, lanes) for name in RESPONSE_RECORD.names or ()]),  # to be written
             ("place", np.int64, lanes),  # row of the cell, BLOCK_SIZE: none
             ("expanded", np.int64),  # 1 once `series` and `excitation` are of this flight
             ("used", np.int64),  # bits of the lanes that hold a cell
