@@ -16,21 +16,24 @@ NAPA = str(Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv")
 AMPLITUDE = ["--peak-acceleration", "0.5g"]
 
 
+COMMANDS = [
+    ["response", *UNITS],
+    ["response", *GROUPS],
+    ["history", *UNITS, "--duration", "2s"],
+    ["history", *GROUPS],
+    ["spectrum", *BLOCK, *AMPLITUDE],
+    ["spectrum", *GROUPS[:4], *GROUPS[6:]],
+    ["boundary", *BLOCK, "--period-min", "0.4s", "--period-max", "0.8s"],
+    ["map", *BLOCK],
+    ["map", "--pulse", "sine", "--restitution", "0.85"],
+    ["fragility", str(SUITE)],
+    ["record", NAPA, *BLOCK[2:], "--scale", "1.2", "--duration", "8s"],
+]
+
+
 @pytest.mark.parametrize(
     "command",
-    [
-        ["response", *UNITS],
-        ["response", *GROUPS],
-        ["history", *UNITS, "--duration", "2s"],
-        ["history", *GROUPS],
-        ["spectrum", *BLOCK, *AMPLITUDE],
-        ["spectrum", *GROUPS[:4], *GROUPS[6:]],
-        ["boundary", *BLOCK, "--period-min", "0.4s", "--period-max", "0.8s"],
-        ["map", *BLOCK],
-        ["map", "--pulse", "sine", "--restitution", "0.85"],
-        ["fragility", str(SUITE)],
-        ["record", NAPA, *BLOCK[2:], "--scale", "1.2", "--duration", "8s"],
-    ],
+    but_long(COMMANDS, *(one for one in COMMANDS if "--width" in one or one[0] == "fragility")),
     ids=lambda command: f"{command[0]} {'units' if '--width' in command else 'groups'}",
 )
 def test_a_picture_in_a_file(command, tmp_path):
