@@ -120,6 +120,13 @@ def turned_corners(width, depth, degrees):
     return corners @ np.array([[c, s], [-s, c]])
 
 
+def test_a_footprint_is_about_the_centre_of_mass():
+    box = rocking.Object("box", width=0.4, depth=0.3, height=1.6, offset_width=0.05)
+    np.testing.assert_allclose(box.footprint, turned_corners(0.4, 0.3, 0.0) - (0.05, 0.0))
+    drum = rocking.Object("drum", diameter=0.4, height=1.6)
+    np.testing.assert_allclose(np.hypot(*drum.footprint.T), 0.2)
+
+
 def test_directions_across_long_sides_are_exact_and_others_are_steps():
     assert directions_across(turned_corners(0.4, 0.3, 10.0), 15) == [10.0, 100.0]
     angle = np.radians(np.arange(0.0, 360.0, 0.5))

@@ -9,8 +9,9 @@ import pytest
 import rocking
 from rocking._assessment.motions import envelope_of
 from rocking._assessment.sensitivity import ETA_CHANGE
-from rocking._assessment.site import Motion
+from rocking._assessment.site import Motion, static_acceleration
 from rocking._assessment.sliding import first_exceedance
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, StoppedError
 from rocking._boundary.scan import RELATIVE_ERROR
 from rocking._numba.cancellation import StopFlag
@@ -151,6 +152,11 @@ def test_friction_is_exceeded_where_the_motion_says() -> None:
     # 4 t = mu (g - 2 t)
     assert first_exceedance(motion, 0.2) == pytest.approx(0.2 * g / (4.0 + 2.0 * 0.2), rel=1e-12)
     assert math.isnan(first_exceedance(motion, 0.6))
+    # at the peak the weight is g - 2: as much as 4 g / (g - 2) on level ground, twice the motion 8 g / (g - 4)
+    for factor in (1.0, 2.0):
+        expected = 4.0 * factor / (1.0 - 2.0 * factor / STANDARD_GRAVITY)
+        stronger = replace(motion, peak_acceleration=4.0 * factor)
+        assert static_acceleration(stronger) == pytest.approx(expected, rel=1e-12)
     site = rocking.Site(4.0, 0.5, shapes=["sine"])
     smooth = rocking.Object("one", width=0.3, height=1.0, friction=0.2)
     (row,) = rocking.assess(smooth, site, sensitivity=False).rows

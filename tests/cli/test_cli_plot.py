@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+import rocking
 from rocking._cli.app import app
 from tests.cli.test_cli import GROUPS, UNITS, refused, run
 from tests.sampling import but_long
@@ -16,21 +18,24 @@ NAPA = str(Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv")
 AMPLITUDE = ["--peak-acceleration", "0.5g"]
 
 
+COMMANDS = [
+    ["response", *UNITS],
+    ["response", *GROUPS],
+    ["history", *UNITS, "--duration", "2s"],
+    ["history", *GROUPS],
+    ["spectrum", *BLOCK, *AMPLITUDE],
+    ["spectrum", *GROUPS[:4], *GROUPS[6:]],
+    ["boundary", *BLOCK, "--period-min", "0.4s", "--period-max", "0.8s"],
+    ["map", *BLOCK],
+    ["map", "--pulse", "sine", "--restitution", "0.85"],
+    ["fragility", str(SUITE)],
+    ["record", NAPA, *BLOCK[2:], "--scale", "1.2", "--duration", "8s"],
+]
+
+
 @pytest.mark.parametrize(
     "command",
-    [
-        ["response", *UNITS],
-        ["response", *GROUPS],
-        ["history", *UNITS, "--duration", "2s"],
-        ["history", *GROUPS],
-        ["spectrum", *BLOCK, *AMPLITUDE],
-        ["spectrum", *GROUPS[:4], *GROUPS[6:]],
-        ["boundary", *BLOCK, "--period-min", "0.4s", "--period-max", "0.8s"],
-        ["map", *BLOCK],
-        ["map", "--pulse", "sine", "--restitution", "0.85"],
-        ["fragility", str(SUITE)],
-        ["record", NAPA, *BLOCK[2:], "--scale", "1.2", "--duration", "8s"],
-    ],
+    but_long(COMMANDS, *(one for one in COMMANDS if "--width" in one or one[0] == "fragility")),
     ids=lambda command: f"{command[0]} {'units' if '--width' in command else 'groups'}",
 )
 def test_a_picture_in_a_file(command, tmp_path):
@@ -52,6 +57,19 @@ def test_a_picture_under_a_pulse_in_a_file(name, tmp_path):
     given = [str(pulse) if argument == "sine" else argument for argument in takes]
     assert run("plot", name, *given, *ends, "--output", str(path)) == ""
     assert path.stat().st_size > 1000
+
+
+def test_a_map_of_a_block_is_over_its_accelerations_and_periods(monkeypatch, tmp_path):
+    drawn = []
+    monkeypatch.setattr("rocking.plot.control_map", lambda *given: drawn.append(given[0]))
+    run("plot", "map", *BLOCK, "-o", str(tmp_path / "map.png"))
+    (data,) = drawn
+    rotation = data["peak_rotation"].transpose("peak_acceleration", "period")[::40, ::40]
+    found = rocking.Block("0.4 m", "1.6 m").response(
+        "sine", peak_acceleration=rotation["peak_acceleration"].values[:, None], period=rotation["period"].values
+    )
+    assert (rotation > 0.0).any()
+    np.testing.assert_allclose(rotation, found.to_xarray()["peak_rotation"], rtol=1e-8)
 
 
 def test_a_picture_of_a_motion_does_not_hide_the_warnings(tmp_path):

@@ -50,6 +50,9 @@ PRINTED = {
 }
 """Parts of the output of each example."""
 
+QUICK = ("does_it_overturn", "fragility", "large_rotations", "own_body", "own_family", "record", "spectrum")
+"""Examples that run in every run of the tests; the others in that of all."""
+
 PICTURES = {
     **dict.fromkeys(PRINTED, 1), "ask_a_server": 0, "does_it_overturn": 2, "large_rotations": 2,
 }  # fmt: skip
@@ -91,7 +94,7 @@ def test_examples_and_pages_import_public_names_only():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in PRINTED if name != "ask_a_server"])  # test_readme.py
+@pytest.mark.parametrize("name", but_long(sorted(PRINTED.keys() - {"ask_a_server"}), *QUICK))  # test_readme.py
 def test_example(name, smoke_results, monkeypatch, capsys):
     monkeypatch.setenv("ROCKING_RESULTS", str(smoke_results))
     monkeypatch.setenv("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
@@ -107,7 +110,7 @@ def test_example(name, smoke_results, monkeypatch, capsys):
 @pytest.mark.usefixtures("coarse")
 @pytest.mark.parametrize(
     "page",
-    but_long(PAGES, *(path for path in PAGES if path.stem != "statue")),  # which takes ten seconds
+    but_long(PAGES, *(path for path in PAGES if path.stem in ("start", "block", "body", "record", "suite", "lookup"))),
     ids=lambda path: path.stem,
 )
 def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
@@ -148,7 +151,7 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]
     commands = [line for line in commands if ALL or "--mesh" not in line]  # takes ten seconds, most of this test
-    for command in sample(commands, 12):
+    for command in sample(commands, 8):
         done = CliRunner().invoke(app, shlex.split(command)[1:])
         assert done.exit_code == 0, f"{command}: {done.output}"
         if " -o " in command:
