@@ -11,7 +11,7 @@ import rocking_api.app  # and with it all models
 from pydantic import TypeAdapter, ValidationError
 from rocking_api.models.params import Params
 
-from tests.api.test_api_state import health_of
+from tests.api.conftest import health_of
 
 JSON = "application/json"
 
