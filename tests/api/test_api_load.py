@@ -256,13 +256,6 @@ def test_a_part_of_the_work_may_have_its_own_time_limit():
     assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
 
 
-def test_batches_in_chunks_are_equal(client, monkeypatch):
-    many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
-    whole = client.post("/v1/response", json=many).json()
-    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
-    assert client.post("/v1/response", json=many).json() == whole
-
-
 def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
     """One of them takes a sixth of a second, computed twice."""
     elastic = {"pulse": "c2", "slenderness": 1 - 1e-7, "frequency_ratio": 0.05, "restitution": 1.0, "alpha_deg": 11.0}
