@@ -171,6 +171,8 @@ def test_rules_of_every_page(open_page, name):
         if faults:
             found[width, percent] = faults
     assert found == {}
+    if name == "block":
+        assert "peak acceleration [g]" in {one["text"] for drawn in texts.values() for one in drawn}
     for width in (390, 1400):
         assert sizes[width, 200] == {name: 2 * size for name, size in sizes[width, 100].items()}
     if name != "/docs":  # by swagger-ui
