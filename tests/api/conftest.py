@@ -1,11 +1,13 @@
 """A small results folder, and the service over it."""
 
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.app import create_app
 from rocking_api.settings import EXAMPLE, Settings
 
@@ -79,6 +81,24 @@ def own_results(results, tmp_path):
 def client_of(results, **settings):
     """A client of another service."""
     return TestClient(create_app(Settings(results=results, **settings)), raise_server_exceptions=False)
+
+
+def health_of(client):
+    """The response of /health once every data set was checked."""
+    deadline = time.monotonic() + 30
+    while (health := client.get("/health").json())["unchecked"] and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return health
+
+
+def metrics_of(client):
+    """Samples by name and labels."""
+    text = client.get("/metrics").text
+    return {
+        (sample.name, *sorted(sample.labels.values())): sample.value
+        for family in text_string_to_metric_families(text)
+        for sample in family.samples
+    }
 
 
 def assert_problem(response, status, parameter=None):

@@ -85,16 +85,8 @@ ROUTES = {
     "/v1/history": ([*GROUPS, "samples"], ["alpha_deg", "duration", "contact", "format"]),
 }
 PAGES = [
-    "/",
-    "/docs",
-    "/openapi.json",
-    "/health",
-    "/ready",
-    "/metrics",
-    "/v1/datasets",
-    "/v1/datasets.zip",
+    *("/", "/docs", "/openapi.json", "/health", "/ready", "/metrics", "/v1/datasets", "/v1/datasets.zip", "/static/"),
     "/static/explorer/main.js",
-    "/static/",
 ]
 HOSTILE = [
     *("", " ", "nan", "-inf", "1e400", "-1e400", "1e-320", "0", "-0.0", "1", "-1", "true", "null", "[]", "0x10", "1_0"),
@@ -105,39 +97,13 @@ HOSTILE = [
 RECORDS = [file.data for file in (*GOOD.values(), *ODD.values(), *DAMAGED.values())]
 BLOCK = {"width": "0.5", "height": "2.0"}
 STEPS = [
-    "0",
-    "5e-324",
-    "1e-300",
-    "1e-12",
-    "2e-8",
-    "1e-4",
-    "1e4",
-    "1e12",
-    "1e300",
-    "1.7976931348623157e308",
-    "1e400",
+    *("0", "5e-324", "1e-300", "1e-12", "2e-8", "1e-4", "1e4", "1e12", "1e300", "1.7976931348623157e308", "1e400"),
     "nan",
 ]
 UNITS = ["9**9**9 m", "9**16000000/9**16000000 m", "2 m", "m*m/m", "m^1", "(m)", "1e400 m", "m+m", "cm", "g", "m" * 900]
 UNITS += ["*".join(["m"] * 4000), "9" * 8000, "m/" * 4000, "(" * 8000]
 FRAGMENTS = [
-    "a",
-    "a ",
-    " ",
-    "(",
-    "[a",
-    "a:b ",
-    "1",
-    "1,",
-    " g",
-    "unit:",
-    '"',
-    "=",
-    ";",
-    "\t",
-    "1e",
-    "NPTS ",
-    "width [m],",
+    *("a", "a ", " ", "(", "[a", "a:b ", "1", "1,", " g", "unit:", '"', "=", ";", "\t", "1e", "NPTS ", "width [m],"),
 ]
 METHODS = ["HEAD", "POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "get", "X" * 50]
 HEADERS = {

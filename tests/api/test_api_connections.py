@@ -37,13 +37,7 @@ def connection(server):
 
 
 def answer_of(connection):
-    """Status and body of what comes until the server closes the connection."""
-    status, _, body = whole_answer_of(connection)
-    return status, body
-
-
-def whole_answer_of(connection):
-    """The same, with the head."""
+    """Status, head and body of what comes until the server closes the connection."""
     received = bytearray()
     try:
         while part := connection.recv(65536):
@@ -70,7 +64,7 @@ def test_slow_clients_do_not_delay_others(server):
 
 def test_a_body_that_does_not_arrive_is_408(connection):
     connection.sendall(b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n{")
-    status, body = answer_of(connection)
+    status, _, body = answer_of(connection)
     assert status == 408
     assert json.loads(body)["parameter"] == "body"
 
@@ -79,11 +73,7 @@ def test_a_body_that_does_not_arrive_is_408(connection):
     "said",
     [
         b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),  # another protocol
-        b"GET / HTTP/9.9\r\n\r\n",
-        b"GET /\x00 HTTP/1.1\r\n\r\n",
-        b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
         b"POST /v1/response HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
-        b"POST /v1/response HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\nZZZ\r\n",
     ],
 )
 def test_what_is_not_http_is_400(connection, said):
@@ -95,13 +85,7 @@ def test_a_declared_body_beyond_the_limit_is_not_waited_for(connection):
     connection.sendall(
         b"POST /v1/response HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 9999999999999999\r\n\r\n"
     )
-    status, _ = answer_of(connection)
-    assert status == 413
-
-
-def test_the_server_still_responds(server):
-    assert httpx2.get(server.address + POINT).status_code == 200
-    assert "Traceback" not in server.log.read_text()
+    assert answer_of(connection)[0] == 413
 
 
 def running(server):
@@ -155,25 +139,27 @@ def test_start_limit_of_connections_and_shutdown(results, tmp_path):
     assert "Traceback" not in server.log.read_text()
 
 
-def test_every_request_is_a_line_in_the_log(server):
+def test_every_request_is_a_line_in_the_log_and_none_an_error(server):
     httpx2.get(server.address + POINT + "&alpha_deg=0")
     time.sleep(0.1)
+    assert "Traceback" not in server.log.read_text()
     (ours,) = [line for line in server.log.read_text().splitlines() if "&alpha_deg=0" in line]
     assert re.fullmatch(r"[-0-9:, ]+ INFO uvicorn.access: 127.0.0.1:\d+ - \"GET /v1/response\?\S+ HTTP/1.1\" 200", ours)
 
 
-@pytest.mark.parametrize("path", ["/health", POINT, "/nowhere", "/static/"])
-@pytest.mark.parametrize("hosts", ["", "Host: a\r\nHost: b\r\n", "Host: a\r\nHost: a\r\n"])
+@pytest.mark.parametrize(
+    ("path", "hosts"),
+    [("/health", ""), (POINT, "Host: a\r\nHost: b\r\n"), ("/nowhere", "Host: a\r\nHost: a\r\n"), ("/static/", "")],
+)
 def test_a_request_with_no_host_or_several_is_refused(connection, path, hosts):
     connection.sendall(f"GET {path} HTTP/1.1\r\n{hosts}Connection: close\r\n\r\n".encode())
-    status, body = answer_of(connection)
+    status, _, body = answer_of(connection)
     assert status == 400
     assert (json.loads(body)["parameter"], json.loads(body)["allowed"]) == ("Host", "one")
 
 
-@pytest.mark.parametrize("hosts", ["", "Host: a\r\n"])
-def test_a_request_of_http_1_0_needs_no_host(connection, hosts):
-    connection.sendall(f"GET /health HTTP/1.0\r\n{hosts}\r\n".encode())
+def test_a_request_of_http_1_0_needs_no_host(connection):
+    connection.sendall(b"GET /health HTTP/1.0\r\n\r\n")
     assert answer_of(connection)[0] == 200
 
 
@@ -188,7 +174,7 @@ def test_a_request_of_http_1_0_needs_no_host(connection, hosts):
 )
 def test_a_redirect_does_not_repeat_the_host(connection, path, location):
     connection.sendall(f"GET {path} HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n".encode())
-    status, head, _ = whole_answer_of(connection)
+    status, head, _ = answer_of(connection)
     assert status == 307
     assert f"location: {location}".encode() in head.split(b"\r\n")
     assert b"evil" not in head

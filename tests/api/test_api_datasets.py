@@ -1,16 +1,25 @@
-"""Catalogue, description, download and zarr keys of the data sets."""
+"""Catalogue, description, download and zarr keys of the data sets, also of those that are damaged, unreadable, replaced
+or written to while the service sends them.
+"""
 
+import asyncio
 import base64
 import hashlib
 import io
+import os
 import zipfile
 
 import pytest
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
 
-from tests.api.conftest import NAMES, assert_problem, client_of
+from tests.api.conftest import NAMES, assert_problem, client_of, health_of
+from tests.datasets.test_lookup_files import UNREADABLE, folder_forbidden, folder_loop, replaced
 
-NAME = "spectra/sine/eta-0.85"
+NAME, CURVES = "spectra/sine/eta-0.85", "overturning/sine/eta-0.85"
 URL = f"/v1/datasets/{NAME}.nc"
+POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+FORMS = ("", ".nc", ".zarr/.zmetadata")
 
 
 @pytest.fixture
@@ -18,35 +27,29 @@ def content(results):
     return (results / f"{NAME}.nc").read_bytes()
 
 
-def test_catalogue_lists_every_file_with_its_digest(client, results):
-    listed = client.get("/v1/datasets").json()["datasets"]
-    assert {entry["name"] for entry in listed} == NAMES
-    for entry in listed:
-        stored = (results / f"{entry['name']}.nc").read_bytes()
-        assert entry["sha256"] == hashlib.sha256(stored).hexdigest()
-        assert entry["size"] == len(stored)
-        assert client.get(entry["netcdf"]).content == stored
-        assert client.get(entry["metadata"]).json()["name"] == entry["name"]
-        assert client.get(entry["zarr"] + "/.zmetadata").status_code == 200
+@pytest.fixture
+def path(own_results):
+    return own_results / f"{NAME}.nc"
 
 
-@pytest.mark.parametrize(("path", "key"), [("datasets", "datasets"), ("suites", "suites"), ("pulses", "pulses")])
-def test_lists_are_served_in_parts(client, path, key):
-    whole = client.get(f"/v1/{path}").json()
-    assert whole["next_cursor"] is None
-    found, cursor = [], None
-    while cursor or not found:
-        query = {"limit": 2} | ({"cursor": cursor} if cursor else {})
-        part = client.get(f"/v1/{path}", params=query).json()
-        assert len(part[key]) <= 2
-        found += part[key]
-        cursor = part["next_cursor"]
-    assert found == whole[key]
-    assert_problem(client.get(f"/v1/{path}", params={"limit": 0}), 422, "limit")
+def digest_of(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def test_catalogue_tells_pulse_restitution_extent_and_links(client, own_results):
+def other_of(path):
+    """The bytes of another data set."""
+    return (path.parents[1] / "cosine" / "eta-0.90.nc").read_bytes()
+
+
+def test_catalogue_tells_digest_size_pulse_restitution_extent_and_links(client, results):
     listed = {entry["name"]: entry for entry in client.get("/v1/datasets").json()["datasets"]}
+    assert {*listed} == NAMES
+    for name, entry in listed.items():
+        stored = (results / f"{name}.nc").read_bytes()
+        assert (entry["sha256"], entry["size"]) == (digest_of(results / f"{name}.nc"), len(stored))
+        assert client.get(entry["netcdf"]).content == stored
+        assert client.get(entry["metadata"]).json()["name"] == name
+        assert client.get(entry["zarr"] + "/.zmetadata").status_code == 200
     cube = listed[NAME]
     assert (cube["pulse"], cube["restitution"]) == ("sine", 0.85)
     assert "sine" in cube["title"]
@@ -54,16 +57,9 @@ def test_catalogue_tells_pulse_restitution_extent_and_links(client, own_results)
     assert cube["extent"]["frequency_ratio"] == pytest.approx([0.5, 12.0])
     assert [link["rel"] for link in cube["links"]] == ["self", "data", "version", "zarr", "subset"]
     for link in cube["links"]:
-        path = link["href"] + ("/.zgroup" if link["rel"] == "zarr" else "")
-        assert client.get(path).status_code == 200, link
-    assert "subset" not in [link["rel"] for link in listed["overturning/sine/eta-0.85"]["links"]]
-    (own_results / f"{NAME}.nc").write_bytes(b"no netCDF")
-    with client_of(own_results) as other:  # a damaged file is listed by its name alone
-        damaged = next(one for one in other.get("/v1/datasets").json()["datasets"] if one["name"] == NAME)
-    assert (damaged["title"], damaged["pulse"], damaged["extent"]) == (NAME, None, {})
-
-
-def test_description_lists_dimensions_variables_and_attributes(client):
+        address = link["href"] + ("/.zgroup" if link["rel"] == "zarr" else "")
+        assert client.get(address).status_code == 200, link
+    assert "subset" not in [link["rel"] for link in listed[CURVES]["links"]]
     described = client.get(f"/v1/datasets/{NAME}").json()
     assert described["dimensions"] == {"alpha": 1, "slenderness": 91, "frequency_ratio": 91}
     assert described["variables"]["peak_rotation"]["dimensions"] == ["alpha", "slenderness", "frequency_ratio"]
@@ -72,119 +68,198 @@ def test_description_lists_dimensions_variables_and_attributes(client):
     assert "CF-1.11" in described["attributes"]["Conventions"]
 
 
+@pytest.mark.parametrize("key", ["datasets", "suites", "pulses"])
+def test_lists_are_served_in_parts(client, key):
+    whole = client.get(f"/v1/{key}").json()
+    assert whole["next_cursor"] is None
+    found, cursor = [], None
+    while cursor or not found:
+        query = {"limit": 2} | ({"cursor": cursor} if cursor else {})
+        part = client.get(f"/v1/{key}", params=query).json()
+        assert len(part[key]) <= 2
+        found += part[key]
+        cursor = part["next_cursor"]
+    assert found == whole[key]
+
+
 def test_the_archive_holds_every_sound_file_and_its_checksum(own_results):
-    (own_results / "overturning/sine/eta-0.85.nc").write_bytes(b"no netCDF")
-    sound = NAMES - {"overturning/sine/eta-0.85"}
+    (own_results / f"{CURVES}.nc").write_bytes(b"no netCDF")
     with client_of(own_results) as client:
         response = client.get("/v1/datasets.zip", headers={"accept-encoding": "gzip"})
         assert client.get("/v1/datasets.zip").content == response.content
+        damaged = next(one for one in client.get("/v1/datasets").json()["datasets"] if one["name"] == CURVES)
+    assert (damaged["title"], damaged["pulse"], damaged["extent"]) == (CURVES, None, {})  # listed by its name alone
     assert response.headers["content-type"] == "application/zip"
     assert "content-encoding" not in response.headers
     with zipfile.ZipFile(io.BytesIO(response.content)) as found:
         assert found.testzip() is None
         lines = found.read("SHA256SUMS").decode().splitlines()
         listed = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
-        assert set(found.namelist()) - {"SHA256SUMS"} == set(listed) == {f"{name}.nc" for name in sound}
+        assert {*found.namelist()} - {"SHA256SUMS"} == {*listed} == {f"{name}.nc" for name in NAMES - {CURVES}}
         for name, digest in listed.items():
-            stored = (own_results / name).read_bytes()
-            assert found.read(name) == stored
-            assert digest == hashlib.sha256(stored).hexdigest()
+            assert found.read(name) == (own_results / name).read_bytes()
+            assert digest == digest_of(own_results / name)
 
 
-def test_download_carries_its_digest(client, content):
-    response = client.get(URL)
+def test_a_download_carries_its_digest_and_its_head_no_body(client, content):
+    response, head = client.get(URL), client.head(URL)
     digest = hashlib.sha256(content)
-    assert response.content == content
-    assert response.headers["etag"] == f'"{digest.hexdigest()}"'
-    assert response.headers["repr-digest"] == f"sha-256=:{base64.b64encode(digest.digest()).decode()}:"
-    assert response.headers["accept-ranges"] == "bytes"
-    assert response.headers["content-type"] == "application/x-netcdf"
-    assert "spectra-sine-eta-0.85.nc" in response.headers["content-disposition"]
-    assert "content-encoding" not in response.headers
+    assert (response.content, head.content) == (content, b"")
+    assert int(head.headers["content-length"]) == len(content)
+    for headers in (response.headers, head.headers):
+        assert headers["etag"] == f'"{digest.hexdigest()}"'
+        assert headers["repr-digest"] == f"sha-256=:{base64.b64encode(digest.digest()).decode()}:"
+        assert headers["accept-ranges"] == "bytes"
+        assert headers["content-type"] == "application/x-netcdf"
+        assert "spectra-sine-eta-0.85.nc" in headers["content-disposition"]
+        assert "content-encoding" not in headers
 
 
-def test_head_has_the_headers_and_no_body(client, content):
-    response = client.head(URL)
-    assert response.status_code == 200
-    assert response.content == b""
-    assert int(response.headers["content-length"]) == len(content)
-    assert response.headers["etag"] == client.get(URL).headers["etag"]
-
-
-@pytest.mark.parametrize("form", ["{}", "W/{}", '"other", {}', "*"])
-def test_unchanged_is_304(client, form):
+def test_what_is_unchanged_is_not_sent_again(client, content):
     etag = client.get(URL).headers["etag"]
-    response = client.get(URL, headers={"if-none-match": form.format(etag)})
-    assert response.status_code == 304
-    assert response.content == b""
-    assert response.headers["etag"] == etag
-
-
-def test_changed_is_sent(client, content):
+    for form in ("{}", "W/{}", '"other", {}', "*"):
+        response = client.get(URL, headers={"if-none-match": form.format(etag)})
+        assert (response.status_code, response.content, response.headers["etag"]) == (304, b"", etag)
     assert client.get(URL, headers={"if-none-match": '"other"'}).content == content
-
-
-@pytest.mark.parametrize(
-    ("requested", "part"),
-    [("bytes=0-3", slice(0, 4)), ("bytes=100-199", slice(100, 200)), ("bytes=-7", slice(-7, None)),
-     ("bytes=90000-", slice(90000, None))],
-)  # fmt: skip
-def test_range_is_206(client, content, requested, part):
-    response = client.get(URL, headers={"range": requested})
-    assert response.status_code == 206
-    assert response.content == content[part]
-    start = part.indices(len(content))[0]
-    assert response.headers["content-range"] == f"bytes {start}-{start + len(response.content) - 1}/{len(content)}"
-
-
-def test_several_ranges_come_as_parts(client, content):
-    response = client.get(URL, headers={"range": "bytes=0-3,100-109"})
-    assert response.status_code == 206
-    assert response.headers["content-type"].startswith("multipart/byteranges")
-    assert content[100:110] in response.content
-
-
-def test_range_of_another_version_sends_the_whole(client, content):
-    etag = client.get(URL).headers["etag"]
-    assert client.get(URL, headers={"range": "bytes=0-3", "if-range": etag}).status_code == 206
-    assert client.get(URL, headers={"range": "bytes=0-3", "if-range": '"other"'}).content == content
-
-
-def test_range_outside_is_416(client, content):
-    response = client.get(URL, headers={"range": f"bytes={len(content)}-"})
-    assert_problem(response, 416, "Range")
-    assert response.headers["content-range"] == f"bytes */{len(content)}"
-
-
-@pytest.mark.parametrize("requested", ["bytes=9-3", "lines=1-2", "nonsense"])
-def test_malformed_range_is_400(client, requested):
-    assert_problem(client.get(URL, headers={"range": requested}), 400, "Range")
-
-
-def test_zarr_keys_are_cached_by_the_same_etag(client):
-    response = client.get(f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0")
+    chunk = f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0"
+    response = client.get(chunk)
     assert response.headers["content-type"] == "application/octet-stream"
-    again = client.get(
-        f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0", headers={"if-none-match": response.headers["etag"]}
-    )
-    assert again.status_code == 304
+    assert client.get(chunk, headers={"if-none-match": response.headers["etag"]}).status_code == 304
 
 
-def test_a_damaged_file_is_refused(own_results):
-    path = own_results / f"{NAME}.nc"
-    content = bytearray(path.read_bytes())
-    content[len(content) // 2 :] = bytes(len(content) - len(content) // 2)
-    path.write_bytes(content)
+def test_ranges(client, content):
+    for requested, part in (
+        ("bytes=0-3", slice(0, 4)),
+        ("bytes=100-199", slice(100, 200)),
+        ("bytes=-7", slice(-7, None)),
+        ("bytes=90000-", slice(90000, None)),
+    ):
+        response = client.get(URL, headers={"range": requested})
+        assert (response.status_code, response.content) == (206, content[part])
+        start = part.indices(len(content))[0]
+        end = start + len(response.content) - 1
+        assert response.headers["content-range"] == f"bytes {start}-{end}/{len(content)}"
+    several = client.get(URL, headers={"range": "bytes=0-3,100-109"})
+    assert several.status_code == 206
+    assert several.headers["content-type"].startswith("multipart/byteranges")
+    assert content[100:110] in several.content
+    whole = client.get(URL)
+    for condition, status in ((whole.headers["etag"], 206), ('"other"', 200), (whole.headers["last-modified"], 200)):
+        response = client.get(URL, headers={"range": "bytes=0-3", "if-range": condition})
+        assert (response.status_code, len(response.content)) == (status, 4 if status == 206 else len(content))
+    outside = client.get(URL, headers={"range": f"bytes={len(content)}-"})
+    assert assert_problem(outside, 416, "Range")["allowed"] == f"bytes 0 to {len(content) - 1}"
+    assert outside.headers["content-range"] == f"bytes */{len(content)}"
+    for requested in ("bytes=9-3", "lines=1-2", "nonsense"):
+        assert assert_problem(client.get(URL, headers={"range": requested}), 400, "Range")["value"] == requested
+
+
+def download(results, change, **headers):
+    """Status, headers and body of a download during which something changes after the head."""
+
+    async def scenario():
+        app = create_app(Settings(results=results))
+        scope = {
+            "type": "http",
+            "method": "GET",
+            "path": URL,
+            "raw_path": URL.encode(),
+            "query_string": b"",
+            "http_version": "1.1",
+            "headers": [(name.encode(), value.encode()) for name, value in {"host": "a", **headers}.items()],
+        }
+        status, received, body = 0, {}, b""
+
+        async def send(message):
+            nonlocal status, received, body
+            if message["type"] == "http.response.start":
+                status, received = message["status"], dict(message["headers"])
+                change()
+            else:
+                body += message.get("body", b"")
+
+        try:
+            await app(scope, asyncio.Event().wait, send)
+        except RuntimeError as error:
+            return status, received, body, str(error)
+        return status, received, body, None
+
+    return asyncio.run(scenario())
+
+
+def test_what_is_sent_is_what_was_hashed(path, own_results):
+    content, other, digest = path.read_bytes(), other_of(path), digest_of(path)
+    status, headers, body, broken = download(own_results, lambda: path.with_name("link").hardlink_to(path))
+    assert (status, body, broken) == (200, content, None)
+    for part, ranges in ((slice(None), {}), (slice(100, 70001), {"range": "bytes=100-70000"})):
+        status, headers, body, broken = download(own_results, lambda: replaced(path, other), **ranges)
+        assert (status, body, broken) == (206 if ranges else 200, content[part], None)
+        assert headers[b"etag"] == f'"{digest}"'.encode()
+        replaced(path, content)
+    _, _, body, broken = download(own_results, lambda: path.write_bytes(bytes(len(content))))
+    assert "was written to while it was sent" in broken
+    assert len(body) < len(content)
+    assert content.startswith(body)
+
+
+def test_a_url_with_a_digest_yields_these_bytes_or_none(path, own_results):
+    content, digest, status = path.read_bytes(), digest_of(path), path.stat()
+    curves = own_results / f"{CURVES}.nc"
     with client_of(own_results) as client:
-        for suffix in ("", ".nc", ".zarr/.zmetadata"):
-            problem = assert_problem(client.get(f"/v1/datasets/{NAME}{suffix}"), 503)
-            assert "damaged" in problem["detail"]
+        listed = {one["name"]: one for one in client.get("/v1/datasets").json()["datasets"]}
+        kept = client.get(listed[NAME]["version_url"])
+        assert listed[NAME]["version_url"].endswith(f"?sha256={digest}")
+        assert (kept.content, kept.headers["etag"]) == (content, f'"{digest}"')
+        assert "immutable" in kept.headers["cache-control"]
+        assert client.get(URL).headers["cache-control"] == "no-cache"
+        with path.open("r+b") as file:
+            file.write(bytes(100))
+        os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
+        assert path.stat().st_size == status.st_size
+        assert_problem(client.get(URL, params={"sha256": digest}), 503)  # damaged, which is detected too
+        path.write_bytes(other_of(path))
+        # a whole file, but of another version
+        assert_problem(client.get(URL, params={"sha256": digest}), 503)
+        path.write_bytes(content)
+        assert client.get(URL, params={"sha256": digest}).content == content
+        old = client.get(f"/v1/datasets/{CURVES}.nc").headers["etag"]
+        curves.write_bytes(content)
+        gone = client.get(f"/v1/datasets/{CURVES}.nc", params={"sha256": old.strip('"')})
+        assert digest in assert_problem(gone, 404)["detail"]
+        assert client.get(f"/v1/datasets/{CURVES}.nc", headers={"if-none-match": old}).content == content
 
 
-def test_a_replaced_file_is_served_as_a_new_version(own_results):
+def test_a_damaged_file_is_refused(path, own_results):
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2] + bytes(len(content) - len(content) // 2))
     with client_of(own_results) as client:
-        curves = own_results / "overturning" / "sine" / "eta-0.85.nc"
-        old = client.get("/v1/datasets/overturning/sine/eta-0.85.nc").headers["etag"]
-        curves.write_bytes((own_results / f"{NAME}.nc").read_bytes())
-        again = client.get("/v1/datasets/overturning/sine/eta-0.85.nc", headers={"if-none-match": old})
-        assert again.content == curves.read_bytes()
+        for form in FORMS:
+            assert "damaged" in assert_problem(client.get(f"/v1/datasets/{NAME}{form}"), 503)["detail"]
+
+
+@pytest.mark.parametrize("make", UNREADABLE)
+def test_an_unreadable_file_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
+    path.unlink()
+    make(path, monkeypatch)
+    with client_of(own_results) as client:
+        health = health_of(client)
+        assert "cannot be read" in health["problems"][NAME]
+        assert str(own_results) not in str(health)
+        assert client.get("/v1/response", params=POINT).json()["source"] == "solver"
+        names = [entry["name"] for entry in client.get("/v1/datasets").json()["datasets"]]
+        assert names == sorted(NAMES - {NAME})
+        for form in FORMS:
+            problem = assert_problem(client.get(f"/v1/datasets/{NAME}{form}"), 503)
+            assert str(own_results) not in str(problem)
+        assert_problem(client.get("/v1/response", params=POINT | {"method": "cube"}), 503)
+
+
+@pytest.mark.parametrize("make", [folder_loop, folder_forbidden])
+def test_an_unreadable_folder_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
+    path.unlink()
+    path.parent.rmdir()
+    make(path.parent, monkeypatch)
+    with client_of(own_results) as client:
+        assert "cannot be read" in health_of(client)["problems"]["spectra/sine"]
+        assert len(client.get("/v1/datasets").json()["datasets"]) == len(NAMES - {NAME})
+        assert client.get("/v1/response", params=POINT).json()["source"] == "solver"

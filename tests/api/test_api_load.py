@@ -15,8 +15,7 @@ from starlette.requests import ClientDisconnect
 
 import rocking
 from rocking._numba.cancellation import run_with_timeout
-from tests.api.conftest import assert_problem, client_of
-from tests.api.test_request_log import metrics_of
+from tests.api.conftest import assert_problem, client_of, metrics_of
 
 POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 BATCH = POINT | {"slenderness": [0.6, 0.7]}
@@ -184,40 +183,38 @@ WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ra
          "rows": 1, "duration": -1.0, "frequency_ratio_min": -1.0, "slenderness_max": 0.0}  # fmt: skip
 
 
-@pytest.mark.parametrize("path", HEAVY)
-def test_an_invalid_request_is_refused_before_queueing(results, path):
+def test_what_is_wrong_is_refused_before_queueing(results):
     """With a full queue a valid request is refused with 503, an invalid one with 422."""
     with client_of(results) as client:
-        schema = client.get("/openapi.json").json()["paths"][path]["get"]["parameters"]
+        paths = client.get("/openapi.json").json()["paths"]
         client.app.state.service.executor._capacity = 0
-        assert_problem(client.get(path, params=HEAVY[path]), 503)
-        for name in {parameter["name"] for parameter in schema} & set(WRONG):
-            assert_problem(client.get(path, params=HEAVY[path] | {name: WRONG[name]}), 422, name)
+        for path, query in HEAVY.items():
+            assert_problem(client.get(path, params=query), 503)
+            for name in {parameter["name"] for parameter in paths[path]["get"]["parameters"]} & {*WRONG}:
+                assert_problem(client.get(path, params=query | {name: WRONG[name]}), 422, name)
 
-
-@pytest.mark.parametrize("form", ["json", "csv"])
-def test_an_invalid_batch_is_refused_before_queueing(results, form):
-    with client_of(results) as client:
-        client.app.state.service.executor._capacity = 0
-
-        def post(**wrong):
+        def post(form, **wrong):
             if form == "json":
                 return client.post("/v1/response", json=BATCH | wrong)
             tasks = {key: value for key, value in (POINT | wrong).items() if key != "slenderness"}
             body = f"slenderness\n{wrong.get('slenderness', 0.6)}\n"
             return client.post("/v1/response", params=tasks, content=body, headers={"content-type": "text/csv"})
 
-        assert_problem(post(), 503)
-        for name in ("pulse", "alpha_deg", "absolute_tolerance", "restitution", "frequency_ratio", "slenderness"):
-            assert_problem(post(**{name: WRONG[name]}), 422, name)
+        for form in ("json", "csv"):
+            assert_problem(post(form), 503)
+            for name in ("pulse", "alpha_deg", "absolute_tolerance", "restitution", "frequency_ratio", "slenderness"):
+                assert_problem(post(form, **{name: WRONG[name]}), 422, name)
 
 
-def test_timeout_is_504(results, monkeypatch):
+def test_work_beyond_the_time_limit_is_504(results, monkeypatch):
     monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 1)
+    objects = [{"name": "vase", "width": 0.16, "height": 0.9}]
     with client_of(results, max_seconds=0.2) as client:
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
-        problem = assert_problem(client.post("/v1/response", json=many), 504)
-        assert "0.2 s" in problem["detail"]
+        assert "0.2 s" in assert_problem(client.post("/v1/response", json=many), 504)["detail"]
+    with client_of(results, max_seconds=0.001) as client:
+        hurried = client.post("/v1/assess?pga=3&period_min=0.1&period_max=2", json=objects)
+        assert hurried.status_code in (503, 504)
 
 
 @pytest.mark.alone
@@ -257,13 +254,6 @@ def test_a_part_of_the_work_may_have_its_own_time_limit():
         return run_with_timeout(slow_search, 0.05, stop), run_with_timeout(lambda part: part.is_set(), 10.0, stop)
 
     assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
-
-
-def test_batches_in_chunks_are_equal(client, monkeypatch):
-    many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
-    whole = client.post("/v1/response", json=many).json()
-    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
-    assert client.post("/v1/response", json=many).json() == whole
 
 
 def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):

@@ -4,7 +4,7 @@ import io
 import math
 
 import numpy as np
-import pytest
+import rocking_api.execution.evaluation
 import xarray as xr
 
 import rocking
@@ -21,17 +21,31 @@ def get_response(client, **changes):
     return client.get("/v1/response", params=QUERY | changes)
 
 
-def test_a_response_from_a_cube(client):
-    result = get_response(client).json()
+def test_a_response_is_from_a_cube_or_the_solver_as_asked(client):
     expected = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
+    result = get_response(client).json()
     assert result["source"] == "cube"
     assert abs(result["peak_rotation"] - expected.peak_rotation) <= result["error_bound"] <= 1e-4
     assert result["outcome"] == Outcome(expected.outcome).name == "RECOVERS"
     assert result["impacts"] == expected.impacts
     assert not result["overturned"]
     assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
-    stored = client.get("/v1/datasets/spectra/sine/eta-0.85").json()
-    assert result["data_version"] == stored["sha256"]
+    assert result["data_version"] == client.get("/v1/datasets/spectra/sine/eta-0.85").json()["sha256"]
+    result = get_response(client, method="solver").json()
+    assert (result["source"], result["data_version"]) == ("solver", None)
+    assert result["peak_rotation"] == expected.peak_rotation
+    assert 0 < result["error_bound"] < 1e-9
+    for changes in ({"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}):  # no cube applies
+        solved = {key: value for key, value in (QUERY | changes).items() if key != "pulse"}
+        result = get_response(client, **changes).json()
+        assert result["source"] == "solver"
+        assert result["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **solved).peak_rotation
+    too_coarse = get_response(client, absolute_tolerance=1e-13).json()
+    assert (too_coarse["source"], too_coarse["peak_rotation"]) == ("solver", expected.peak_rotation)
+    result = get_response(client, slenderness=0.3, frequency_ratio=2.0).json()
+    assert result["overturned"]
+    assert result["peak_rotation"] is result["error_bound"] is None
+    assert "overturns" in result["note"]
 
 
 def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
@@ -45,34 +59,6 @@ def test_between_restitutions_the_data_set_next_below_is_named(tmp_path):
     assert result["source"] == "cube"
     assert result["data_version"] == below["sha256"]
     assert abs(result["peak_rotation"] - expected.peak_rotation) <= result["error_bound"] <= 1e-4
-
-
-def test_a_response_from_the_solver_equals_the_solver(client):
-    result = get_response(client, method="solver").json()
-    expected = peak_response("sine", slenderness=0.6, frequency_ratio=6.0, restitution=0.85)
-    assert result["source"] == "solver"
-    assert result["peak_rotation"] == expected.peak_rotation
-    assert 0 < result["error_bound"] < 1e-9
-    assert result["data_version"] is None
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [{"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}, {"absolute_tolerance": 1e-13}],
-    ids=["no cube of this restitution", "outside the cube", "no cube of this pulse", "too coarse"],
-)
-def test_auto_uses_the_solver_where_no_cube_applies(client, changes):
-    result = get_response(client, **changes).json()
-    assert result["source"] == "solver"
-    requested = {key: value for key, value in (QUERY | changes).items() if key not in ("pulse", "absolute_tolerance")}
-    assert result["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **requested).peak_rotation
-
-
-def test_overturned_has_no_peak_and_a_note(client):
-    result = get_response(client, slenderness=0.3, frequency_ratio=2.0).json()
-    assert result["overturned"]
-    assert result["peak_rotation"] is result["error_bound"] is None
-    assert "overturns" in result["note"]
 
 
 def test_without_a_bound_there_is_a_warning(client):
@@ -100,7 +86,7 @@ BATCH = {
 TRUTH = [Outcome.RECOVERS, Outcome.OVERTURNED_DIRECTLY, Outcome.NO_UPLIFT, Outcome.RECOVERS]
 
 
-def test_a_json_batch_equals_single_requests(client):
+def test_a_batch_equals_single_requests_in_json_and_csv(client):
     body = {"pulse": "sine"} | {name: values.tolist() for name, values in BATCH.items()}
     result = client.post("/v1/response", json=body).json()
     assert result["query"]["points"] == 4
@@ -109,28 +95,33 @@ def test_a_json_batch_equals_single_requests(client):
         for name in ("peak_rotation", "overturned", "outcome", "impacts", "exceeded_alpha", "error_bound", "source"):
             assert result[name][k] == single[name]
     assert result["data_versions"] == [get_response(client).json()["data_version"]]
-
-
-def test_numbers_broadcast_against_arrays(client):
-    body = {"pulse": "sine", "slenderness": [0.5, 0.6], "frequency_ratio": 6.0, "restitution": 0.85}
-    assert client.post("/v1/response", json=body).json()["outcome"] == ["RECOVERS", "RECOVERS"]
-    body["slenderness"] = []
-    assert client.post("/v1/response", json=body).json()["outcome"] == []
-
-
-def test_csv_batch(client):
+    assert result["outcome"] == [outcome.name for outcome in TRUTH]
     lines = [",".join(BATCH), *(",".join(map(repr, map(float, row))) for row in zip(*BATCH.values(), strict=True))]
-    result = client.post(
-        "/v1/response",
-        params={"pulse": "sine", "absolute_tolerance": 1e-3},
-        content="\r\n".join(lines),
-        headers={"content-type": "text/csv"},
-    )
-    assert result.headers["content-type"].startswith("text/csv")
-    header, *rows = [line.split(",") for line in result.text.splitlines()]
-    assert [row[header.index("outcome")] for row in rows] == [outcome.name for outcome in TRUTH]
-    assert rows[1][header.index("peak_rotation")] == ""
-    assert float(rows[0][header.index("error_bound")]) <= 1e-3
+    for query in ({"pulse": "sine"}, {"pulse": "sine", "absolute_tolerance": 1e-3}):
+        csv = {"content": "\r\n".join(lines), "headers": {"content-type": "text/csv"}}
+        answer = client.post("/v1/response", params=query, **csv)
+        assert answer.headers["content-type"].startswith("text/csv")
+        header, *rows = [line.split(",") for line in answer.text.splitlines()]
+        assert [row[header.index("outcome")] for row in rows] == result["outcome"]
+        assert rows[1][header.index("peak_rotation")] == ""
+        assert float(rows[0][header.index("error_bound")]) <= 1e-3
+
+
+def test_numbers_broadcast_and_parameters_may_be_repeated_in_the_url(client):
+    body = {"pulse": "sine", "slenderness": [0.5, 0.6], "frequency_ratio": 6.0, "restitution": 0.85}
+    named, plain = client.post("/v1/response?pulse=sine", json=body), client.post("/v1/response", json=body)
+    assert plain.json()["outcome"] == ["RECOVERS", "RECOVERS"]
+    assert named.json() == plain.json() | {"url": "POST /v1/response?pulse=sine"}
+    assert client.post("/v1/response", json=body | {"slenderness": []}).json()["outcome"] == []
+    assert_problem(client.post("/v1/response?pulse=cosine", json=body), 422, "pulse")
+    assert_problem(client.post("/v1/response?restitution=0.9", json=body), 422, "restitution")
+
+
+def test_batches_in_chunks_are_equal(client, monkeypatch):
+    many = QUERY | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
+    whole = client.post("/v1/response", json=many).json()
+    monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
+    assert client.post("/v1/response", json=many).json() == whole
 
 
 def test_netcdf_batch_in_and_out(client):
@@ -151,18 +142,6 @@ def test_netcdf_batch_in_and_out(client):
     assert np.all(np.abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound)
     assert found.attrs["pulse"] == "sine"
     assert found.outcome.attrs["flag_meanings"].split()[1] == "recovers"
-
-
-def post(client, content, media_type, **parameters):
-    return client.post("/v1/response", params=parameters, content=content, headers={"content-type": media_type})
-
-
-def test_a_json_batch_may_repeat_its_parameters_in_the_url(client):
-    body = {"pulse": "sine", "slenderness": [0.6], "frequency_ratio": 6.0, "restitution": 0.85}
-    named, plain = client.post("/v1/response?pulse=sine", json=body), client.post("/v1/response", json=body)
-    assert named.json() == plain.json() | {"url": "POST /v1/response?pulse=sine"}
-    assert_problem(client.post("/v1/response?pulse=cosine", json=body), 422, "pulse")
-    assert_problem(client.post("/v1/response?restitution=0.9", json=body), 422, "restitution")
 
 
 def test_a_number_of_impacts_that_a_cube_leaves_open_is_null(results, client):

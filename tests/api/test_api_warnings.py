@@ -71,8 +71,9 @@ RECORDS = [
 ]
 
 
-@pytest.mark.parametrize(("width", "height", "scale", "texts"), but_long(RECORDS, RECORDS[1]))
-def test_warnings_under_a_record(client, width, height, scale, texts):
+@pytest.mark.parametrize("case", but_long(RECORDS, RECORDS[1]))
+def test_warnings_under_a_record(client, case):
+    width, height, scale, texts = case
     python = rocking.Block(width, height).response(rocking.read_record(NAPA), scale=scale)
     params = {"width": width, "height": height, "scale": scale, "name": NAPA.name}
     http = client.post("/v1/records/response", params=params, content=NAPA.read_bytes()).json()
@@ -98,11 +99,7 @@ def test_a_peak_that_the_record_does_not_determine_says_so_beside_it():
     well = block.response(motion, scale=0.6, thresholds=False)
     assert well.peak_is_determined
     assert "not determined" not in repr(well)
-
-
-def test_a_block_that_overturns_or_stays_has_no_amplification():
-    block, motion = rocking.Block(0.2, 1.0), rocking.read_record(NAPA)
-    for scale in (0.1, 5.0):
+    for scale in (0.1, 5.0):  # a block that stays or overturns has no amplification
         found = block.response(motion, scale=scale, thresholds=False)
         assert math.isnan(found.amplification)
         assert found.peak_is_determined

@@ -76,7 +76,8 @@ def post(client, body):
 def test_a_key_given_twice_is_refused(client):
     body = '{"pulse": "sine", "slenderness": [0.1, 0.2], "slenderness": %s, "frequency_ratio": 1, "restitution": 1}'
     for last in ("[0.3]", "0.4"):
-        assert assert_problem(post(client, body % last), 422, "slenderness")["allowed"] == "one value"
+        problem = assert_problem(post(client, body % last), 422, "slenderness")
+        assert (problem["value"], problem["allowed"]) == ("two values, the second in line 1", "one value")
 
 
 def test_long_lines_of_csv_are_refused():
