@@ -69,7 +69,7 @@ def assess(
         Checks by standards to state beside the exact outcome, as demand over capacity: "static", "ishiyama", "asce43",
         "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
     stop : StopFlag, optional
-        Cancels the work.
+        Cancels the work, which then raises `StoppedError`.
     progress : callable, optional
         Called with the share of the work that is done [-].
 
@@ -82,8 +82,6 @@ def assess(
     ------
     InvalidArgumentError
         If there is no object, or one cannot rock under a motion of the site.
-    StoppedError
-        If `stop` was set.
 
     Notes
     -----

@@ -13,8 +13,6 @@ from rocking._base.arrays import Array
 
 WIDTH, HEIGHT = 220.0, 95.0  # of the area between the axes [pixels]
 MOST_POINTS = 320  # points of a line beyond which it is thinned, largest and smallest values kept [-]
-FLAT = 0.15  # departure of a line from its points that is not seen [pixels]
-
 STYLES = tuple(
     (colour, dash)
     for dash in ("", "7 3", "2 2")
@@ -83,23 +81,8 @@ def line_of(name: str, axes: tuple[Axis, Axis], x: Array, y: Array, style: int =
     breaks = np.flatnonzero(np.diff(inside.astype(int))) + 1
     runs = [run for run in np.split(np.arange(x.size), breaks) if run.size and inside[run[0]]]
     drawn = [np.stack([across.at(x[run]), -up.at(y[run])], axis=1) for run in runs]
-    parts = [" ".join(f"{a:.1f},{b:.1f}" for a, b in one[_bends(one)].tolist()) for one in drawn]
+    parts = [" ".join(f"{a:.1f},{b:.1f}" for a, b in one.tolist()) for one in drawn]
     return Line(name, parts, *STYLES[style % len(STYLES)])
-
-
-def _bends(points: Array) -> list[int]:
-    """Points of a line (points, 2) without which it departs by more than `FLAT` (Douglas and Peucker 1973)."""
-    kept, open_ends = {0, len(points) - 1}, [(0, len(points) - 1)]
-    while open_ends:
-        first, last = open_ends.pop()
-        chord, own = points[last] - points[first], points[first + 1 : last] - points[first]
-        if last - first > 1:
-            away = np.abs(chord[0] * own[:, 1] - chord[1] * own[:, 0]) / max(math.hypot(*chord), 1e-9)
-            k = first + 1 + int(away.argmax())
-            if away.max() > FLAT:
-                kept.add(k)
-                open_ends += [(first, k), (k, last)]
-    return sorted(kept)
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:

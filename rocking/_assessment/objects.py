@@ -116,7 +116,7 @@ class Object:
             raise InvalidArgumentError("offset_width", self.offset_width, "with offset_depth inside the round base")
         if checked.get("mass_height", 0.0) > checked["height"]:
             raise InvalidArgumentError("mass_height", self.mass_height, f"(0, {checked['height']:g}] [m], the height")
-        self._set(checked)
+        vars(self).update(checked)  # a frozen dataclass
         self._check_others()
 
     def _check_texts(self) -> None:
@@ -127,10 +127,6 @@ class Object:
         pairs = details.items() if isinstance(details, Mapping) else [(None, details)]
         if not all(isinstance(one, str) for pair in pairs for one in pair):
             raise InvalidArgumentError("details", details, "texts by name")
-
-    def _set(self, values: dict[str, float]) -> None:
-        for name, value in values.items():
-            vars(self)[name] = value  # a frozen dataclass
 
     def _check_described(self, description: str) -> None:
         """Check an object that has its dimensions from a description, such as "a mesh"."""
@@ -157,7 +153,7 @@ class Object:
             checked["restitution"] = RESTITUTION.number(self.restitution)
         half = 0.5 * min(size for plane in self.planes.values() for size in (plane.base, plane.height))
         checked["tolerance"] = number("tolerance", self.tolerance, 0.0, half, closed="left", unit="m")
-        self._set(checked)
+        vars(self).update(checked)
 
     @staticmethod
     def from_mesh(path: str | Path, *, unit: str = "m", name: str | None = None, **others: Any) -> MeshObject:
@@ -194,10 +190,8 @@ class Object:
         ----------
         vertices : array_like (vertices, 2)
             Corners x, y [m], y upwards, as of `rocking.RigidBody.from_polygon`.
-        name : str
-            For output.
-        others
-            mass, friction, restitution, tolerance, pedestal and notes, as above.
+        name, others
+            As for `from_mesh`.
 
         Raises
         ------
@@ -217,10 +211,8 @@ class Object:
         ----------
         body : Block, RigidBody, str or mapping
             The body, or what describes it, such as "hollow(width=40cm, height=1.6m, wall=2cm)".
-        name : str
-            For output.
-        others
-            mass, friction, restitution, tolerance, pedestal and notes, as above.
+        name, others
+            As for `from_mesh`.
 
         Raises
         ------
@@ -294,12 +286,12 @@ class Object:
 class Plane:
     """An object in one plane of rocking."""
 
-    base: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
-    offset: float  # size of the base, and distance of the centre of mass from its middle towards the right edge [m]
-    height: float  # of the object, and of its centre of mass [m]
-    mass_height: float  # of the object, and of its centre of mass [m]
+    base: float  # size of the base [m]
+    offset: float  # distance of the centre of mass from the middle of the base, towards the right edge [m]
+    height: float  # of the object [m]
+    mass_height: float  # of its centre of mass [m]
     base_share: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
-    inertia: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
+    inertia: float  # likewise [-]
     side: float = 0.0  # 1, -1: it rocks about its right or left edge only, since a wall stops it at the other side
     rebound: float = math.nan  # from this wall; nan: from the angular momentum [-]
 
@@ -327,8 +319,8 @@ class Plane:
 class MeshObject(Object):
     """What `Object.from_mesh` makes."""
 
-    path: str = ""  # the file, and the unit of its lengths
-    unit: str = "m"  # the file, and the unit of its lengths
+    path: str = ""  # the file
+    unit: str = "m"  # of its lengths
 
     def __post_init__(self) -> None:
         self._check_described("a mesh")
@@ -429,17 +421,17 @@ def plane_of(body: RespondingBody) -> Plane:
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """One body for each object and direction; arrays (bodies,), SI units."""
+    """One body for each object and direction: the values of `Plane`, and `own` of `BodyArray`, as arrays (bodies,)."""
 
-    base: Array  # as of `Plane`
-    offset: Array  # as of `Plane`
-    height: Array  # as of `Plane`
-    mass_height: Array  # as of `Plane`
-    base_share: Array  # as of `Plane`
-    inertia: Array  # as of `Plane`
-    side: Array  # as of `Plane`
-    rebound: Array  # as of `Plane`
-    restitution: Array  # as `own` of `BodyArray`
+    base: Array
+    offset: Array
+    height: Array
+    mass_height: Array
+    base_share: Array
+    inertia: Array
+    side: Array
+    rebound: Array
+    restitution: Array
 
     @classmethod
     def of(cls, objects: Iterable[Object]) -> Bodies:

@@ -19,7 +19,7 @@ from rocking._excitation.pulses import PULSE_NAMES, AbstractPulse, as_pulse
 from rocking._excitation.records.floor import PERIODS as MODE_PERIODS
 from rocking._excitation.records.floor import floor_motion
 from rocking._excitation.records.record import Record, offset_doubts
-from rocking.suites.hazard_curve import check_hazard_curve
+from rocking.suites.checks import check_hazard_curve
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -122,8 +122,8 @@ class Site:
                 "floor_damping": damping,
                 "floor_participation": participation,
             }
-            for name, modal in zip(modes, broadcast(modes, [np.array(periods), damping, participation]), strict=True):
-                vars(self)[name] = tuple(modal.tolist())
+            modal = broadcast(modes, [np.array(periods), damping, participation])
+            vars(self).update(zip(modes, (tuple(one.tolist()) for one in modal), strict=True))
         if self.hazard is not None:
             if not self.records:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")

@@ -29,29 +29,14 @@ WIDER = 1.5  # largest ratio of the base needed to the present one at which a wi
 
 @dataclass(frozen=True)
 class Line:
-    """One object, with its rows of an assessment.
-
-    Attributes
-    ----------
-    object : Object
-    rows : list of int
-        Rows of the assessment of this object, the worse direction first.
-    row : int
-        The row of this line.
-    values : dict
-        That row, by the names of the columns.
-    pga : float or None
-        Peak ground acceleration from which it overturns [m/s2].
-    base : float
-        Base in this direction [m].
-    """
+    """One object, with its rows of an assessment."""
 
     object: Object
-    rows: list[int]
-    row: int
-    values: dict[str, Any]
-    pga: float | None
-    base: float
+    rows: list[int]  # of the assessment of this object, the worse direction first
+    row: int  # that of this line
+    values: dict[str, Any]  # that row, by the names of the columns
+    pga: float | None  # peak ground acceleration from which it overturns [m/s2]
+    base: float  # in this direction [m]
 
     @property
     def is_close(self) -> bool:

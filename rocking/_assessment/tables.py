@@ -120,7 +120,7 @@ def _objects(table: Table[Object]) -> ObjectTable:
     skipped = [label for label in table.cells if label not in table.columns]
     for one, row in zip(table.items, zip(*table.cells.values(), strict=True), strict=True):
         details = RowDetails(one.details, dict(zip(table.cells, row, strict=True)))
-        object.__setattr__(one, "details", details)  # a frozen dataclass
+        vars(one)["details"] = details  # a frozen dataclass
     return ObjectTable(table.items, table.bad_rows, skipped, table.columns)
 
 

@@ -111,14 +111,12 @@ def overturning_probability(
     seed : int
         0 to 2^53, of the scrambled Sobol sequence.
     stop : StopFlag, optional
-        Cancels the work.
+        Cancels the work, which then raises `StoppedError`.
 
     Raises
     ------
     InvalidArgumentError
         If no input is uncertain, an argument is not as described, or a distribution gives no possible body.
-    StoppedError
-        If `stop` was set.
     """
     from scipy import stats  # noqa: PLC0415  (takes longer to load than the package)
 

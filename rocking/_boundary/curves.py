@@ -5,11 +5,13 @@ its angle in alpha(curve) [rad]; 0 stands for the slender limit.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from rocking._model.checks import check_one_alpha
+from rocking._model.outcome import Outcome
 
 ALPHA_TOLERANCE = 1e-12
 """Two slenderness angles that differ by less are one, written in degrees and in radians [rad]."""
@@ -26,3 +28,16 @@ def curves_at(curves: xr.Dataset, alpha: float) -> xr.Dataset:
     wanted = np.abs(curves["alpha"].values - check_one_alpha(alpha)) <= ALPHA_TOLERANCE
     points = np.repeat(wanted, curves["row_size"].values)
     return curves.isel(curve=np.flatnonzero(wanted), point=np.flatnonzero(points))
+
+
+def points_of(curves: xr.Dataset) -> dict[str, list[Any]]:
+    """The points of curves as columns, with the number, outcome and impacts of their curve."""
+    sizes = curves["row_size"].values
+    columns = {
+        "curve": np.repeat(np.arange(sizes.size), sizes),
+        "slenderness": curves["slenderness"].values,
+        "frequency_ratio": curves["frequency_ratio"].values,
+        "outcome": np.repeat([Outcome(int(code)).name for code in curves["outcome"].values], sizes),
+        "impacts": np.repeat(curves["impacts"].values, sizes),
+    }
+    return {name: values.tolist() for name, values in columns.items()}

@@ -5,8 +5,9 @@ This module holds the signatures and puts the pictures together; `rocking.plot` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import functools
+import inspect
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -21,6 +22,7 @@ from rocking._cli.options import (
     RecordOptions,
     SpectrumOptions,
     WindowOptions,
+    said,
     with_options,
 )
 from rocking._cli.progress import progress
@@ -39,234 +41,220 @@ ROWS = 300  # rows of a map
 AMPLITUDE = (1.0, 12.0)  # amplitudes a of a map [-]
 
 
-@plot.command()
-@with_options
-def response(block: ProblemOptions, picture: PictureOptions) -> None:
+Panels = Callable[[Any, Any], Any]  # draws with the functions of `rocking.plot` into a figure
+
+
+def picture(name: str | None = None) -> Callable[[Callable[..., Panels]], None]:
+    """A decorator that makes a command with the option of a file from a function that reads options and gives panels.
+
+    Errors name the option. The figure is made, drawn, and saved or shown.
+    """
+
+    def add(read: Callable[..., Panels]) -> None:
+        @functools.wraps(read)
+        def command(picture: PictureOptions, **given: Any) -> None:
+            from rocking._cli.arguments import option_errors
+
+            with option_errors():
+                _draw(read(**given), picture.output)
+
+        signature = inspect.signature(read)
+        own = inspect.Parameter("picture", inspect.Parameter.KEYWORD_ONLY)
+        vars(command)["__signature__"] = signature.replace(parameters=[*signature.parameters.values(), own])
+        command.__annotations__ = read.__annotations__ | {"picture": PictureOptions}
+        plot.command(name)(with_options(command))
+
+    return add
+
+
+def _draw(panels: Panels, path: str | None) -> None:
+    pictures, output = _pictures()
+    with output.style():
+        with progress("drawing"):
+            figure = output.new_figure(path, SIZE)
+            panels(pictures, figure)
+            if path is not None:
+                output.save_figure(figure, path)
+        if path is None:
+            output.show_figure(figure)
+
+
+@picture()
+def response(block: ProblemOptions) -> Panels:
     """Peak rotation against the amplitude of the pulse, with the block in question marked."""
     from rocking._cli import arguments
 
-    with _picture(picture) as draw:
-        params = arguments.read_params(block)
-        draw(lambda pictures, figure: pictures.response(_found(params), figure.add_subplot()))
+    params = arguments.read_params(block)
+    return lambda pictures, figure: pictures.response(_found(params), figure.add_subplot())
 
 
-@plot.command()
-@with_options
-def history(block: ProblemOptions, picture: PictureOptions, duration: Duration = None) -> None:
+@picture()
+def history(block: ProblemOptions, duration: Duration = None) -> Panels:
     """Rotation and ground acceleration of one block against time."""
     from rocking._cli import arguments
 
-    with _picture(picture) as draw:
-        params = arguments.read_params(block)
-        length = arguments.read_duration(duration, params)
+    params = arguments.read_params(block)
+    length = arguments.read_duration(duration, params)
 
-        def panels(pictures: Any, figure: Any) -> None:
-            from rocking._dimensional.curves import history as history_of
-            from rocking._dimensional.curves import in_si_units
-            from rocking._history.time_history import time_history
+    def panels(pictures: Any, figure: Any) -> None:
+        from rocking._dimensional.curves import history as history_of
+        from rocking._dimensional.curves import in_si_units
+        from rocking._history.time_history import time_history
 
-            problem = params.problem
-            if problem is not None and not problem.is_block:
-                data = history_of(problem, duration=length)
-            else:
-                data = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
-                data = data if problem is None else in_si_units(data, problem)
-            _draw_history(pictures, figure, data)
+        problem = params.problem
+        if problem is not None and not problem.is_block:
+            data = history_of(problem, duration=length)
+        else:
+            data = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
+            data = data if problem is None else in_si_units(data, problem)
+        _draw_history(pictures, figure, data)
 
-        draw(panels)
+    return panels
 
 
-@plot.command()
-@with_options
+@picture()
 def record(
     file: File,
     block: RecordOptions,
-    picture: PictureOptions,
     duration: Annotated[
-        str | None,
-        typer.Option(
-            help="Length of time that is drawn, such as 20s; by default the record and some more.", metavar="[s]"
-        ),
+        str | None, said("Length of time that is drawn, such as 20s; by default the record and some more.", "s")
     ] = None,
-) -> None:
+) -> Panels:
     """Rotation of one block under a recorded ground motion, and its acceleration, against time."""
-    with _picture(picture) as draw, file_errors():
+    with file_errors():
         motion, shape, restitution = read_problem(file, block)
 
-        def panels(pictures: Any, figure: Any) -> None:
-            data = shape.history(motion, scale=block.scale, restitution=restitution, duration=duration)
-            _draw_history(pictures, figure, data)
-
-        draw(panels)
-        found = shape.response(motion, scale=block.scale, restitution=restitution)
-        for warning in found.warnings:
+    def panels(pictures: Any, figure: Any) -> None:
+        data = shape.history(motion, scale=block.scale, restitution=restitution, duration=duration)
+        _draw_history(pictures, figure, data)
+        for warning in shape.response(motion, scale=block.scale, restitution=restitution).warnings:
             typer.echo(f"warning: {warning}", err=True)
 
+    return panels
 
-@plot.command()
-@with_options
+
+@picture()
 def spectrum(
     context: typer.Context,
     block: SpectrumOptions,
-    picture: PictureOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
-) -> None:
+) -> Panels:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments
 
-    with _picture(picture) as draw:
-        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
+    params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
 
-        def panel(pictures: Any, figure: Any) -> None:
-            ax = pictures.spectrum(_spectrum(params, window), figure.add_subplot(), label="survives")
-            ax.legend(frameon=True, framealpha=1.0)
+    def panel(pictures: Any, figure: Any) -> None:
+        ax = pictures.spectrum(_spectrum(params, window), figure.add_subplot(), label="survives")
+        ax.legend(frameon=True, framealpha=1.0)
 
-        draw(panel)
+    return panel
 
 
-@plot.command()
-@with_options
+@picture()
 def boundary(
     context: typer.Context,
     block: WindowOptions,
-    picture: PictureOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.2,
     frequency_ratio_max: FrequencyRatioMax = 15.0,
-) -> None:
+) -> Panels:
     """Boundaries of overturning: amplitude against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
 
-    with _picture(picture) as draw:
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
-        draw(
-            lambda pictures, figure: pictures.boundary(
-                printing.boundary_curves(params, window), figure.add_subplot()
-            ).legend()
-        )
+    given = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+    return lambda pictures, figure: pictures.boundary(printing.boundary_curves(*given), figure.add_subplot()).legend()
 
 
-@plot.command("map")
-@with_options
+@picture("map")
 def control_map(
     context: typer.Context,
     block: WindowOptions,
-    picture: PictureOptions,
     frequency_ratio_min: FrequencyRatioMin = 0.5,
     frequency_ratio_max: FrequencyRatioMax = 12.0,
-) -> None:
+) -> Panels:
     """Peak rotation and outcome over amplitude and frequency ratio, or over peak acceleration and period."""
     from rocking._cli import arguments
 
-    with _picture(picture) as draw:
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
-        draw(lambda pictures, figure: pictures.control_map(_map(params, window), figure.add_subplot()))
+    given = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+    return lambda pictures, figure: pictures.control_map(_map(*given), figure.add_subplot())
 
 
-@plot.command()
-@with_options
+@picture()
 def cube(
     file: Annotated[
         str, typer.Argument(help="Spectrum cube, such as results/spectra/sine/eta-0.85.nc.", metavar="FILE")
     ],
-    picture: PictureOptions,
-) -> None:
+) -> Panels:
     """Maps of a spectrum cube, one for each slenderness angle."""
     from rocking._base.errors import DatasetError
 
-    with _picture(picture) as draw:
+    def panels(pictures: Any, figure: Any) -> None:
+        from rocking._datasets.cube import read_dataset
 
-        def panels(pictures: Any, figure: Any) -> None:
-            from rocking._datasets.cube import read_dataset
+        try:
+            data = read_dataset(file)
+        except (DatasetError, OSError) as error:
+            raise typer.BadParameter(str(error), param_hint="FILE") from None
+        angles = data.sizes.get("alpha", 1)
+        columns = min(angles, 4)
+        rows = -(-angles // columns)
+        figure.set_size_inches(1.4 + 2.4 * columns, 0.6 + 2.5 * rows)
+        axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel().tolist()
+        for ax in axes[angles:]:
+            ax.set_axis_off()
+        pictures.cube(data, axes[:angles])
 
-            try:
-                data = read_dataset(file)
-            except (DatasetError, OSError) as error:
-                raise typer.BadParameter(str(error), param_hint="FILE") from None
-            angles = data.sizes.get("alpha", 1)
-            columns = min(angles, 4)
-            rows = -(-angles // columns)
-            figure.set_size_inches(1.4 + 2.4 * columns, 0.6 + 2.5 * rows)
-            axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel().tolist()
-            for ax in axes[angles:]:
-                ax.set_axis_off()
-            pictures.cube(data, axes[:angles])
-
-        draw(panels)
+    return panels
 
 
-@plot.command()
-@with_options
-def distribution(configuration: Configuration, picture: PictureOptions) -> None:
+@picture()
+def distribution(configuration: Configuration) -> Panels:
     """Distributions of the peak rotation under a suite of records at five of its levels, one panel for each block."""
     from rocking._cli.fragility import read_suite, suite_fragility
 
-    with _picture(picture) as draw:
-        data = suite_fragility(read_suite(configuration))
+    data = suite_fragility(read_suite(configuration))
 
-        def panels(pictures: Any, figure: Any) -> None:
-            from rocking.plot.style import shades
-            from rocking.suites.distribution import distribution as distribution_of
-            from rocking.suites.table import with_block
+    def panels(pictures: Any, figure: Any) -> None:
+        from rocking.plot.style import shades
+        from rocking.suites.distribution import distribution as distribution_of
+        from rocking.suites.table import with_block
 
-            found = distribution_of(with_block(data))
-            levels = sorted({round(k * (found.sizes["intensity"] - 1) / 4) for k in range(5)})
-            axes = figure.subplots(1, found.sizes["block"], sharex=True, sharey=True, squeeze=False)[0]
-            figure.set_size_inches(0.6 + 2.8 * len(axes), 3.2)
-            for block, ax in enumerate(axes):
-                one = found.isel(block=block)
-                for level, colour in zip(levels, shades(len(levels)), strict=True):
-                    at = one.isel(intensity=level)
-                    pictures.distribution(at, ax, color=colour, label=f"{at['intensity'].item():.3g}")
-                ax.set_title(f"{float(one['width']):g} m x {float(one['height']):g} m", loc="right")
-                ax.label_outer()
-            title = f"{found['intensity'].attrs['long_name']} [{found['intensity'].attrs['units']}]"
-            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, title=title)
+        found = distribution_of(with_block(data))
+        levels = sorted({round(k * (found.sizes["intensity"] - 1) / 4) for k in range(5)})
+        axes = figure.subplots(1, found.sizes["block"], sharex=True, sharey=True, squeeze=False)[0]
+        figure.set_size_inches(0.6 + 2.8 * len(axes), 3.2)
+        for block, ax in enumerate(axes):
+            one = found.isel(block=block)
+            for level, colour in zip(levels, shades(len(levels)), strict=True):
+                at = one.isel(intensity=level)
+                pictures.distribution(at, ax, color=colour, label=f"{at['intensity'].item():.3g}")
+            ax.set_title(f"{float(one['width']):g} m x {float(one['height']):g} m", loc="right")
+            ax.label_outer()
+        title = f"{found['intensity'].attrs['long_name']} [{found['intensity'].attrs['units']}]"
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, title=title)
 
-        draw(panels)
+    return panels
 
 
-@plot.command()
-@with_options
-def fragility(configuration: Configuration, picture: PictureOptions) -> None:
+@picture()
+def fragility(configuration: Configuration) -> Panels:
     """Fragility curves of the first limit state of a suite of records, one panel for each block."""
     from rocking._cli.fragility import read_suite, suite_fragility
 
-    with _picture(picture) as draw:
-        data = suite_fragility(read_suite(configuration))
+    first = suite_fragility(read_suite(configuration)).isel(demand=0)
 
-        def panels(pictures: Any, figure: Any) -> None:
-            first = data.isel(demand=0)
-            blocks = first.sizes["block"]
-            figure.set_size_inches(0.6 + 2.8 * blocks, 3.2)
-            axes = figure.subplots(1, blocks, sharex=True, sharey=True, squeeze=False)[0]
-            for k, ax in enumerate(axes):
-                pictures.fragility(first.isel(block=k), ax)
-                ax.label_outer()
-                ax.get_legend().remove()
-            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    def panels(pictures: Any, figure: Any) -> None:
+        blocks = first.sizes["block"]
+        figure.set_size_inches(0.6 + 2.8 * blocks, 3.2)
+        axes = figure.subplots(1, blocks, sharex=True, sharey=True, squeeze=False)[0]
+        for k, ax in enumerate(axes):
+            pictures.fragility(first.isel(block=k), ax)
+            ax.label_outer()
+            ax.get_legend().remove()
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
-        draw(panels)
-
-
-@contextmanager
-def _picture(options: PictureOptions) -> Iterator[Callable[[Callable[[Any, Any], Any]], None]]:
-    """A function that makes the figure, lets another draw into it, and saves or shows it; errors name the option."""
-    from rocking._cli.arguments import option_errors
-
-    def draw(panels: Callable[[Any, Any], Any]) -> None:
-        pictures, output = _pictures()
-        with output.style():
-            with progress("drawing"):
-                figure = output.new_figure(options.output, SIZE)
-                panels(pictures, figure)
-                if options.output is not None:
-                    output.save_figure(figure, options.output)
-            if options.output is None:
-                output.show_figure(figure)
-
-    with option_errors():
-        yield draw
+    return panels
 
 
 def _pictures() -> tuple[Any, Any]:

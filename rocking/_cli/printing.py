@@ -348,17 +348,11 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
 
 def boundary(params: Params, window: tuple[float, float], form: Form) -> None:
     """Print the overturning boundary curves; for a body with units also peak accelerations and periods."""
+    from rocking._boundary.curves import points_of
+
     with progress("tracing the boundaries"):
         curves = boundary_curves(params, window)
-    sizes = curves["row_size"].values
-    outcomes = [Outcome(int(code)).name for code in curves["outcome"].values]
-    columns = {
-        "curve": np.repeat(np.arange(sizes.size), sizes).tolist(),
-        "slenderness": curves["slenderness"].values.tolist(),
-        "frequency_ratio": curves["frequency_ratio"].values.tolist(),
-        "outcome": np.repeat(outcomes, sizes).tolist(),
-        "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
-    }
+    columns = points_of(curves)
     if params.problem is not None:
         columns |= {name: curves[name].values.tolist() for name in ("period", "peak_acceleration")}
         if form.kind == "table" and not form.all:

@@ -50,6 +50,7 @@ def record(
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
+    from rocking._excitation.records.record import summary_of
     from rocking._model.block import AbstractBlock
 
     with option_errors({"records": "--second"}), file_errors():
@@ -75,7 +76,8 @@ def record(
             else:
                 about["threshold_scale"] = [one["scale"] for one in changes]
                 about["overturns_above"] = [one["overturns_above"] for one in changes]
-            about |= {"scale": block.scale, **_measures(motion)}
+            measures = summary_of(motion)
+            about |= {"scale": block.scale, "record": measures.pop("name"), **measures}
             if isinstance(body, AbstractBlock):
                 about |= {"alpha": body.alpha} | (_fitted(motion, body) if fit else {})
         sentences = [text for text in (about["meaning"], about["margin"]) if text]
@@ -138,38 +140,10 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingB
     return motion.baseline_corrected(order=options.baseline_order), body, eta
 
 
-def _measures(motion: Record) -> dict[str, Any]:
-    """The printed values of a record, by name."""
-    from rocking._base.errors import finite
-
-    return {
-        "record": motion.name,
-        "source": motion.source,
-        "samples": motion.samples,
-        "time_step": motion.time_step,
-        "peak_acceleration": motion.peak_acceleration,
-        "peak_vertical_acceleration": None if motion.vertical is None else motion.peak_vertical_acceleration,
-        "peak_velocity": motion.peak_velocity,
-        "peak_displacement": motion.peak_displacement,
-        "arias_intensity": motion.arias_intensity,
-        "significant_duration": motion.significant_duration,
-        "mean_period": finite(motion.mean_period),
-        "final_velocity": motion.final_velocity,
-    }
-
-
 def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
     """The printed values of the pulse fitted to a record, by name."""
-    from rocking._base.errors import finite
-    from rocking.suites.pulse_fit import fit_pulse
+    from rocking.suites.pulse_fit import fit_pulse, summary_of
 
-    fitted = fit_pulse(motion, blocks=block)
-    return {
-        "pulse": fitted.velocity.family,
-        "period": fitted.period,
-        "pulse_peak_acceleration": fitted.peak_acceleration,
-        "pulse_cycles": finite(fitted.velocity.cycles),
-        "pulse_phase": finite(fitted.velocity.phase),
-        "pulse_explained": fitted.explained,
-        "pulse_scale_ratio": finite(float(fitted.scale_ratio[0])),
-    }
+    found = summary_of(fit_pulse(motion, blocks=block))
+    named = {name if name in ("pulse", "period") else f"pulse_{name}": value for name, value in found.items()}
+    return {name: value for name, value in named.items() if name != "pulse_centre"}

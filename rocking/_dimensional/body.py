@@ -109,8 +109,6 @@ class RespondingBody(AbstractBody):
         InvalidArgumentError
             If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast;
             for arrays where the equation of motion is the linear one (3.1).
-        StoppedError
-            If `stop` was set.
 
         Examples
         --------
@@ -158,7 +156,7 @@ class RespondingBody(AbstractBody):
 
         Parameters
         ----------
-        motion, period, restitution
+        motion, period, restitution, stop
             As for `response`.
         highest : float, optional
             Highest peak acceleration [m/s2] or factor [-] searched, > 0; by default 100 times that of uplift under a
@@ -166,8 +164,6 @@ class RespondingBody(AbstractBody):
         resolution : float
             Largest relative distance of the factors of a record that are tried in search of the lowest [-],
             [1e-4, 0.1]; above it they are 0.2 % apart.
-        stop : StopFlag, optional
-            Cancels the work.
 
         Raises
         ------
@@ -204,7 +200,7 @@ class RespondingBody(AbstractBody):
 
         Parameters
         ----------
-        motion, peak_acceleration, scale, restitution
+        motion, peak_acceleration, scale, restitution, stop
             As for `response`.
         period : array_like (periods,)
             T_p [s], > 0; one period if `size` is an array.
@@ -255,12 +251,10 @@ class RespondingBody(AbstractBody):
         ----------
         motion : str or AbstractPulse
             The pulse; of a record there is one strength for each body, see `thresholds`.
-        restitution : float, "momentum" or "kalliontzis(k=...)"
+        restitution, stop
             As for `response`.
         period : (float, float), optional
             Window of T_p [s], 0 < low < high; by default the frequency ratios to the right edge from 0.2 to 15.
-        stop : StopFlag, optional
-            Cancels the work.
 
         Returns
         -------
@@ -299,7 +293,7 @@ class RespondingBody(AbstractBody):
 
         Parameters
         ----------
-        motion, peak_acceleration, period, scale, restitution
+        motion, peak_acceleration, period, scale, restitution, stop
             As for `response`; numbers.
         start : float, optional
             In place of a motion: the rotation from which the body is released at rest [rad], in (-pi/2, pi/2), not 0,
@@ -311,8 +305,6 @@ class RespondingBody(AbstractBody):
             and the end of the motion are added.
         contact : bool
             Whether to add reactions and friction demand.
-        stop : StopFlag, optional
-            Cancels the work.
 
         Returns
         -------

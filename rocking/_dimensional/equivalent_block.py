@@ -207,12 +207,8 @@ class EquivalentBlock(AbstractBlock, RespondingBody):
         ----------
         mass, stiffness, restoring, load : float
             M [kg m2], K [N m], C [N m] and |B| [kg m], > 0.
-        restitution : float
-            eta [-], [0, 1].
-        top_height : float
-            Height above the pivot of the point whose displacement is wanted [m], > 0.
-        gravity : float
-            g [m/s2], > 0.
+        restitution, top_height, gravity
+            As for `EquivalentBlock`; a top height is needed.
 
         Raises
         ------
@@ -259,8 +255,8 @@ class EquivalentBlock(AbstractBlock, RespondingBody):
             Their number, 4 to 24.
         restitution : float, optional
             eta [-], [0, 1]; by default that of an impact without bouncing between the mechanism and its mirror image.
-        gravity : float
-            g [m/s2], > 0.
+        gravity
+            As for `EquivalentBlock`.
 
         Raises
         ------

@@ -70,27 +70,13 @@ BALANCED = 1.0  # |theta|/alpha of a body that is balanced on an edge, and of on
 
 @dataclass(eq=False)
 class _Nodes:
-    """Solved amplitudes of several bodies in order of body, then amplitude; arrays (nodes,).
+    """Solved amplitudes of several bodies in order of body, then amplitude; arrays (nodes,)."""
 
-    Attributes
-    ----------
-    line, place : int array
-        Number of the body; number of the amplitude, ascending with it.
-    peak : float array
-        Peak |theta|/alpha, `BALANCED` of a body that overturns [-].
-    overturned : bool array
-        Whether the body does.
-    margin : float array
-        Of the outcome.
-    impacts : int array
-        Their number.
-    """
-
-    line: Index
-    place: Index
-    peak: Array
+    line: Index  # number of the body
+    place: Index  # number of the amplitude, ascending with it
+    peak: Array  # peak |theta|/alpha, `BALANCED` of a body that overturns [-]
     overturned: Flags
-    margin: Array
+    margin: Array  # of the outcome
     impacts: NDArray[np.int32]
 
     def joined(self, other: _Nodes) -> _Nodes:

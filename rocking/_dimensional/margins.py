@@ -39,13 +39,13 @@ class Margins:
     # peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found
     nearest_acceleration: float | None
     acceleration_factor: float | None  # nearest_acceleration over the peak acceleration of the problem [-]
-    nearest_period: float | None  # the same for the period [s], [-]
-    period_factor: float | None  # the same for the period [s], [-]
+    nearest_period: float | None  # the same for the period [s]
+    period_factor: float | None  # the same for the period [-]
     periods: tuple[Threshold, ...]  # all periods at which the outcome changes, ascending [s]
     periods_searched: tuple[float, float]  # smallest and largest [s]
     # smallest R of this shape searched that survives this pulse [m]; a larger one may overturn
     smallest_surviving_half_diagonal: float | None
-    # r from which every larger size searched survives [m]; None if the largest overturns
+    # R from which every larger size searched survives [m]; None if the largest overturns
     surviving_from_half_diagonal: float | None
     sizes: tuple[Threshold, ...]  # all half-diagonals of this shape at which the outcome changes, ascending [m]
     sizes_searched: tuple[float, float]  # smallest and largest half-diagonal [m]

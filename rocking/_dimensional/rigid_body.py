@@ -280,11 +280,8 @@ class RigidBody(RespondingBody):
             right, so that it is closer to the right edge.
         mass_height : array_like, optional
             Height of the centre of mass above the base [m], > 0; half the height without it.
-        gyration : array_like, optional
-            Radius of gyration about the centre of mass [m], > 0; that of the uniform rectangle of this width and
-            height without it.
-        gravity : array_like
-            g [m/s2], > 0.
+        gyration, gravity
+            As of `RigidBody`; without a gyration that of the uniform rectangle of this width and height.
 
         Raises
         ------
@@ -323,8 +320,8 @@ class RigidBody(RespondingBody):
         ----------
         vertices : array_like (vertices, 2)
             Corners x, y [m] in order, either way round; y is upwards.
-        gravity : float
-            g [m/s2], > 0.
+        gravity
+            As of `RigidBody`.
 
         Raises
         ------
@@ -357,8 +354,8 @@ class RigidBody(RespondingBody):
             Angle of the ground motion from the x axis towards the y axis [rad], or a text such as "30 deg".
         unit : str
             Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft".
-        gravity : float
-            g [m/s2], > 0.
+        gravity
+            As of `RigidBody`.
 
         Raises
         ------

@@ -113,8 +113,6 @@ def identify_free_rocking(
         If an argument is not as described, the rotation seems to be in degrees, the trace has fewer than three
         impacts, for two edges fewer than six, or it is no free rocking: an oscillation, or errors from the best block
         that last so long that fewer than `LEAST_FREEDOM` more independent samples than unknowns are left.
-    StoppedError
-        If `stop` was set.
 
     Notes
     -----

@@ -112,8 +112,7 @@ class SampledPulse(AbstractPulse):
         sloped = np.flatnonzero(rises)  # an extreme may be a plateau: its end is taken
         inner = sloped[1:][np.diff(rises[sloped]) != 0.0]
         fields = {"name": name, "start": 0.0, "end": float(phases[-1]), "stationary": tuple(phases[inner].tolist())}
-        for key, value in (fields | {"phases": phases, "values": values}).items():
-            vars(self)[key] = value
+        vars(self).update(fields | {"phases": phases, "values": values})
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], period: float | None = None) -> SampledPulse:

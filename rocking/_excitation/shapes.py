@@ -72,8 +72,7 @@ class AbstractPulse(ABC):
         """Check the name and the window, and make its ends numbers."""
         if not (self.name and isinstance(self.name, str)):
             raise InvalidArgumentError("name", self.name, "a string that is not empty")
-        for name, value in zip(("start", "end"), checked_window(self.start, self.end), strict=True):
-            vars(self)[name] = value
+        vars(self).update(zip(("start", "end"), checked_window(self.start, self.end), strict=True))
 
     @abstractmethod
     def shape(self, phi: ArrayLike) -> Array:

@@ -87,8 +87,7 @@ class SmoothPulse(AbstractPulse):
     def _set(self, *, polynomials: Polynomials, **values: object) -> None:
         numbers = np.append(polynomials.ends, polynomials.coefficients)
         digest = hashlib.sha256(numbers.astype("<f8").tobytes()).hexdigest()
-        for name, value in (values | {"polynomials": polynomials, "digest": digest}).items():
-            vars(self)[name] = value
+        vars(self).update(values | {"polynomials": polynomials, "digest": digest})
 
     def shape(self, phi: ArrayLike) -> Array:
         return np.asarray(self.curve(float_array("phi", phi, unit="rad")) / self.peak)

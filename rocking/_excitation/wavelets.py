@@ -75,8 +75,7 @@ class WaveletPulse(AbstractPulse):
         if not 1 <= len(polynomial) <= MAX_POLYNOMIAL:
             raise InvalidArgumentError("polynomial", polynomial, f"1 to {MAX_POLYNOMIAL} coefficients")
         spread = checked_number("spread", self.spread, low=1e-6, unit="rad2")
-        vars(self)["polynomial"] = polynomial
-        vars(self)["spread"] = spread
+        vars(self).update(polynomial=polynomial, spread=spread)
         super().__post_init__()
 
     def shape(self, phi: ArrayLike) -> Array:

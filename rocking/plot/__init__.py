@@ -1,9 +1,10 @@
 """Pictures of responses, histories, spectra, boundaries, maps, cubes and fragility, drawn with matplotlib.
 
-Each function draws one picture on given axes, or on those of a new figure, and returns the axes. Axes carry names and
-units; colours are distinct to colour-blind readers. Nothing here changes the settings of matplotlib;
-`matplotlib.rc_context(rocking.plot.STYLE)` gives the settings of the figures of the workflow. Requires the extra
-`plot`. The names are listed in `__init__.pyi` and loaded at first use.
+Each function draws one picture on the axes `ax`, or without them on those of a new figure, and returns the axes.
+`style` are properties of its line, such as `color` and `label`. Axes carry names and units; colours are distinct to
+colour-blind readers. Nothing here changes the settings of matplotlib; `matplotlib.rc_context(rocking.plot.STYLE)` gives
+the settings of the figures of the workflow. Requires the extra `plot`. The names are listed in `__init__.pyi` and
+loaded at first use.
 """
 
 from importlib.util import find_spec as _find_spec

@@ -24,8 +24,7 @@ from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_reco
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.body import AbstractBody
-from rocking.suites.demand import check_demands
-from rocking.suites.hazard_curve import check_hazard_curve
+from rocking.suites.checks import check_demands, check_hazard_curve
 from rocking.suites.intensity import MEASURES
 
 if TYPE_CHECKING:  # it needs numba, which the rules of a workflow do not

@@ -23,8 +23,8 @@ from rocking._model.labelled import variable
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.body_arrays import HasBody, over_bodies
 from rocking.suites.body_outcomes import SIGNS, body_outcomes
+from rocking.suites.checks import check_demands, label
 from rocking.suites.curve import LINKS, curve_probability
-from rocking.suites.demand import check_demands, label
 from rocking.suites.fits import CurveFit, FitStatus, counted, fit_curve
 from rocking.suites.intensity import MEASURES
 from rocking.suites.outcomes import check_suite, suite_outcomes
@@ -102,8 +102,6 @@ def fragility(
     ------
     InvalidArgumentError
         If an argument is not as described.
-    StoppedError
-        If `stop` was set.
     """
     limits = check_demands(demand)
     confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")

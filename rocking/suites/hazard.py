@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
+from rocking.suites.checks import check_hazard_curve
 from rocking.suites.curve import curve_probability
 from rocking.suites.fits import FitStatus
-from rocking.suites.hazard_curve import check_hazard_curve
 from rocking.suites.hazard_files import hazard_arrays
 
 STEP = 0.02  # largest part of ln x that is integrated at once [-], by `NODES` Gauss points

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, UnreadableFileError, in_range, positive
-from rocking.suites.hazard_curve import check_hazard_curve
+from rocking.suites.checks import check_hazard_curve
 
 TYPES = {"PGA": ("pga", "m s-2", STANDARD_GRAVITY), "PGV": ("pgv", "m s-1", 0.01)}
 """Measure of this package, its unit, and the unit of the files in it, by the type of measure in the files."""

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
-from rocking._base.errors import InvalidArgumentError, float_array, one_of
+from rocking._base.errors import InvalidArgumentError, finite, float_array, one_of
 from rocking._base.quantities import HIGHEST_SCALE
 from rocking._boundary.amplitude import thresholds
 from rocking._dimensional.block import Block
@@ -127,6 +127,14 @@ class PulseFit(EqualByValue):
         """Acceleration of the pulse [m/s2] at times [s] from the first sample of the record."""
         phase = 2.0 * math.pi / self.period * (float_array("time", time, unit="s") - self.velocity.centre)
         return np.asarray(self.peak_acceleration * self.pulse.acceleration(phase))
+
+
+def summary_of(fit: PulseFit) -> dict[str, Any]:
+    """Numbers of a fitted pulse by name, the ratio of the scales that of the first block; None for those it has not."""
+    velocity = fit.velocity
+    own = {"centre": velocity.centre, "cycles": finite(velocity.cycles), "phase": finite(velocity.phase)}
+    found = {"pulse": velocity.family, "period": fit.period, "peak_acceleration": fit.peak_acceleration, **own}
+    return found | {"explained": fit.explained, "scale_ratio": finite(float(fit.scale_ratio[0]))}
 
 
 def fit_pulse(

@@ -90,8 +90,6 @@ def suite_sensitivity(
     ------
     InvalidArgumentError
         If an argument is not as described.
-    StoppedError
-        If `stop` was set.
     """
     suite = check_suite(records, blocks, intensity, measure, restitution)
     restitution_step = number("restitution_step", restitution_step, 0.0, 1.0, closed="right")

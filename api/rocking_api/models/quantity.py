@@ -158,8 +158,6 @@ AlphaDeg = Annotated[
 
 # blocks and motions in SI units
 
-Width = si(q.WIDTH, examples=[0.4])
-Height = si(q.HEIGHT, examples=[1.6])
 Gravity = si(q.GRAVITY)
 PeakAcceleration = si(q.PEAK_ACCELERATION, examples=[4.0])
 Period = si(q.PERIOD, examples=[0.5])

@@ -12,7 +12,7 @@ from fastapi import APIRouter, Query, Request, Response
 from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError
-from rocking._boundary.curves import curves_at
+from rocking._boundary.curves import curves_at, points_of
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._numba.cancellation import StopFlag, run_with_timeout
@@ -62,15 +62,7 @@ def _overturning(service: Service, params: OverturningParams, request: Request, 
     if form == "nc":
         return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
     if form == "csv":
-        sizes = curves["row_size"].values
-        columns = {
-            "curve": np.repeat(np.arange(sizes.size), sizes).tolist(),
-            "slenderness": curves["slenderness"].values.tolist(),
-            "frequency_ratio": curves["frequency_ratio"].values.tolist(),
-            "outcome": np.repeat(_names(curves), sizes).tolist(),
-            "impacts": np.repeat(curves["impacts"].values, sizes).tolist(),
-        }
-        return csv_response(columns, "overturning")
+        return csv_response(points_of(curves), "overturning")
     source = "dataset" if version else "solver"
     return json_response(
         OverturningResponse(query=params, curves=_curves(curves), source=source, data_version=version), request

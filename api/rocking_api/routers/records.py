@@ -15,14 +15,15 @@ from rocking._dimensional.problem import Problem, record_groups
 from rocking._dimensional.response import changes_of, respond
 from rocking._dimensional.thresholds import block_thresholds, scale_window, thresholds_of
 from rocking._excitation.records.readers.read_record import parse_record
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import Record, summary_of
 from rocking._excitation.records.vertical import reject_flight
 from rocking._history.time_history import time_history
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 from rocking.suites.body_arrays import as_block
-from rocking.suites.pulse_fit import PulseFit, fit_pulse
+from rocking.suites.pulse_fit import fit_pulse
+from rocking.suites.pulse_fit import summary_of as fitted_summary
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
@@ -135,7 +136,10 @@ def _response(
     if not problem.is_block:
         return m.RecordBodyResponse(**said)
     return m.RecordResponse(
-        **said, pulse=_fitted(fit_pulse(record, blocks=problem.block, stop=stop)) if params.fit else None
+        **said,
+        pulse=m.FittedPulse(**fitted_summary(fit_pulse(record, blocks=problem.block, stop=stop)))
+        if params.fit
+        else None,
     )
 
 
@@ -210,30 +214,11 @@ def _pulse(params: m.RecordPulseParams, record: Record, stop: StopFlag) -> m.Rec
     return m.RecordPulseResponse(
         query=params,
         record=_description(record),
-        pulse=_fitted(fit),
+        pulse=m.FittedPulse(**fitted_summary(fit)),
         time=time.tolist(),
         **{name: (params.scale * values).tolist() for name, values in drawn.items()},
     )
 
 
 def _description(record: Record) -> m.RecordDescription:
-    known = m.RecordDescription.model_fields.keys() - {"remarks", "mean_period", "peak_vertical_acceleration"}
-    return m.RecordDescription(
-        **{name: getattr(record, name) for name in known},
-        remarks=list(record.remarks),
-        mean_period=finite(record.mean_period),
-        peak_vertical_acceleration=None if record.vertical is None else record.peak_vertical_acceleration,
-    )
-
-
-def _fitted(fit: PulseFit) -> m.FittedPulse:
-    return m.FittedPulse(
-        pulse=fit.velocity.family,
-        period=fit.period,
-        peak_acceleration=fit.peak_acceleration,
-        centre=fit.velocity.centre,
-        cycles=finite(fit.velocity.cycles),
-        phase=finite(fit.velocity.phase),
-        explained=fit.explained,
-        scale_ratio=finite(float(fit.scale_ratio[0])),
-    )
+    return m.RecordDescription(**summary_of(record), remarks=list(record.remarks), digest=record.digest)

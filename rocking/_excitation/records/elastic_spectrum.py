@@ -52,7 +52,7 @@ def elastic_spectrum(
     component : {"horizontal", "vertical"}
         Which component of the record.
     stop : StopFlag, optional
-        Cancels the work.
+        Cancels the work, which then raises `StoppedError`.
 
     Returns
     -------
@@ -64,8 +64,6 @@ def elastic_spectrum(
     ------
     InvalidArgumentError
         If an argument is not as described, or the record has no vertical component.
-    StoppedError
-        If `stop` was set.
 
     References
     ----------

@@ -73,8 +73,6 @@ def floor_motion(
     ------
     InvalidArgumentError
         If an argument is not as described, or the result would have more than 2 million samples or a step below 1 us.
-    StoppedError
-        If `stop` was set.
 
     References
     ----------

@@ -9,14 +9,14 @@ import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import final
+from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, in_range, number, one_of
+from rocking._base.errors import InvalidArgumentError, finite, in_range, number, one_of
 from rocking._base.units import UNITS as QUANTITIES
 from rocking._base.units import Scalar
 from rocking._excitation.records import measures
@@ -104,9 +104,7 @@ class Record:
             components["vertical"] = upwards * factor
         for component in components.values():
             component.flags.writeable = False
-        given = {"vertical": None, **components, "time_step": step, **about}
-        for key, value in given.items():
-            vars(self)[key] = value
+        vars(self).update({"vertical": None, **components, "time_step": step, **about})
 
     def __repr__(self) -> str:
         """Name, length, step and peak accelerations."""
@@ -264,6 +262,19 @@ class Record:
         vertical = None if self.vertical is None else process(self.vertical)
         about = self.name, source, self.remarks
         return Record(process(self.acceleration), time_step, "m/s2", *about, vertical=vertical)
+
+
+SUMMARY = (
+    *("name", "source", "samples", "time_step", "peak_acceleration", "peak_vertical_acceleration", "peak_velocity"),
+    *("peak_displacement", "arias_intensity", "significant_duration", "mean_period", "final_velocity"),
+)
+"""Attributes of a record that the command line and the service show, in order."""
+
+
+def summary_of(record: Record) -> dict[str, Any]:
+    """The values of `SUMMARY` by name; None for a measure that the record does not have."""
+    found = {name: getattr(record, name) for name in SUMMARY} | {"mean_period": finite(record.mean_period)}
+    return found | ({"peak_vertical_acceleration": None} if record.vertical is None else {})
 
 
 def offset_doubts(records: Sequence[Record], most: int = 5) -> list[str]:

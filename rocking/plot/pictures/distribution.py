@@ -18,10 +18,8 @@ def distribution(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes
     ----------
     data : xarray.Dataset
         Result of `rocking.suites.distribution` of one body; of several, `data.isel(block=0, intensity=0)`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-    **style
-        Properties of the line, such as `color` and `label`.
+    ax, **style
+        As of `rocking.plot`.
 
     Raises
     ------

@@ -19,10 +19,8 @@ def free_rocking(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes
     ----------
     data : xarray.Dataset
         Result of `rocking.identify_free_rocking`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-    **style
-        Properties of the fitted line.
+    ax, **style
+        As of `rocking.plot`; the fitted line.
 
     Raises
     ------

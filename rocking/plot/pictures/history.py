@@ -22,10 +22,8 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     data : xarray.Dataset
         Result of `rocking.time_history`, `rocking.time_history`, or of `history` of a block or body. Rotation in
         radians is drawn in degrees.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-    **style
-        Properties of the line.
+    ax, **style
+        As of `rocking.plot`.
 
     Raises
     ------
@@ -64,10 +62,8 @@ def ground_acceleration(data: xr.Dataset, ax: Axes | None = None, **style: Any) 
     ----------
     data : xarray.Dataset
         As for `history`.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-    **style
-        Properties of the line.
+    ax, **style
+        As of `rocking.plot`.
 
     Raises
     ------

@@ -33,10 +33,8 @@ def response(found: BodyResponse | Response, ax: Axes | None = None, **style: An
     found : BodyResponse or Response
         Result of `rocking.Block.response` under a pulse, drawn in SI units and degrees, or of `rocking.peak_response`
         for one block.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-    **style
-        Properties of the line.
+    ax, **style
+        As of `rocking.plot`.
 
     Raises
     ------

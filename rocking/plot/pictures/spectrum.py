@@ -24,10 +24,8 @@ def spectrum(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     data : xarray.Dataset
         Of one dimension: result of `rocking.Block.spectrum`, `rocking.Response.to_xarray()`, or one line of a spectrum
         cube. Rotation in radians is drawn in degrees, otherwise max |theta|/alpha.
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; by default in a new figure.
-    **style
-        Properties of the line, such as `label`.
+    ax, **style
+        As of `rocking.plot`.
 
     Raises
     ------
