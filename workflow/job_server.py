@@ -1,7 +1,7 @@
 """Starts the jobs of a local run as forks of one process, the server, which has imported their libraries and kernels.
 
-A job in a process of its own imports and loads kernels for 2.4 s of processor time; a fork needs none of that. Snakemake starts a
-script by the path in `sys.executable`. `start` sets it to the path of a file that stands for Python
+A job in a process of its own imports and loads kernels for 2.4 s of processor time; a fork needs none of that.
+Snakemake starts a script by the path in `sys.executable`. `start` sets it to the path of a file that stands for Python
 (`job_client.py`): it sends the script and its standard files to the server, waits for the fork, and ends with its
 status. Where there is no server, and for any other use of Python, the file runs Python itself.
 
