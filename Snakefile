@@ -45,3 +45,5 @@ onstart:
         acquire(Path.cwd())
     except RunningError as error:
         raise WorkflowError(str(error)) from None
+    if not workflow.executor_plugin.common_settings.non_local_exec:
+        job_server.start()

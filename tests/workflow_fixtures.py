@@ -11,13 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests import forked_jobs
-
 PROJECT = Path(__file__).parents[1]
 SMOKE = PROJECT / "workflow/config/smoke.yaml"
-
-START = "import runpy, sys; sys.executable = sys.argv.pop(1); runpy.run_module(sys.argv.pop(1), None, '__main__', True)"
-"""Run a module whose jobs are started by other words than the path of Python."""
 
 
 def snakemake(
@@ -27,14 +22,9 @@ def snakemake(
     project: Path = PROJECT,
     module: str = "snakemake",
 ) -> subprocess.CompletedProcess[str]:
-    """Run the workflow of `project` in `directory` as a user would; stderr is included in stdout.
-
-    The jobs of a run are forks of one process (`forked_jobs.py`).
-    """
-    is_run = module == "workflow.run" and "--dry-run" not in arguments and hasattr(os, "fork")
-    start = ("-c", START, forked_jobs.command()) if is_run else ("-m",)
+    """Run the workflow of `project` in `directory` as a user would; stderr is included in stdout."""
     command: Sequence[str | Path] = (
-        sys.executable, *start, module, "--snakefile", project / "Snakefile", "--directory", directory,
+        sys.executable, "-m", module, "--snakefile", project / "Snakefile", "--directory", directory,
         "--configfile", configuration, "--nocolor", *arguments,
     )  # fmt: skip
     return subprocess.run(

@@ -96,8 +96,10 @@ def test_products_were_tested(smoke_results: Path) -> None:
     assert all(line.startswith(("passed ", "code ")) for line in lines)
 
 
-def test_second_run_does_nothing(smoke_run: Path) -> None:
-    again = reproduce(smoke_run)
+def test_second_run_does_nothing_also_if_files_are_newer(copy_of_run: Path) -> None:
+    for path in (copy_of_run / "results").rglob("*"):
+        path.touch()
+    again = reproduce(copy_of_run)
     assert again.returncode == 0
     assert "Nothing to be done" in again.stdout
 
@@ -112,24 +114,16 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
     unchanged = snakemake(copy_of_run, "--dry-run", project=project)
     assert "Nothing to be done" in unchanged.stdout  # the project has moved
 
-    for modules, rules in {
-        # of two modules, on which different rules depend
-        ("rocking/paper/orientation.py", "workflow/figures/figure_07.py"): {"table_1", "claims", "figure_07"},
-        ("workflow/scripts/spectra.py",): {"spectra", "check_data_sets", "figure_scale_law", "claims"},
-    }.items():
-        before = {project / module: (project / module).read_text() for module in modules}
-        for path, text in before.items():
-            path.write_text(text + "\n# a change\n")
-        changed = snakemake(copy_of_run, "--dry-run", project=project)
-        assert rules_to_run(changed.stdout) == rules | {"manifest", "check_results", "all"}, changed.stdout
-        for path, text in before.items():
-            path.write_text(text)
-
-
-def test_newer_files_with_the_same_bytes_repeat_nothing(copy_of_run: Path) -> None:
-    for path in (copy_of_run / "results").rglob("*"):
-        path.touch()
-    assert "Nothing to be done" in snakemake(copy_of_run, "--dry-run").stdout
+    modules = {
+        "rocking/paper/orientation.py": {"table_1", "claims"},
+        "workflow/figures/figure_07.py": {"figure_07"},
+        "workflow/scripts/spectra.py": {"spectra", "check_data_sets", "figure_scale_law", "claims"},
+    }
+    for module in modules:
+        with (project / module).open("a") as source:
+            source.write("\n# a change\n")
+    changed = snakemake(copy_of_run, "--dry-run", project=project)
+    assert rules_to_run(changed.stdout) == set.union(*modules.values()) | {"manifest", "check_results", "all"}
 
 
 def test_another_restitution_repeats_what_depends_on_it_alone(tmp_path: Path) -> None:
@@ -175,7 +169,7 @@ def test_environment_of_the_jobs_has_the_versions_of_the_project() -> None:
         assert name == "python" or f'"{name}{version}"'.lower() in text.lower(), package
 
 
-@pytest.mark.parametrize("name", but_long(["paper", "atlas", "atlas-small"], "atlas-small"))
+@pytest.mark.parametrize("name", but_long(["atlas", "atlas-small"], "atlas-small"))
 def test_other_configurations_are_valid(name: str, tmp_path: Path) -> None:
     planned = snakemake(tmp_path, "--dry-run", "--quiet", configuration=PROJECT / f"workflow/config/{name}.yaml")
     assert planned.returncode == 0, planned.stdout

@@ -20,8 +20,6 @@ rule claims:
         record=record_of("claims", CLAIMS_PROVENANCE),
     log:
         "logs/claims.log",
-    benchmark:
-        "logs/benchmarks/claims.tsv"
     priority: 1
     conda:
         "../envs/rocking.yaml"

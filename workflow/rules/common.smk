@@ -15,7 +15,7 @@ from rocking._datasets.provenance import settings_digest, settings_text
 from rocking._base.source_tree import SourceTree
 from rocking._interpolation.slices import windows_of
 from rocking.suites.configuration import DEFAULTS, suite_configuration
-from workflow import records
+from workflow import job_server, records
 from workflow.configuration import (
     BYTES,
     ConfigurationError,

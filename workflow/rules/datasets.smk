@@ -50,8 +50,6 @@ rule samples:
         samples=f"{records.PARTS}/pulses/{{pulse}}.{{samples}}.json",
     log:
         "logs/pulses/{pulse}.{samples}.log",
-    benchmark:
-        "logs/benchmarks/pulses-{pulse}-{samples}.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"
@@ -75,8 +73,6 @@ rule overturning:
         record=record_of("overturning/{pulse}-{eta}", OVERTURNING_PROVENANCE),
     log:
         "logs/overturning/{pulse}-{eta}.log",
-    benchmark:
-        "logs/benchmarks/overturning-{pulse}-{eta}.tsv"
     priority: 3
     conda:
         "../envs/rocking.yaml"
@@ -103,8 +99,6 @@ rule spectrum_part:
         record=record_of("parts/{pulse}-{eta}", PART_CODE),
     log:
         "logs/parts/{pulse}-{eta}.log",
-    benchmark:
-        "logs/benchmarks/parts-{pulse}-{eta}.tsv"
     priority: 2
     conda:
         "../envs/rocking.yaml"
@@ -130,8 +124,6 @@ rule spectra:
         record=record_of("spectra/{pulse}-{eta}", CUBE_CODE),
     log:
         "logs/spectra/{pulse}-{eta}.log",
-    benchmark:
-        "logs/benchmarks/spectra-{pulse}-{eta}.tsv"
     priority: 3
     conda:
         "../envs/rocking.yaml"

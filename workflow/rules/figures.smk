@@ -52,8 +52,6 @@ for _figure, _files in FIGURES.items():
             record=RECORDS[-1],
         log:
             f"logs/figures/{_figure}.log",
-        benchmark:
-            f"logs/benchmarks/{_figure}.tsv"
         priority: int(_figure in READ_BY_CLAIMS)
         localrule: True
         conda:

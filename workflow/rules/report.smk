@@ -14,8 +14,6 @@ rule manifest:
         record=record_of("manifest", {"code": MANIFEST_CODE, "sources": PRODUCTS, "title": config["title"]}),
     log:
         "logs/manifest.log",
-    benchmark:
-        "logs/benchmarks/manifest.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"
@@ -44,8 +42,6 @@ rule check_data_sets:
         ),
     log:
         "logs/checks/{pulse}.log",
-    benchmark:
-        "logs/benchmarks/checks-{pulse}.tsv"
     conda:
         "../envs/rocking.yaml"
     resources:
@@ -68,8 +64,6 @@ rule check_results:
         record=record_of("check_results", {"code": CHECKS_CODE}),
     log:
         "logs/check_results.log",
-    benchmark:
-        "logs/benchmarks/check_results.tsv"
     conda:
         "../envs/rocking.yaml"
     resources:

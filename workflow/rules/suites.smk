@@ -47,8 +47,6 @@ rule suite_record:
         record=record_of(f"{SUITE_JOBS}/records/{{file}}", RECORD_PROVENANCE),
     log:
         f"logs/suites/{SUITE['name']}/{{file}}.log",
-    benchmark:
-        f"logs/benchmarks/suite-{SUITE['name']}-{{file}}.tsv"
     conda:
         "../envs/rocking.yaml"
     resources:
@@ -75,8 +73,6 @@ rule suite_fragility:
         record=record_of(f"{SUITE_JOBS}/fragility", FRAGILITY_PROVENANCE),
     log:
         f"logs/suites/{SUITE['name']}/fragility.log",
-    benchmark:
-        f"logs/benchmarks/suite-{SUITE['name']}-fragility.tsv"
     conda:
         "../envs/rocking.yaml"
     resources:
@@ -110,8 +106,6 @@ for _figure, _source in SUITE_FIGURES.items():
             record=SUITE_FIGURE_RECORDS[-1],
         log:
             f"logs/suites/{SUITE['name']}/{_figure}.log",
-        benchmark:
-            f"logs/benchmarks/suite-{SUITE['name']}-{_figure}.tsv"
         localrule: True
         conda:
             "../envs/rocking.yaml"
@@ -145,8 +139,6 @@ rule suite_manifest:
         ),
     log:
         f"logs/suites/{SUITE['name']}/manifest.log",
-    benchmark:
-        f"logs/benchmarks/suite-{SUITE['name']}-manifest.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"
