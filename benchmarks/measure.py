@@ -53,6 +53,16 @@ def in_rounds(tasks: Mapping[Name, Task], rounds: int, title: str) -> dict[Name,
     return times
 
 
+def seconds(call: Callable[[], Any], rounds: int, clock: Callable[[], float] = time.process_time) -> list[float]:
+    """Return the times of some calls [s]."""
+    times = []
+    for _ in range(rounds):
+        start = clock()
+        call()
+        times.append(clock() - start)
+    return times
+
+
 def progress(text: str) -> None:
     """Print a progress message to stderr."""
     print(text, file=sys.stderr, flush=True)

@@ -152,18 +152,16 @@ def summary(kind: dict[str, Any], chunks: Sequence[dict[str, Any]]) -> dict[str,
 
 def markdown(rows: Sequence[dict[str, Any]]) -> str:
     """The comparison as a table."""
-    names = ("cells", "number", "equal peaks", "largest difference", "over conditioning")
-    names += ("outcomes", "impacts", "unexplained", "us here", "us there")
-    lines = [f"| {' | '.join(names)} |", "| --- " * len(names) + "|"]
+    names = "cells | number | equal peaks | largest difference | over conditioning"
+    names += " | outcomes | impacts | unexplained | us here | us there"
+    lines = [f"| {names} |", "| --- " * len(names.split("|")) + "|"]
     for row in rows:
-        cells = row["cells"]
-        values = (
-            *(row["kind"], f"{cells}", f"{100.0 * row['equal_peaks'] / cells:.1f} %", f"{row['largest_change']:.1e}"),
-            *(f"{row['largest_over_conditioning']:.2g}", f"{row['outcomes']}", f"{row['impacts']}"),
-            f"{len(unexplained(row))}",
-            *(f"{1e6 * row[name] / cells:.3g}" for name in ("seconds", "seconds_there")),
+        equal, *times = (row[name] / row["cells"] for name in ("equal_peaks", "seconds", "seconds_there"))
+        lines.append(
+            f"| {row['kind']} | {row['cells']} | {100.0 * equal:.1f} % | {row['largest_change']:.1e}"
+            f" | {row['largest_over_conditioning']:.2g} | {row['outcomes']} | {row['impacts']}"
+            f" | {len(unexplained(row))} | {1e6 * times[0]:.3g} | {1e6 * times[1]:.3g} |"
         )
-        lines.append(f"| {' | '.join(values)} |")
     return "\n".join(lines)
 
 

@@ -9,6 +9,7 @@ Runge-Kutta steps, without the elliptic functions of the fit. With `--edges 2` a
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from benchmarks.measure import arguments
@@ -93,11 +94,10 @@ def main() -> None:
     given = arguments(__doc__, traces=200, seed=1, edges=1)
     found, within = errors(given.traces, given.seed, given.edges)
     print(f"{len(found)} edges" if given.edges == 2 else f"{len(found)} traces")
-    print(f"{'':22}{'median':>10}{'95 %':>10}{'largest':>10}{'within':>10}")
-    for n, name in enumerate(NAMES):
-        size = np.abs(found[:, n])
-        row = np.median(size), np.percentile(size, 95), size.max()
-        print(f"{name:22}" + "".join(f"{value:10.5f}" for value in row) + f"{within[:, n].mean():10.1%}")
+    size = np.abs(found)
+    rows = {"median": np.median(size, 0), "95 %": np.percentile(size, 95, 0), "largest": size.max(0)}
+    table = pd.DataFrame({**rows, "within": within.mean(axis=0)}, NAMES)
+    print(table.to_string(float_format="{:.5f}".format, formatters={"within": "{:.1%}".format}))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import rocking
+from benchmarks.baselines.scipy_ivp import event
 from rocking import Outcome
 
 FOLDER = Path("reference/problems")
@@ -177,14 +178,8 @@ class _ByScipy:
             sine, cosine = (math.sin(angle), math.cos(angle)) if self.rigid else (angle, 1.0)
             return y[1], -(edge["p"] ** 2) * ((1.0 + w / self.g) * sine + side * (a / self.g) * cosine)
 
-        def impact(_t: float, y: Any) -> float:
-            return float(y[0])
-
-        def top(_t: float, y: Any) -> float:
-            return float(y[1])
-
-        impact.terminal, impact.direction, top.direction = True, -1.0, -1.0  # type: ignore[attr-defined]
-        found: Any = solve_ivp(slope, (t, right), self.state, "DOP853", rtol=RTOL, atol=1e-14, events=(impact, top))
+        events = event(lambda _t, y: y[0], terminal=True), event(lambda _t, y: y[1], terminal=False)
+        found: Any = solve_ivp(slope, (t, right), self.state, "DOP853", rtol=RTOL, atol=1e-14, events=events)
         peaks = [*found.y[0].tolist(), *(float(one[0]) for one in found.y_events[1])]
         self.peak = max(self.peak, max(peaks) / edge["alpha"])
         t, self.state = float(found.t[-1]), (float(found.y[0, -1]), float(found.y[1, -1]))

@@ -20,9 +20,9 @@ def integrate_flight(
 ) -> tuple[float, float, float, float, bool]:
     """Integrate one flight, see `event_loop`."""
     method, rtol = setting
-    impact = _event(lambda _t, y: y[0], terminal=True)
-    top = _event(lambda _t, y: y[1], terminal=False)
-    no_return = _event(lambda _t, y: beyond_return(block, y[0], y[1]), terminal=True, direction=1.0)
+    impact = event(lambda _t, y: y[0], terminal=True)
+    top = event(lambda _t, y: y[1], terminal=False)
+    no_return = event(lambda _t, y: beyond_return(block, y[0], y[1]), terminal=True, direction=1.0)
     end = duration(block)
     solution: Any = solve_ivp(
         _motion(block, side),
@@ -64,6 +64,7 @@ def _ricker(phase: float) -> float:
     return (1.0 - 0.5 * square) * math.exp(-0.25 * square)
 
 
-def _event(function: Callable[[float, Any], float], *, terminal: bool, direction: float = -1.0) -> Any:
+def event(function: Callable[[float, Any], float], *, terminal: bool, direction: float = -1.0) -> Any:
+    """Return a function as `solve_ivp` takes an event."""
     function.terminal, function.direction = terminal, direction  # type: ignore[attr-defined]  # read by scipy
     return function

@@ -41,6 +41,7 @@ def measured(programs: Path, packages: Path, folder: Path) -> dict[str, Any]:
     """Times of new processes [s] with kernels compiled and cached, and bytes; the programs are in a folder."""
     hidden = ("PYTHONPATH", "NUMBA_CACHE_DIR")
     environment = {name: value for name, value in os.environ.items() if name not in hidden}
+    cache = packages / "rocking" / "__pycache__"
     python, rocking = str(programs / "python"), str(programs / "rocking")
 
     def run(*command: str) -> str:
@@ -54,24 +55,13 @@ def measured(programs: Path, packages: Path, folder: Path) -> dict[str, Any]:
         if state == "cached":
             run(python, "-m", "rocking.precompile")
         times, found["memory_bytes"] = json.loads(run(python, "-c", FIRST_CALL))
-        if state == "compiled":
-            remove_kernels(packages)
+        for kernels in cache.glob("kernels-*") if state == "compiled" else ():
+            shutil.rmtree(kernels)  # the command compiles, too
         began = time.perf_counter()
         run(rocking, *README_COMMAND)
         times["command"] = time.perf_counter() - began
         found["seconds"][state] = times
-    return found | {"kernels_bytes": sum(size(path) for path in kernels_of(packages))}
-
-
-def kernels_of(packages: Path) -> list[Path]:
-    """The folders of the compiled kernels."""
-    return [*(packages / "rocking" / "__pycache__").glob("kernels-*")]
-
-
-def remove_kernels(packages: Path) -> None:
-    """Let the next process compile."""
-    for path in kernels_of(packages):
-        shutil.rmtree(path)
+    return found | {"kernels_bytes": sum(size(path) for path in cache.glob("kernels-*"))}
 
 
 def size(folder: Path) -> int:

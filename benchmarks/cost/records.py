@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +18,9 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from benchmarks.baselines.scipy_ivp import event
 from benchmarks.cost.made_up_records import made_up_record, made_up_suite
-from benchmarks.measure import arguments, finish, progress, versions
+from benchmarks.measure import arguments, finish, progress, seconds, versions
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import NEVER_STOPPED
@@ -70,16 +70,6 @@ def stepped(motion: Record, kind: str, scales: int) -> int:
     return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, EDGE_COLUMNS))))
 
 
-def shortest(call: Callable[[], Any], rounds: int) -> float:
-    """Return the least processor time of a call [s]."""
-    found = []
-    for _ in range(rounds):
-        start = time.process_time()
-        call()
-        found.append(time.process_time() - start)
-    return min(found)
-
-
 def dop853_peak(motion: Record, p: float, slenderness: float, eta: float, alpha: float) -> float:
     """Return the peak of one run by DOP853 restarted at every sample; nan where |theta| passes 4 alpha or pi/2.
 
@@ -109,7 +99,7 @@ def dop853_peak(motion: Record, p: float, slenderness: float, eta: float, alpha:
                 fall = slope * (1.0 - y[0])
                 return [y[1], -math.sin(fall) / slope - force * scale * math.cos(fall)]
 
-            impact = _falling_zero()
+            impact = event(lambda _t, y: y[0], terminal=True)
             found = solve_ivp(motion_rate, (t, h), [z, w], "DOP853", None, False, [impact],
                               rtol=DOP853_TOLERANCE, atol=1e-12)  # fmt: skip
             peak = max(peak, float(found.y[0].max()))
@@ -120,14 +110,6 @@ def dop853_peak(motion: Record, p: float, slenderness: float, eta: float, alpha:
                 sign, z, w = -sign, 1e-14, -eta * w
                 resting = w < 1e-5 and abs(left + rate * t) < 1.0
     return peak
-
-
-def _falling_zero() -> Callable[..., float]:
-    def event(_: float, y: NDArray[np.float64]) -> float:
-        return float(y[0])
-
-    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]  # as solve_ivp reads them
-    return event
 
 
 def _unit_crossing(left: float, rate: float, start: float, h: float) -> float | None:
@@ -147,19 +129,19 @@ def measure(records: int, scales: int, rounds: int, reference_runs: int) -> dict
     total = sum(motion.samples - 1 for motion in suite) * scales * len(HALF_DIAGONAL)
     for kind in ALPHA:
         peaks = np.array([respond(motion, kind, scales) for motion in suite])  # loads the kernels
-        seconds = shortest(lambda kind=kind: [respond(motion, kind, scales) for motion in suite], rounds)
-        progress(f"{kind}: {runs / seconds:.0f} runs/s")
+        least = min(seconds(lambda kind=kind: [respond(motion, kind, scales) for motion in suite], rounds))
+        progress(f"{kind}: {runs / least:.0f} runs/s")
         found[kind] = {
             "runs": runs,
-            "runs a second, one core": runs / seconds,
+            "runs a second, one core": runs / least,
             "overturned": float(np.isnan(peaks).mean()),
             "no uplift": float((peaks == 0.0).mean()),
             "share of samples stepped": sum(stepped(motion, kind, scales) for motion in suite) / total,
         }
         for size in (2_000, 6_000, 18_000):
             motion = made_up_record(1, size, 20.0 / size)
-            seconds = shortest(lambda motion=motion, kind=kind: respond(motion, kind, scales), rounds)
-            found[kind][f"us a run, {size} samples"] = 1e6 * seconds / (4 * scales)
+            least = min(seconds(lambda motion=motion, kind=kind: respond(motion, kind, scales), rounds))
+            found[kind][f"us a run, {size} samples"] = 1e6 * least / (4 * scales)
         found[kind] |= compare(suite, kind, reference_runs)
     return found
 
@@ -179,7 +161,7 @@ def compare(suite: list[Record], kind: str, count: int) -> dict[str, float]:
         errors.append(abs(dop853_peak(motion, *groups.values()) / exact - 1.0))
         theirs.append(time.process_time() - start)
         groups["slenderness"] = np.full(200, s)
-        ours = shortest(lambda groups=groups, motion=motion: record_response(motion, **groups, threads=1), 3) / 200
+        ours = min(seconds(lambda groups=groups, motion=motion: record_response(motion, **groups, threads=1), 3)) / 200
         ratios.append(theirs[-1] / ours)
         progress(f"{kind}: DOP853 run {len(theirs)} of {count}")
     return {

@@ -1,9 +1,9 @@
 """Load on the service: `python -m benchmarks.cost.service [--results FOLDER] [--workers 2]`.
 
-Measured are the start, requests for one block, one after the other on one connection, batches of a thousand to a
-million blocks in binary and to ten thousand in JSON, and the memory of all processes, pages that several share counted
-once (PSS). One worker is bound to the first core, the client to the last; several workers share all cores with it. The
-blocks are random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85.
+Measured are the start, requests for one block, one after the other on one connection, binary batches of a thousand to a
+million blocks, and the memory of all processes, pages that several share counted once (PSS). One worker is bound to the
+first core, the client to the last; several workers share all cores with it. The blocks are random: 1/a 0.05 to 0.95,
+omega 0.5 to 12, restitution 0.85.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from benchmarks.measure import arguments, finish, progress, spread, versions
+from benchmarks.measure import arguments, finish, progress, seconds, spread, versions
 
 SERVER = "import os; os.sched_setaffinity(0, %s); from rocking._cli.app import app; app()"
 POINT = "/v1/response?pulse={}&restitution=0.85&alpha_deg={:g}&slenderness=%.9f&frequency_ratio=%.9f"
@@ -92,40 +92,29 @@ def service(results: Path, workers: int, point: str) -> Iterator[tuple[Service, 
                 process.wait(60)
 
 
-def load(one: Service, path: str, seconds: float) -> dict[str, float]:
+def load(one: Service, path: str, duration: float) -> dict[str, float]:
     """Ask for single blocks for some seconds; each has other groups, so that no response comes from a cache."""
     blocks = zip(*random_blocks(100_000).values(), strict=True)
-    times, before, end = [], one.processor_seconds(), time.perf_counter() + seconds
+    times, before, end = [], one.processor_seconds(), time.perf_counter() + duration
     while (began := time.perf_counter()) < end:
         one.ask(path % next(blocks))
         times.append(1e3 * (time.perf_counter() - began))
     return {
         "questions": len(times),
-        "per_second": len(times) / seconds,
+        "per_second": len(times) / duration,
         "median_ms": float(np.median(times)),
         "p99_ms": float(np.quantile(times, 0.99)),
         "processor_ms": 1e3 * (one.processor_seconds() - before) / len(times),
     }
 
 
-def batches(one: Service, groups: dict[str, Any], sizes: dict[str, list[int]], rounds: int) -> list[dict[str, Any]]:
-    """Time of batches of several sizes [points], from the first byte sent to the last received [s]."""
-    query = "?" + "&".join(f"{name}={value}" for name, value in groups.items())
-    asked = {}
-    for form, points in [(one, points) for one in sizes for points in sizes[one]]:
-        blocks = random_blocks(points)
-        if form == "netcdf":
-            data = xr.Dataset({name: ("point", values) for name, values in blocks.items()})
-            asked[form, points] = query, bytes(data.to_netcdf(engine="scipy")), "application/x-netcdf"
-        else:
-            asked[form, points] = "", as_json(groups, blocks), "application/json"
-    times: dict[tuple[str, int], list[float]] = {key: [] for key in asked}
-    for _ in range(rounds):
-        for key, (options, body, media_type) in asked.items():
-            began = time.perf_counter()
-            one.ask("/v1/response" + options, body, media_type)
-            times[key].append(time.perf_counter() - began)
-    return [{"form": form, "points": points, "seconds": spread(times[form, points])} for form, points in asked]
+def batch(one: Service, groups: dict[str, Any], points: int, rounds: int) -> dict[str, float]:
+    """Time of a binary batch, from the first byte sent to the last received [s]."""
+    path = "/v1/response?" + "&".join(f"{name}={value}" for name, value in groups.items())
+    data = xr.Dataset({name: ("point", values) for name, values in random_blocks(points).items()})
+    body = bytes(data.to_netcdf(engine="scipy"))
+    times = seconds(lambda: one.ask(path, body, "application/x-netcdf"), rounds, time.perf_counter)
+    return {"points": points, **spread(times)}
 
 
 def random_blocks(points: int) -> dict[str, np.ndarray[Any, Any]]:
@@ -135,16 +124,11 @@ def random_blocks(points: int) -> dict[str, np.ndarray[Any, Any]]:
     return {"slenderness": random.uniform(0.05, 0.95, points), "frequency_ratio": omega}
 
 
-def as_json(groups: dict[str, Any], blocks: dict[str, np.ndarray[Any, Any]]) -> bytes:
-    """Return the body of a batch."""
-    return json.dumps(groups | {name: values.tolist() for name, values in blocks.items()}).encode()
-
-
 def main(command_line: list[str] | None = None) -> None:
     """Measure, print, write the record; `--seconds` of each load, `--rounds` of the batches."""
     asked = arguments(
         __doc__, command_line, results=Path("results"), pulse="sine", alpha_deg=0.0, workers=1, seconds=5.0,
-        points=[1_000, 10_000, 100_000, 1_000_000], json_points=[1_000, 10_000], rounds=3,
+        points=[1_000, 10_000, 100_000, 1_000_000], rounds=3,
         out=Path("results/benchmarks/service.json"),
     )  # fmt: skip
     groups = {"pulse": asked.pulse, "restitution": 0.85, "alpha_deg": asked.alpha_deg}
@@ -157,9 +141,9 @@ def main(command_line: list[str] | None = None) -> None:
         record["points"] = load(one, point, asked.seconds)
         record["memory"]["after points"] = one.memory()
         progress("batches")
-        sizes = {"netcdf": asked.points, "json": asked.json_points}
-        record["batches"] = batches(one, groups, sizes, asked.rounds)
-        answer = json.loads(one.ask("/v1/response", as_json(groups, random_blocks(max(asked.json_points)))))
+        record["batches"] = [batch(one, groups, points, asked.rounds) for points in asked.points]
+        blocks = {name: values.tolist() for name, values in random_blocks(10_000).items()}
+        answer = json.loads(one.ask("/v1/response", json.dumps(groups | blocks).encode()))
         record["share_by_data_sets"] = answer["source"].count("cube") / len(answer["source"])
         record["memory"]["after batches"] = one.memory()
     finish(record, asked.out, table)
@@ -170,7 +154,7 @@ def table(record: dict[str, Any]) -> str:
     parts = {
         "start": pd.DataFrame([record["start"]]),
         "requests for one block": pd.DataFrame([record["points"]]),
-        "batches": pd.json_normalize(record["batches"]),
+        "batches": pd.DataFrame(record["batches"]),
         "memory": pd.DataFrame(record["memory"]).T,
     }
     shown = [f"{title}\n{part.to_string(float_format='{:.4g}'.format)}" for title, part in parts.items()]

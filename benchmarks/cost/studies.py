@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from distributed import Client, LocalCluster
 
 import rocking
 from benchmarks.cost.made_up_records import made_up_suite
-from benchmarks.measure import arguments
+from benchmarks.measure import arguments, seconds
 from rocking._base.constants import STANDARD_GRAVITY
 
 ANGLES = {"slender": None, "rigid": 0.25}
@@ -53,25 +52,9 @@ def overturned_share(alpha: float | None, count: int = 10_000_000) -> float:
     return float(found.overturned.mean().compute())
 
 
-@contextmanager
-def cluster(workers: int) -> Iterator[None]:
-    """Processes of one thread each, as the default of dask inside."""
-    with (
-        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as processes,  # type: ignore[no-untyped-call]
-        Client(processes),  # type: ignore[no-untyped-call]
-    ):
-        yield
-
-
-def seconds(call: Callable[[], Any], rounds: int) -> float:
+def median(call: Callable[[], Any], rounds: int) -> float:
     """Return the median time of a call after a first one, which loads the kernels [s]."""
-    call()
-    times = []
-    for _ in range(rounds):
-        start = time.perf_counter()
-        call()
-        times.append(time.perf_counter() - start)
-    return statistics.median(times)
+    return statistics.median(seconds(call, rounds + 1, time.perf_counter)[1:])
 
 
 def main() -> None:
@@ -81,13 +64,16 @@ def main() -> None:
     for kind, alpha in ANGLES.items():
         studies = {"1,000,000 blocks, sine": pulse_study(alpha), "100 records x 1,000 blocks": record_study(alpha)}
         for name, study in studies.items():
-            times = [seconds(lambda threads=threads, study=study: study(threads), rounds) for threads in (1, 2)]
+            times = [median(lambda threads=threads, study=study: study(threads), rounds) for threads in (1, 2)]
             print(f"{name + ', ' + kind:44}{times[0]:>12.3f}{times[1]:>12.3f}", flush=True)
     for kind, alpha in ANGLES.items():
         times = []
         for workers in (1, 2):
-            with cluster(workers):
-                times.append(seconds(lambda alpha=alpha: overturned_share(alpha), rounds))
+            with (
+                LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as processes,  # type: ignore[no-untyped-call]
+                Client(processes),  # type: ignore[no-untyped-call]  # the default of dask inside
+            ):
+                times.append(median(lambda alpha=alpha: overturned_share(alpha), rounds))
         print(f"{'10,000,000 labelled blocks, dask, ' + kind:44}{times[0]:>12.3f}{times[1]:>12.3f}", flush=True)
 
 
