@@ -83,9 +83,15 @@ class HeaderLine:
     """A line that may be the header."""
 
     number: int  # from 0
-    cells: list[str]  # as they stand
-    labels: list[str]  # completed by the line above, with their number where one is empty or not the first
-    texts: list[str]  # completed by the line above, under the names that were given to them
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
+    cells: list[str]
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
+    labels: list[str]
+    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
+    # under the names that were given to them
+    texts: list[str]
     columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units
     grouped: set[int]  # quantitys in a group of lengths that are not read
     complete: bool  # whether it has all columns that a header needs
