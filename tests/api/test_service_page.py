@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from rocking_api.settings import Settings
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "service.md").read_text(encoding="utf-8")
