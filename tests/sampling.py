@@ -15,7 +15,8 @@ import pytest
 Case = TypeVar("Case")
 
 ALL = os.environ.get("FUZZ_ALL") == "1"
-SEED = int(os.environ.get("FUZZ_SEED") or random.SystemRandom().randrange(1_000_000))
+# the processes of one run have one seed, since all of them must collect the same tests
+SEED = int(os.environ.get("FUZZ_SEED") or random.Random(os.environ.get("PYTEST_XDIST_TESTRUNUID")).randrange(1_000_000))
 
 
 def sample(cases: Sequence[Case], count: int) -> list[Case]:
