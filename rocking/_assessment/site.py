@@ -107,9 +107,10 @@ class Site:
                 vars(self)[name] = value  # a frozen dataclass
         records = (self.records,) if isinstance(self.records, Record) else self.records
         vars(self)["records"] = tuple(map(checked_pair, records))
-        ways = (self.pgv is not None) + (self.periods is not None) + bool(self.records)
-        if ways != 1:
-            raise InvalidArgumentError("site", f"{ways} of pgv, periods, records", "exactly one of them")
+        ways = {"pgv": self.pgv is not None, "periods": self.periods is not None, "records": bool(self.records)}
+        stated = [name for name, there in ways.items() if there]
+        if len(stated) != 1:
+            raise InvalidArgumentError("site", " and ".join(stated) or None, "one of pgv, periods and records")
         if not self.records and self.pga is None:
             raise InvalidArgumentError("pga", None, "a peak ground acceleration, with pgv or periods")
         if self.floor_periods is not None:
