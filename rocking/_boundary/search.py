@@ -78,17 +78,12 @@ class Outcomes(Protocol):
         """Whether impacts were replaced by their sum."""
 
 
-def outcome_code(found: Outcomes) -> Codes:
-    """One integer for the outcome, see `rocking._model.outcome_code`."""
-    return outcome_codes(found.outcome, found.impacts)
-
-
 def layer_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after chatter or more than `MOST_IMPACTS` impacts.
 
     After chatter the count says when the solver replaced the remaining impacts by their sum, not what the block did.
     """
-    codes = outcome_code(found)
+    codes = outcome_codes(found.outcome, found.impacts)
     many = found.chatter | (found.impacts > MOST_IMPACTS)
     return np.where((codes != SURVIVES) & many, UNCOUNTED, codes)
 
@@ -108,7 +103,7 @@ def without_layers(codes: Codes) -> Codes:
 
 def counted_code(found: Outcomes) -> Codes:
     """The code of the outcome, but `UNCOUNTED` for overturning after more than `MOST_COUNTED` impacts."""
-    codes = outcome_code(found)
+    codes = outcome_codes(found.outcome, found.impacts)
     return np.where((codes != SURVIVES) & (found.impacts > MOST_COUNTED), UNCOUNTED, codes)
 
 
@@ -151,8 +146,8 @@ def block_solver(
     return solve
 
 
-def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code, work: Work | None = None) -> Classify:
-    """A solver as a `Classify`, which notes its work in `work`."""
+def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] | None = None, work: Work | None = None) -> Classify:
+    """A solver as a `Classify`, which notes its work in `work`; `code_of` tells more outcomes apart."""
 
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
         # rounding must not lead out of the range
@@ -161,7 +156,10 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] = outcome_code
         records, margin = solve(np.array(s).ravel(), np.array(w).ravel(), np.array(e).ravel())  # contiguous, writable
         if work is not None:
             work.add(records["impacts"])
-        codes = code_of(Found(records["outcome"], records["impacts"], records["chatter"]))
+        if code_of is None:
+            codes = outcome_codes(records["outcome"], records["impacts"])
+        else:
+            codes = code_of(Found(records["outcome"], records["impacts"], records["chatter"]))
         return codes.reshape(s.shape), margin.reshape(s.shape)
 
     return classify

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json as json_format
 import re
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -196,6 +195,8 @@ def configuration_errors() -> Iterator[None]:
 
 def _read(path: Path) -> dict[str, Any]:
     """The mapping in a file, by the ending of its name."""
+    import tomllib
+
     from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 
     try:

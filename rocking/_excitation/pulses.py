@@ -139,7 +139,17 @@ def mavroeidis_papageorgiou(
 
 _KINDS: dict[str, Kind[AbstractPulse]] = {
     make.__name__: Kind(make)
-    for make in (sine, cosine, half_sine, rectangular, c1, c2, ricker, ricker_antisymmetric, mavroeidis_papageorgiou)
+    for make in (
+        sine,
+        cosine,
+        half_sine,
+        rectangular,
+        c1,
+        c2,
+        ricker,
+        ricker_antisymmetric,
+        mavroeidis_papageorgiou,
+    )
 }
 
 PULSE_NAMES: tuple[str, ...] = tuple(_KINDS)

@@ -89,7 +89,7 @@ OPTIONAL = {
     "alpha", "threads", "relative_tolerance", "absolute_tolerance", "time_step", "duration", "samples",
     "uplift_acceleration", "top_height", "restitution", "scale", "vertical_scale", "highest", "size",
     "peak_acceleration", "period", "depth", "diameter", "mass_height", "mass", "friction", "pgv",
-    "tail", "skip", "gyration", "start",
+    "tail", "skip", "gyration", "start", "order",
 }  # fmt: skip
 """Arguments that may be None somewhere."""
 
