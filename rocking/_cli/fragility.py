@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -28,6 +29,11 @@ Configuration = Annotated[
         metavar="CONFIGURATION",
     ),
 ]
+
+MAX_NESTING = 100  # most brackets within brackets of a suite in YAML
+
+MAX_LINE = 4096
+"""Most characters of a line of TOML: the time of tomllib grows with the square of the parts of a key such as a.b.c."""
 
 
 @with_options
@@ -195,14 +201,12 @@ def configuration_errors() -> Iterator[None]:
 
 def _read(path: Path) -> dict[str, Any]:
     """The mapping in a file, by the ending of its name."""
-    import tomllib
-
     from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 
     try:
         text = path.read_text(encoding="utf-8")
         if path.suffix == ".toml":
-            found: Any = tomllib.loads(text)
+            found: Any = _toml(text)
         elif path.suffix == ".json":
             found = json_format.loads(text)
         else:
@@ -216,11 +220,22 @@ def _read(path: Path) -> dict[str, Any]:
     return found
 
 
+def _toml(text: str) -> Any:
+    if max(map(len, text.split("\n"))) > MAX_LINE:
+        raise ValueError(f"lines of TOML have at most {MAX_LINE} characters")
+    import tomllib
+
+    return tomllib.loads(text)
+
+
 def _yaml(text: str) -> Any:
     try:
         import yaml  # of the extra `workflow`
     except ModuleNotFoundError:
         raise ValueError("YAML needs the package pyyaml; TOML and JSON need none") from None
+    open_brackets = accumulate((c in "[{") - (c in "]}") for c in text)
+    if max(open_brackets, default=0) > MAX_NESTING:  # the reader takes time with the square of the depth
+        raise ValueError(f"brackets are nested at most {MAX_NESTING} deep")
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:

@@ -256,6 +256,12 @@ def test_a_configuration_of_nested_brackets_is_refused(name, text, tmp_path):
     assert "a readable configuration" in refused("fragility", str(path))
 
 
+def test_a_long_line_of_toml_is_refused(tmp_path):
+    path = tmp_path / "a.toml"
+    path.write_text("a" + ".a" * 4000 + " = 1\n")
+    assert "at most 4096 characters" in refused("fragility", str(path))
+
+
 def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     motion = rocking.read_record(MOTION, vertical=UP)
     expected = rocking.Block(0.5, 2.0).response(motion, scale=0.9)
