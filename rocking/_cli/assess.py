@@ -6,6 +6,7 @@ import datetime as dt
 import shlex
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -63,10 +64,25 @@ def assess(
     friction: Annotated[
         float | None, said("Coefficient of friction of the meshes; without it sliding is not assessed.", "-")
     ] = None,
-    pga: Annotated[str | None, option(PGA)] = None,
-    pgv: Annotated[str | None, option(PGV)] = None,
-    period_min: Annotated[str | None, option(PERIOD, text="In place of PGV: shortest period of the pulses")] = None,
-    period_max: Annotated[str | None, option(PERIOD, text="Longest period of the pulses")] = None,
+    pga: Annotated[
+        str | None,
+        option(PGA, text="Peak ground acceleration of the site, from its hazard map; records are scaled to it"),
+    ] = None,
+    pgv: Annotated[
+        str | None,
+        option(PGV, text="Peak ground velocity of the site, from the same source; it sets the period of each pulse"),
+    ] = None,
+    period_min: Annotated[
+        str | None,
+        option(
+            replace(PERIOD, example="0.2s"),
+            text="Where you have no PGV: shortest period of the pulses to try, with --period-max",
+        ),
+    ] = None,
+    period_max: Annotated[
+        str | None,
+        option(replace(PERIOD, example="1s"), text="Longest of these periods; longer pulses overturn larger objects"),
+    ] = None,
     record: Annotated[Texts, said("Accelerogram of the suite; may be repeated.", "FILE", "--record")] = None,
     pair: Annotated[
         Texts, said("Two horizontal components: one record at all angles; may be repeated.", "FILE,FILE")
