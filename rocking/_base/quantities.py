@@ -37,8 +37,8 @@ ALPHA = Quantity("alpha", "rad", "slenderness angle (slender limit without)", sy
 
 SMALLEST_ALPHA = 1e-12  # smallest slenderness angle of (2.2) [rad]
 
-RELATIVE_TOLERANCE = Quantity("relative_tolerance", "-", "relative error of the peak allowed for speed", lower=1e-13,
-    upper=1e-3, closed="both")
+RELATIVE_TOLERANCE = Quantity("relative_tolerance", "-", "relative error of the peak that you accept for speed",
+    lower=1e-13, upper=1e-3, closed="both")
 """Of `peak_response`. `absolute_tolerance` is of an interpolated response, see `rocking._lookup.cube`."""
 
 GROUPS = (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION, ALPHA)
@@ -130,8 +130,8 @@ TOP_HEIGHT = Quantity("top_height", "m",
 INCLINATION = Quantity("inclination", "rad", "angle by which the base is inclined towards the right",
     lower=-math.pi / 2, upper=math.pi / 2, default=0.0, example="2 deg")
 
-SIDES = Quantity("sides", "", "edges about which it rocks: both; left or right: a wall stops it at the other side",
-    example="right")
+SIDES = Quantity("sides", "",
+    "edges about which it rocks: both, or left or right where a wall stops it at the other side", example="right")
 
 START = Quantity("start", "rad", "rotation from which the body is released at rest, in place of a pulse",
     symbol="theta_0", lower=-math.pi / 2, upper=math.pi / 2, example="3deg")
@@ -150,8 +150,8 @@ FRICTION = Quantity("friction", "-", "coefficient of friction at the base", symb
     "haftreibung, attrito, coefficiente di attrito, frottement, friccion, trivi, coefficient de frottement, "
     "coeficiente de friccion, \u03bc, \u03c4\u03c1\u03b9\u03b2\u03b7", highest=10.0)
 
-TOLERANCE = Quantity("tolerance", "m", "how far the dimensions are uncertain", lower=0.0, closed="left", default=0.0,
-    aliases="dimension tolerance, toleranz, tolleranza")
+TOLERANCE = Quantity("tolerance", "m", "uncertainty of the dimensions, up and down", lower=0.0, closed="left",
+    default=0.0, aliases="dimension tolerance, toleranz, tolleranza")
 
 PEDESTAL = Quantity("pedestal", "", "what the object stands on",
     aliases="sockel, piedistallo, socle, pedestal type, vathro")
