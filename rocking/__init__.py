@@ -18,8 +18,10 @@ Checks by standards: `rocking.standards`. Pictures: `rocking.plot`.
 <rocking.BodyResponse: overturns after one or more impacts; block of 0.4 m x 1.6 m under sine of 5.884 m/s2 and 0.5 s>
 
 Numbers are in SI units and radians, lengths are full sizes; texts such as "40 cm" and quantities of pint are converted.
-Every error is a `RockingError`, of an argument also a `ValueError`. The public names are listed in `__init__.pyi` and
-loaded at first use, so that a command or a worker of the service imports only what it needs.
+Every error is a `RockingError`, of an argument also a `ValueError`. Every function raises `InvalidArgumentError` for an
+argument that is not as described, and `StoppedError` soon after another thread has set its `stop`; its description
+names other reasons only. The public names are listed in `__init__.pyi` and loaded at first use, so that a command or a
+worker of the service imports only what it needs.
 """
 
 import lazy_loader

@@ -68,11 +68,6 @@ class Object:
     details : mapping of str to str
         Other texts, such as an inventory number, by header; tables that are written repeat them.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is not as described.
-
     Notes
     -----
     The radius of gyration is that of a homogeneous box, or cylinder, of these dimensions; of a mesh it is computed.
@@ -213,11 +208,6 @@ class Object:
             The body, or what describes it, such as "hollow(width=40cm, height=1.6m, wall=2cm)".
         name, others
             As for `from_mesh`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If it is no rigid body; as for an object.
         """
         made = body if isinstance(body, RespondingBody) else describe(body)
         return DescribedObject(name, described=made, **others)

@@ -82,11 +82,6 @@ class Site:
     floor_periods, floor_damping, floor_participation : float or sequence of float
         Modes of a building of which the objects are on a floor, as `periods`, `damping` and `participation` of
         `rocking.floor_motion`; without periods they are on the ground. Factors are on the motion of the ground.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If the combination or a value is not as described.
     """
 
     pga: Scalar | None = None

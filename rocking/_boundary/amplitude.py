@@ -127,13 +127,6 @@ def thresholds(
         record the lowest is that of `rocking._boundary.scan.lowest_overturning`; above it amplitudes that differ by 0.2
         % are tried. Changes are bisected to 1e-6.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range, missing, or without meaning for the kind of motion.
-    StoppedError
-        If `stop` was set.
-
     Examples
     --------
     >>> thresholds("sine", frequency_ratio=3.0, restitution=0.9)

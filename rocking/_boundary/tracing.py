@@ -86,13 +86,6 @@ def overturning_boundary(
         whose middle the curve was not found; open_ends, the number of ends of regions that are known to a step of the
         nodes only.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range.
-    StoppedError
-        If `stop` was set.
-
     Notes
     -----
     A region is found if a node lies in it, on any line; the nodes are finer by `FINER` where blocks overturn after

@@ -25,11 +25,6 @@ class Block(RectangularBlock, RespondingBody):
     gravity : float
         g [m/s2], > 0.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If a length or gravity is not finite and positive, or the shapes do not broadcast.
-
     Examples
     --------
     >>> Block(width=0.4, height=1.6).response("sine", peak_acceleration=4.0, period=0.5).overturned

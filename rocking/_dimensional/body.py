@@ -164,11 +164,6 @@ class RespondingBody(AbstractBody):
         resolution : float
             Largest relative distance of the factors of a record that are tried in search of the lowest [-],
             [1e-4, 0.1]; above it they are 0.2 % apart.
-
-        Raises
-        ------
-        InvalidArgumentError, StoppedError
-            As for `response`.
         """
         share = checked_resolution(resolution)
         if highest is not None:
@@ -212,11 +207,6 @@ class RespondingBody(AbstractBody):
         xarray.Dataset
             As `BodyResponse.to_xarray`, with the dimension `period` or `size`; of a block against the period rotation
             [rad], top_displacement [m], peak_rotation [-] and its error_bound, overturned, outcome, impacts.
-
-        Raises
-        ------
-        InvalidArgumentError, StoppedError
-            As for `response`; also if `size` is missing for a record, or the body is an array.
         """
         self._need_one("spectrum", restitution, peak_acceleration=peak_acceleration, scale=scale)
         if size is None and isinstance(motion, Record):
@@ -262,11 +252,6 @@ class RespondingBody(AbstractBody):
             As `rocking.overturning_boundary`, where slenderness(point) is the uplift acceleration of the weaker edge
             over the peak acceleration, and frequency_ratio(point) that to p of the right edge; with
             peak_acceleration(point) [m/s2] and period(point) [s].
-
-        Raises
-        ------
-        InvalidArgumentError, StoppedError
-            As for `response`.
         """
         self._need_one("boundary", restitution)
         if isinstance(motion, Record):
@@ -316,11 +301,6 @@ class RespondingBody(AbstractBody):
             friction_demand(time) [-], infinite where the body lifts off; attributes largest_friction_demand,
             smallest_normal_reaction, impulse_ratio, lifts_off, warnings. Of a block without `edge`, with
             vertical_acceleration where the motion has it, and the attributes of `rocking.time_history`.
-
-        Raises
-        ------
-        InvalidArgumentError, StoppedError
-            As for `response`; also if the body or an argument is an array.
         """
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
@@ -342,11 +322,6 @@ class RespondingBody(AbstractBody):
         ----------
         size : array_like
             The factor [-], > 0.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If it is not positive.
         """
         return ScaledBody(self, in_range("size", size, 0.0, math.inf, closed="neither"))
 

@@ -48,11 +48,6 @@ class EquivalentBlock(AbstractBlock, RespondingBody):
     top_height : float, optional
         Height of the point whose displacement is given, above the pivot [m], > 0; by default that of the top of the
         rectangular block.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If a value is out of range.
     """
 
     alpha: float = math.nan  # in place of the properties of the rectangle

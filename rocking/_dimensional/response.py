@@ -186,13 +186,7 @@ class BodyResponse(ResponseFields, EqualByValue):
 
     @cached_property
     def contact(self) -> ContactExtremes:
-        """Extremes of the contact forces during the motion of one body.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If there are several bodies or motions.
-        """
+        """Extremes of the contact forces during the motion of one body."""
         return self._contact("contact")
 
     @cached_property

@@ -217,11 +217,6 @@ class RigidBody(RespondingBody):
         ----------
         angle : array_like
             Angle [rad], or a text such as "2 deg"; negative towards the left.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the body does not stand there.
         """
         added = in_unit("angle", angle, "rad")
         checked = in_range("angle", added, -math.pi / 2, math.pi / 2, closed="neither", unit="rad")
@@ -237,11 +232,6 @@ class RigidBody(RespondingBody):
         side : {"left", "right"}
             The edge about which it rocks.
         rebound : float, optional
-            As of `RigidBody`.
-
-        Raises
-        ------
-        InvalidArgumentError
             As of `RigidBody`.
 
         Examples
@@ -282,11 +272,6 @@ class RigidBody(RespondingBody):
             Height of the centre of mass above the base [m], > 0; half the height without it.
         gyration, gravity
             As of `RigidBody`; without a gyration that of the uniform rectangle of this width and height.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If a value is not as described.
 
         Examples
         --------

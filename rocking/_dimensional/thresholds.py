@@ -83,13 +83,7 @@ class BodyThresholds(EqualByValue):
 
     @cached_property
     def changes(self) -> tuple[Threshold, ...]:
-        """The thresholds of one body, as a list.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If there are several bodies.
-        """
+        """The thresholds of one body, as a list."""
         if self.value.ndim > 1:
             raise InvalidArgumentError("thresholds", f"shape {self.value.shape[:-1]}", "those of one body")
         return tuple(map(Threshold, self.value.tolist(), self.overturns_above.tolist()))

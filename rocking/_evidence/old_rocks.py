@@ -47,11 +47,6 @@ def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str
         `survival` [-] and `annual_rate` [1/year] over `branch` and the dimensions of the medians of the fragility; nan
         where there is no curve. `survival_lower` and `survival_upper` are those of the bounds of the rate.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If an argument is not as described.
-
     References
     ----------
     Brune J. N. (1996), Precariously balanced rocks and ground-motion maps for Southern California, Bulletin of the

@@ -166,11 +166,6 @@ def register(pulse: AbstractPulse) -> None:
     ----------
     pulse : AbstractPulse
         Its name must be an identifier that is not taken, without a leading minus.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If it is no pulse or the name cannot be used.
     """
     if not isinstance(pulse, AbstractPulse):
         raise InvalidArgumentError("pulse", pulse, "a pulse such as SinusoidalPulse")

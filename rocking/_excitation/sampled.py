@@ -54,11 +54,6 @@ class SampledPulse(AbstractPulse):
     values : float64 array (samples,)
         f at the samples [-]; read-only.
 
-    Raises
-    ------
-    InvalidArgumentError
-        If an argument is not as described.
-
     Examples
     --------
     A triangle: 0, 1, 0.

@@ -74,13 +74,6 @@ def time_history(
         [-] and that over tan(alpha) [-]; attributes largest_friction_demand, smallest_normal_reaction, impulse_ratio,
         lifts_off and warnings.
 
-    Raises
-    ------
-    InvalidArgumentError
-        For an argument out of range, missing, or without meaning for the kind of motion.
-    StoppedError
-        If `stop` was set.
-
     Examples
     --------
     >>> history = time_history("sine", slenderness=0.5, frequency_ratio=3.0, restitution=0.9)

@@ -105,11 +105,6 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
         -------
         xarray.Dataset
             The fields and `overturned`; the arguments are coordinates.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the number of names differs from that of the axes.
         """
         import xarray as xr  # takes longer to load than the solver, and most responses remain arrays
 

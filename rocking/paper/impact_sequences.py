@@ -54,11 +54,6 @@ def impacts_in_pulse(
     -------
     list of Impact
         At most `most`. Impacts closer than 1/48 rad of the pulse are not told apart: from there on, phases are nan.
-
-    Raises
-    ------
-    InvalidArgumentError
-        For a pulse that is no sum of sinusoids, and for arguments out of range.
     """
     return _motion(pulse, amplitude, frequency_ratio, restitution, integer("most", most, 0, math.inf))[0]
 

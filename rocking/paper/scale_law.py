@@ -32,11 +32,6 @@ def scale_law_deviation(peak_rotation: ArrayLike, restitution: ArrayLike, *, ref
     ndarray
         (reference peak) (eta/reference)^2 / peak - 1 [-], of the shape of `peak_rotation`: positive where the law
         overestimates the peak; nan where either block overturned or did not uplift.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `reference` is not one of the restitutions or the shapes do not match.
     """
     peak, eta = _aligned(peak_rotation, restitution, axis)
     at = np.flatnonzero(np.isclose(eta, RESTITUTION.number(reference, "reference"), rtol=0.0, atol=1e-9))

@@ -94,13 +94,7 @@ def blocks_of(bodies: RigidBody) -> list[AbstractBlock]:
 
 
 def as_blocks(bodies: Sequence[AbstractBody]) -> tuple[AbstractBlock, ...] | RigidBody:
-    """Bodies as blocks where all have equal edges, else rigid ones that rock about the same edges as an array.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If some are neither.
-    """
+    """Bodies as blocks where all have equal edges, else rigid ones that rock about the same edges as an array."""
     equal = [blocks_of(one)[0] if isinstance(one, RigidBody) and has_equal_edges(one) else one for one in bodies]
     blocks = tuple(one for one in equal if isinstance(one, AbstractBlock))
     if len(blocks) == len(equal):
@@ -122,13 +116,7 @@ def as_blocks(bodies: Sequence[AbstractBody]) -> tuple[AbstractBlock, ...] | Rig
 
 
 def as_block(body: AbstractBody) -> AbstractBlock:
-    """One body with equal edges as a block.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If its edges differ.
-    """
+    """One body with equal edges as a block."""
     made = body if isinstance(body, AbstractBlock) else None
     if isinstance(body, RigidBody) and has_equal_edges(body):
         (made,) = blocks_of(body)

@@ -97,11 +97,6 @@ def fragility(
         which they do, and `records_surviving_above_first` names them. `first_exceedances`, `first_median_intensity`,
         ... are the curve of first exceedance, for comparison. The attribute `warnings`, where there is one, names
         records that are scaled although their offset is not small beside their shaking.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an argument is not as described.
     """
     limits = check_demands(demand)
     confidence = number("confidence", confidence, 0.0, 1.0, closed="neither")

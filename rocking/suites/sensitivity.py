@@ -85,11 +85,6 @@ def suite_sensitivity(
         `records_changed_by_sampling`, which names them; `friction_demand_median` and `friction_demand_largest` over the
         records. Coordinates `restitution`, `restitution_low` and `restitution_high` over block, `resampled_time_step`
         [s] over record. One block, not in a sequence, gives a result without the dimension `block`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If an argument is not as described.
     """
     suite = check_suite(records, blocks, intensity, measure, restitution)
     restitution_step = number("restitution_step", restitution_step, 0.0, 1.0, closed="right")

@@ -45,11 +45,6 @@ def spectrum_volume(
         `volume` [rad2/s], `mean`, the volume over the area of the ranges [-], and `overturned`, the share of the blocks
         that overturn [-].
 
-    Raises
-    ------
-    InvalidArgumentError
-        If an argument is not as described.
-
     References
     ----------
     Makris N., Konstantinidis D. (2003), The rocking spectrum and the limitations of practical design methodologies,

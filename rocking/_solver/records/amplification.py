@@ -42,11 +42,6 @@ def record_amplification(
     float64 array
         Of the broadcast shape, >= 0; infinite where the outcome changes within 1e-9 of the amplitude, nan where the
         block overturns or does not uplift.
-
-    Raises
-    ------
-    InvalidArgumentError, StoppedError
-        As for `peak_response`.
     """
     given = {
         "frequency_parameter": frequency_parameter,

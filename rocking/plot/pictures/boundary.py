@@ -33,11 +33,6 @@ def boundary(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
         Where to draw, for instance over `control_map`; by default in a new figure.
     **style
         Properties of the lines, which replace those of both regions.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` holds no boundary curves.
     """
     if "row_size" not in data or "neighbour_outcome" not in data:
         raise InvalidArgumentError("data", sorted(map(str, data)), "boundary curves of overturning")

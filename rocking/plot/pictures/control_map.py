@@ -39,11 +39,6 @@ def control_map(data: xr.Dataset, ax: Axes | None = None, *, key: bool = True) -
         Where to draw; by default in a new figure.
     key : bool
         Whether to add the colour bar and the meaning of the greys.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is no map.
     """
     if "peak_rotation" not in data or data["peak_rotation"].ndim != 2:
         raise InvalidArgumentError("data", dict(data.sizes), "peak_rotation and outcome along two dimensions")
@@ -85,11 +80,6 @@ def cube(data: xr.Dataset, axes: Sequence[Axes] | None = None) -> Sequence[Axes]
         A spectrum cube, results/spectra/PULSE/eta-0.85.nc, or some of its angles.
     axes : sequence of matplotlib.axes.Axes, optional
         One for each angle, in one figure; by default a row in a new figure.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is no cube, or the number of axes differs from that of the angles.
     """
     if "alpha" not in data.dims or "peak_rotation" not in data:
         raise InvalidArgumentError("data", dict(data.sizes), "a spectrum cube with the dimension alpha")

@@ -20,11 +20,6 @@ def distribution(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes
         Result of `rocking.suites.distribution` of one body; of several, `data.isel(block=0, intensity=0)`.
     ax, **style
         As of `rocking.plot`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is no distribution, or of several bodies.
     """
     if "band_lower" not in data or data["probability"].dims != ("rotation",):
         raise InvalidArgumentError("data", dict(data.sizes), "the distribution of one body: data.isel(block=0, ...)")

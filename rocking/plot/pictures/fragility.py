@@ -22,11 +22,6 @@ def fragility(data: xr.Dataset, ax: Axes | None = None) -> Axes:
         Result of `rocking.fragility` for one block and one limit state; of several, `data.isel(block=0, demand=0)`.
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default in a new figure.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is no fragility, or of several blocks or limit states.
     """
     from rocking.suites.curve import curve_probability  # noqa: PLC0415  # scipy.special: 0.2 s, only for this picture
 

@@ -21,11 +21,6 @@ def free_rocking(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes
         Result of `rocking.identify_free_rocking`.
     ax, **style
         As of `rocking.plot`; the fitted line.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is anything else.
     """
     if not {"rotation", "fitted", "residual", "impact_time"} <= data.keys():
         raise InvalidArgumentError("data", sorted(map(str, data)), "a result of rocking.identify_free_rocking")

@@ -24,11 +24,6 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
         radians is drawn in degrees.
     ax, **style
         As of `rocking.plot`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is not a time history.
     """
     x = _time(data)
     ax = axes_of(ax)
@@ -64,11 +59,6 @@ def ground_acceleration(data: xr.Dataset, ax: Axes | None = None, **style: Any) 
         As for `history`.
     ax, **style
         As of `rocking.plot`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is not a time history.
     """
     x = _time(data)
     ax = axes_of(ax)

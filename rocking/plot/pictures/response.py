@@ -35,11 +35,6 @@ def response(found: BodyResponse | Response, ax: Axes | None = None, **style: An
         for one block.
     ax, **style
         As of `rocking.plot`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `found` is something else, or the response of several blocks.
     """
     groups: dict[str, Any]
     pulse: str | AbstractPulse

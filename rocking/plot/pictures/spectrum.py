@@ -26,11 +26,6 @@ def spectrum(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
         cube. Rotation in radians is drawn in degrees, otherwise max |theta|/alpha.
     ax, **style
         As of `rocking.plot`.
-
-    Raises
-    ------
-    InvalidArgumentError
-        If `data` is no spectrum, or has more than one dimension.
     """
     if not isinstance(data, xr.Dataset):
         raise InvalidArgumentError("data", data, "a data set; of a response: to_xarray()")
