@@ -100,6 +100,7 @@ class DataFile:
     def content(self) -> bytes:
         """All bytes of the file, of one version; `DatasetError` if it cannot be read or changes all the time."""
         try:
+            # the version is the same before and after the read, so that all bytes are of it; else read again
             for _ in range(MAX_READS):
                 self.version = self._settled()
                 self._file.seek(0)

@@ -215,6 +215,7 @@ def _crosses_itself(points: Array) -> bool:
 
     def crossed(a: Array, b: Array) -> bool:
         between = turn(a, b, start) * turn(a, b, end) < 0.0
+        # each side has its ends on different sides of the other; sides that only touch have a turn of 0 and pass
         return bool((between & (turn(start, end, a) * turn(start, end, b) < 0.0)).any())
 
     return any(map(crossed, start, end))  # a side at a time: of many vertices all pairs would need much memory

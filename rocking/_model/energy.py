@@ -46,5 +46,7 @@ def outcome_margin(z: Array, w: Array, eta: Array, alpha: Array) -> Array:
     barrier = np.where(alpha > 0.0, np.sin(half) / half, 1.0)
     x = np.where(alpha > 0.0, np.sin(half * (1.0 - z)) / half, 1.0 - z)
     escape = (w - x) / barrier  # (3.8)
+    # Decided without following the motion: w >= x escapes about the present edge; otherwise the block comes back, and
+    # the energy after the impact decides about the other edge. Both are 0 or less where w = x: no jump.
     rebound = eta * eta * (1.0 - (x - w) * (x + w) / (barrier * barrier))
     return np.asarray(np.where(w < x, np.maximum(escape, rebound - 1.0), escape))

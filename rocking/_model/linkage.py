@@ -101,7 +101,10 @@ class FourBarLinkage:
         inertias = np.array([link.inertia for link in self.links])
         arms = np.array([link.centre for link in self.links]) - np.array([a, b, d])
         first = self.velocity_field().centres
-        carried = np.array([0.0, a - b, 0.0])  # rates[0]**2 = 1
+        # Centres move as r(theta) = r0 + first theta + second theta^2/2. Kinetic energy M theta'^2/2 gives M; potential
+        # energy g sum(m y) gives C from `first` and -K from `second`; the force -m a of the moving ground does the
+        # work -B a theta. A point at an arm from a hinge has the second derivative -rate^2 arm + i acceleration arm.
+        carried = np.array([0.0, a - b, 0.0])  # of the hinge B, which the second link starts from; rates[0]**2 = 1
         second = carried - rates**2 * arms + 1j * accelerations * arms
         return LinearEquation(
             mass=float(np.sum(masses * np.abs(first) ** 2 + inertias * rates**2)),

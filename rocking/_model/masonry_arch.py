@@ -79,6 +79,8 @@ class MasonryArch:
 
     def mechanism(self) -> Mechanism:
         """The mechanism that opens at the smallest ground acceleration in one direction; an error if none opens."""
+        # No mechanism is missed: four hinges at alternating faces, in any four joints, starting at either face, are all
+        # ways to move with one degree of freedom. If one of them opens under the weight alone, the arch does not stand.
         quadruples = itertools.combinations(range(self.voussoirs + 1), 4)
         found = [one for joints in quadruples for face in (-1, 1) if (one := self._opening(joints, face))]
         if not found:
@@ -117,6 +119,8 @@ class MasonryArch:
         # the part to the right of a hinge at the inner face turns clockwise against the part to the left
         linkage = FourBarLinkage(hinges, links, face)  # type: ignore[arg-type]
         rotations, _ = linkage.rotations()
+        # each joint has to open away from its hinge: the next part turns against the one before, with the sign of the
+        # face; the ground beside the first and the last joint does not turn
         if not np.all(np.diff(rotations, prepend=0.0, append=0.0) * faces > 0.0):
             return None
         return Mechanism(joints, linkage, linkage.linear_equation(self.gravity))

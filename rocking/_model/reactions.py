@@ -78,6 +78,8 @@ def reactions(
     else:
         slope, q, e, c = 0.0, np.zeros_like(angular_velocity), lean, np.ones_like(lean)
     turn = -vertical * e - u * c  # (2.2): theta''/(p_s^2 tan(alpha))
+    # Newton: H = m (a + x''), N = m (g + w + y''). The centre of mass moves on a circle about the pivot: R theta''
+    # along it, R theta'^2 to the pivot; `inertia` = R p^2/g makes them accelerations over g tan(alpha) and over g.
     moving = side != 0.0
     horizontal = np.where(moving, u + inertia * (c * turn + e * q * q), u)
     normal = np.where(moving, vertical + inertia * (slope * slope * e * turn - c * q * q), vertical)

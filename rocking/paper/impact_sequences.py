@@ -121,6 +121,9 @@ class _Arc:
 
     def first_root(self) -> float | None:
         """Phase of the first return to theta = 0 within the pulse; None if there is none, nan if it is too early."""
+        # Decided: the first sample beyond theta = 0, then the root before it. An arc that passes zero and comes back
+        # between two samples, 1/48 rad apart, is missed. A crossing before the first sample cannot be told from the
+        # start of the arc.
         count = 2 + int(_SAMPLES * (self.shape.end - self.phase))
         phi = np.linspace(self.phase, self.shape.end, count)[1:]
         if not phi.size or phi[0] >= self.shape.end:
@@ -203,6 +206,7 @@ def overturning_interval(
     last = first + int(np.argmin(np.append(values[first:] > 0, False))) - 1
     ends = []
     for edge, outer in ((first, first - 1), (last, last + 1)):
+        # beyond the range the margin is negative (a root lies between) or nan: another number of impacts
         known = 0 <= outer < grid.size and values[outer] <= 0  # comparison with nan is false
         ends.append(float(brentq(margin, grid[edge], grid[outer], xtol=1e-15, rtol=8.9e-16)) if known else math.nan)
     return ends[0], ends[1]

@@ -124,6 +124,8 @@ def asce43_rocking_angle(
         upwards = 0.0 if vertical_spectrum is None else np.asarray(vertical_spectrum(frequency, damping)) / demand
         return demand - asce43_capacity(theta, b, h, upwards)
 
+    # The spectrum may have any shape, and cross the capacity often. Decided: the last of the angles at which the demand
+    # reaches it, and the crossing just above. Two crossings between neighbouring angles (2.3 % apart) are missed.
     angles = np.geomspace(1e-4 * alpha, alpha, ANGLES)
     over = np.flatnonzero(excess(angles) >= 0.0)
     if not over.size:
@@ -158,6 +160,7 @@ def asce43_sliding_distance(
     mu, up = checked_number("friction", friction), checked_number("vertical_acceleration", vertical_acceleration)
     effective = mu * (1.0 - 0.4 * up / STANDARD_GRAVITY)
     coefficient = 2.0 * effective * STANDARD_GRAVITY
+    # from low frequencies upwards: the first one that reaches the coefficient, and the crossing just below
     frequencies = np.geomspace(*FREQUENCIES)
     over = np.flatnonzero(np.asarray(spectrum(frequencies, 0.1)) >= coefficient)
     if not over.size:
