@@ -223,10 +223,9 @@ def follow_trends(
 ) -> FloatArray:
     """Where the regions above some thresholds lie one step further: see `courses_of`.
 
-    `below`, `above` (n,), `trends` (n, 4): of the thresholds of the column, as in `Column`, from the side `side`;
-    `inner` (regions,): the thresholds; `step`: in log omega; `at`, `shift` (k,): ascending 1/a, and by how much curves
-    move there, which counts where slopes are not known [-]. Returns an array (3, regions): 1/a halfway through each
-    region, its least width, and how far from there it may lie [-].
+    `below`, `above` (n,), `trends` (n, 4): of the thresholds of the column, as in `Column`, from the side `side`; the
+    others as there. Returns an array (3, regions): 1/a halfway through each region, its least width, and how far from
+    there it may lie [-].
     """
     slopes = end_slopes(trends, side)
     found = np.empty((3, inner.size))

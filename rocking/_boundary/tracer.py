@@ -1,10 +1,6 @@
-"""Curves between regions of outcome, followed from column to column.
+"""Curves between regions of outcome, followed from column to column: steps 3 and 4 of `rocking._boundary`.
 
-A column holds the regions along a line omega = const, see `Column`. Regions that one column has and its neighbour
-lacks are searched for where their slopes lead, so a thin region seen anywhere is followed as long as it is wider than
-`THINNEST`. Where two columns still differ, a region ends, divides or begins between them: further columns follow,
-halfway or near its predicted end, until that place is known to `END`. The ends of equal regions in neighbouring
-columns, joined, are the boundary curves.
+A thin region that any node shows is followed as long as it is wider than `THINNEST`, and its end is known to `END`.
 """
 
 import math

@@ -29,7 +29,6 @@ SI_UNITS = {one.name: one.unit for one in (*BODY, PEAK_ACCELERATION, PERIOD) if 
     "period_min": "s",
     "period_max": "s",
 }
-"""Options with units."""
 
 MAX_ERRORS = 20  # lines of a file that an error names at most
 

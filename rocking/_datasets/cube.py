@@ -43,7 +43,6 @@ AXES: dict[str, dict[str, Any]] = {
     "slenderness": {"units": "1", "long_name": SLENDERNESS.label, "equation": "4.11"},
     "frequency_ratio": {"units": "1", "long_name": FREQUENCY_RATIO.label, "equation": "3.6"},
 }
-"""Attributes of the axes of a spectrum cube."""
 
 SAMPLES = {
     "pulse_phase": {"units": "rad", "long_name": "phase of a sample of the pulse"},

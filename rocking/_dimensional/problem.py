@@ -52,7 +52,6 @@ from rocking._solver.state import BODY_CELL
 Motion = str | AbstractPulse | Record
 
 STRENGTHS = {one.name: one for one in (q.PEAK_ACCELERATION, q.PERIOD, q.SCALE)}
-"""Arguments for the strength and the length of a motion."""
 
 
 @dataclass(frozen=True, eq=False)

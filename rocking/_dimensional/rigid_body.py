@@ -74,7 +74,6 @@ class RigidBody(RespondingBody):
 
     _given: dict[str, Array]
     sides: str
-    """The edges about which it rocks."""
 
     def __init__(
         self,

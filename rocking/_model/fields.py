@@ -209,7 +209,6 @@ CUBE_FIELDS = (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA, PEAK_MODE)
 """Fields of a response that a spectrum cube stores; those of `DERIVED_FIELDS` on request."""
 
 COLUMN_FIELDS = (PEAK_ROTATION, OVERTURNED, OUTCOME, IMPACTS, EXCEEDED_ALPHA, ERROR_BOUND, SOURCE, *DERIVED_FIELDS)
-"""Columns of a response as CSV and JSON."""
 
 
 def record_dtype(fields: Sequence[ResponseField]) -> np.dtype[np.void]:

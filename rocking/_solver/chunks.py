@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from rocking._numba.cancellation import StopFlag, check_stop, flag_array
 
 AVAILABLE_CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-"""Cores available to this process [-]."""
 
 
 def fill_chunks(

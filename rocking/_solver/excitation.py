@@ -47,7 +47,6 @@ EXCITATION_FIELDS: Fields = [
     *WAVELET_FIELDS,
     *POLYNOMIAL_FIELDS,
 ]
-"""Fields of a record that describe an excitation."""
 
 PULSE_FIELDS: Fields = [
     *EXCITATION_FIELDS,

@@ -38,7 +38,6 @@ DEFAULTS: dict[str, Any] = {
     "hazard": None,
     "sensitivity": None,
 }
-"""Values of keys that a configuration may leave out."""
 
 STATED_BY_FILES: dict[str, Any] = dict.fromkeys(
     ("unit", "time_step", "component", "vertical", "skip", "baseline_order")

@@ -46,7 +46,6 @@ LINKS = {
         math.pi / math.sqrt(3.0),
     ),
 }
-"""The curves by name."""
 
 
 def curve_probability(model: str, intensity: ArrayLike, median: ArrayLike, dispersion: ArrayLike) -> Array:

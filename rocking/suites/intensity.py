@@ -64,7 +64,6 @@ MEASURES = {
         ),
     )
 }
-"""The measures by name."""
 
 
 def measure_of(name: str) -> Measure:

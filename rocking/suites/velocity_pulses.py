@@ -81,7 +81,6 @@ FAMILIES = {
         ),
     )
 }
-"""The families by name."""
 
 
 @dataclass(frozen=True, eq=False)

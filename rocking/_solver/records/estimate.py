@@ -64,10 +64,8 @@ SIGN, Z, W, S, C, DZ, DW, UP, DOWN, PLACE, AT, F0, F1, V0, V1, IN_USE, PER_RATE,
 state with its derivatives, the reaches, the sample before and the time since it, f and V there and at the next one."""
 
 OVER, REACH, END_Z, END_W, END_SIGN = 0, 1, 3, 4, 5
-"""Columns of the results."""
 
 CHUNK = 16 * FLOAT_LANES
-"""Bodies given to a thread at a time."""
 
 TINY = 1e-30
 
@@ -77,14 +75,8 @@ def estimate_outcomes(
 ) -> tuple[NDArray[np.bool_], Array]:
     """Whether each body overturns, array (size,), and the reaches of its response above and below, array (size, 2).
 
-    Parameters
-    ----------
-    samples : float array (7, samples)
-        Of `sample_rows`, equidistant.
-    cells : array (size,) of `BODY_CELL`
-        The bodies. Where neighbours are alike, the work is least.
-    threads, stop
-        As for `rocking._solver.records.record_response.solve_bodies`.
+    `samples` (7, samples): of `sample_rows`, equidistant. `cells` (size,): the bodies, `BODY_CELL`; the work is least
+    where neighbours are alike. `threads`, `stop`: as for `rocking._solver.records.record_response.solve_bodies`.
     """
     found, motion = np.zeros((cells.size, END_SIGN + 1)), samples[[SHAPE, VERTICAL]].astype(np.float32)
 

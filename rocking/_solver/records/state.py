@@ -41,7 +41,6 @@ BLOCK_STATE = np.dtype(
     ],
     align=True,
 )
-"""Layout of the record of a body."""
 
 
 def body_states(samples: NDArray[np.float64], count: int) -> NDArray[np.void]:
