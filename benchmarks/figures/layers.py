@@ -25,7 +25,7 @@ WINDOWS = (
 """Ranges of the frequency ratio and of 1/a [-]."""
 
 NODES, MOST = 500, 90
-"""Blocks in each direction; impacts from which on the colour stays."""
+"""Blocks in each direction; the colour stays the same after more impacts than this."""
 
 
 @mpl.rc_context(STYLE)

@@ -1,4 +1,4 @@
-"""`assess`: which objects the motions of a site overturn, from which factor on them, and how far others rock."""
+"""`assess`: which objects the motions of a site overturn, at which lowest factor, and how far others rock."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def assess(
     stop: StopFlag | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
-    """Which objects the motions of a site overturn, from which factor on, and how far the others rock.
+    """Which objects the motions of a site overturn, at which lowest factor, and how far the others rock.
 
     Parameters
     ----------

@@ -148,7 +148,7 @@ def _tolerances(objects: Sequence[Object], bodies: Bodies) -> tuple[Array, Array
 def _limiting_sizes(
     bodies: Bodies, factors: Array, motions: Sequence[Motion], resolution: float, stop: StopFlag | None
 ) -> dict[str, Array]:
-    """Smallest base from which on, and largest height up to which, no motion overturns a body at a factor up to 1 [m].
+    """Smallest base and largest height at which no motion overturns a body at a factor up to 1 [m].
 
     They are searched from where it does not uplift towards slenderer ones, up to the first of `SIZES` that overturns.
     """

@@ -154,7 +154,7 @@ def assess(
     place: Annotated[str, said("Name of the site in the report.", "TEXT", "--site")] = "",
     date: Annotated[str | None, said("Date of the report, such as 2026-11-25; by default today.", "DATE")] = None,
 ) -> None:
-    """List the objects that the motions of a site overturn, from which factor on, the worst first.
+    """List the objects that the motions of a site overturn, the worst first, each with the lowest factor that does so.
 
     Rows of the table that cannot be read are named at the end, and the exit code is 2; the others are assessed.
     """

@@ -22,7 +22,7 @@ FOOTPRINT = 1e-3
 """Height above the lowest point up to which vertices belong to the footprint, over the height of the mesh [-]."""
 
 LONG_SIDE = 0.1
-"""Length over the perimeter from which on a side of a footprint has a direction of its own [-].
+"""A side of a footprint that is at least this share of the perimeter has a direction of its own [-].
 
 A body turns about a long side at a smaller distance than in directions beside that. Those across shorter sides, as of a
 round base, are rounded.
@@ -30,7 +30,7 @@ round base, are rounded.
 
 
 FAR = 100.0
-"""Distance from the origin over the size of a mesh from which on it is moved there: map coordinates lose digits [-]."""
+"""A mesh farther from the origin than this many times its size is moved there: map coordinates lose digits [-]."""
 
 
 def mesh_properties(path: str | Path, direction: float, unit: str) -> tuple[PolygonProperties, list[str]]:

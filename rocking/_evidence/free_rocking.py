@@ -86,7 +86,7 @@ def identify_free_rocking(
     time : array_like (samples,)
         Times [s], ascending; steps may differ.
     rotation : array_like (samples,)
-        Rotation [rad], of a sensor or a film, with noise and an offset; positive values turn on the right edge. It may
+        Rotation [rad], of a sensor or a video, with noise and an offset; positive values turn on the right edge. It may
         begin while the body is held, and end after it has come to rest. What is fitted begins where the rotation has
         fallen to 95 % of its first peak, and ends with the last flight that stands out from the noise.
     edges : {1, 2}

@@ -76,7 +76,7 @@ async def limited_body(
         raise TooLargeError("body", declared[:20], meaning)
     body = io.BytesIO()  # getvalue() does not copy
     size, refusal = 0, None
-    with anyio.move_on_after(seconds) as patience:
+    with anyio.move_on_after(seconds) as time_limit:
         async for chunk in request.stream():
             size += len(chunk)
             if size > limit:
@@ -93,6 +93,6 @@ async def limited_body(
                     await anyio.lowlevel.checkpoint()
     if refusal is not None:
         raise refusal
-    if patience.cancelled_caught:
+    if time_limit.cancelled_caught:
         raise SlowBodyError("body", f"{size} bytes", f"all of it within {seconds:g} s")
     return body.getvalue()

@@ -48,7 +48,7 @@ _ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0
     ),
 )
 async def post_assess(request: Request, service: ServiceDep) -> Response:
-    """Which objects the motions of a site overturn, from which factor on these motions, the worst first.
+    """Which objects the motions of a site overturn, each with the lowest factor that does so, the worst first.
 
     The table is CSV with units in its header or cells, or a JSON list of objects in SI units; or a JSON object with
     that list, records of the site and a hazard curve. The response has the format of the body, or that of `format` or

@@ -111,7 +111,7 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
     openapi_extra=body_of(
         {**json_content(Trace, EXAMPLE), **text_content(MEDIA_TYPES["csv"], _CSV)},
         IdentifyParams,
-        "times and rotations of a sensor or a film, with noise and an offset",
+        "times and rotations of a sensor or a video, with noise and an offset",
     ),
 )
 async def post_identify(request: Request, service: ServiceDep) -> Response:

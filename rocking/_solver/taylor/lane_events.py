@@ -97,15 +97,15 @@ def locate_events(steps: Record) -> None:
     h, w0, z, w = load(steps.h, 0), load(steps.w0, 0), load(steps.z1, 0), load(steps.w1, 0)
     zero = splat(0.0)
     # z <= 0 at the end is an impact, but for a destabilised block that rises: there it is rounding at the ground
-    lands = in_use & (z <= 0.0) & ~(destabilised & (w0 >= 0.0))
+    has_impact = in_use & (z <= 0.0) & ~(destabilised & (w0 >= 0.0))
     impact = splat(NO_IMPACT)
-    if any_lane(lands):
+    if any_lane(has_impact):
         # first guess: the zero of a parabola from z = 0, otherwise a Newton step from the end of the step
         guess = select(at_ground, 2.0 * w0 * h / (w0 - w), h - z / w)
-        root, _ = refine_roots(steps.z, steps.order, zero, h, at_ground, guess, lands)
-        h, z = select(lands, root, h), select(lands, zero, z)
-        w = select(lands, evaluate(steps.rate, steps.order - 1, h), w)
-        impact = select(lands, h, impact)
+        root, _ = refine_roots(steps.z, steps.order, zero, h, at_ground, guess, has_impact)
+        h, z = select(has_impact, root, h), select(has_impact, zero, z)
+        w = select(has_impact, evaluate(steps.rate, steps.order - 1, h), w)
+        impact = select(has_impact, h, impact)
     store(steps.impact, 0, impact)
     store(steps.impact_w, 0, w)
     # peaks, by the conditions of `highest_peak`: none where w keeps its sign (steady), where z stays below the largest
