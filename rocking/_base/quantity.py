@@ -129,10 +129,15 @@ class Quantity:
         return {name: end for name, end in ((lower, self.lower), (upper, self.upper)) if math.isfinite(end)}
 
     @property
+    def named(self) -> str:
+        """The meaning, with the symbol after its first clause."""
+        clause, semicolon, rest = self.meaning.partition(";")
+        return f"{clause}{', ' if self.symbol else ''}{self.symbol}{semicolon}{rest}"
+
+    @property
     def help(self) -> str:
         """Meaning, symbol and unit in one line."""
-        unit = f" [{self.unit}]" if self.unit not in ("", "bool") else ""
-        return f"{self.meaning}{', ' if self.symbol else ''}{self.symbol}{unit}"
+        return self.named + (f" [{self.unit}]" if self.unit not in ("", "bool") else "")
 
     @property
     def label(self) -> str:

@@ -26,15 +26,14 @@ _UNITS = "With units"
 
 def option(quantity: Quantity, *names: str, text: str = "", panel: str | None = None, **more: Any) -> Any:
     """The option of a quantity: its sentence, or a text, range and example in its help, its unit as metavar."""
-    said = text or quantity.meaning
-    symbol = "" if text or not quantity.symbol else f", {quantity.symbol}"
+    said = text or quantity.named
     ends = (quantity.lower > 0.0 or math.isfinite(quantity.upper)) and quantity.unit == "-"
     allowed = f", {quantity.interval}" if ends and not text else ""
     words = "".join(f", or {word}" for word in quantity.words)
     example = quantity.example if " " not in quantity.example else repr(quantity.example)
     such = f", such as {example}" if example else ""
     # a word in brackets would be taken for markup
-    described = re.sub(r"\[(?=[a-z])", r"\\[", f"{said[0].upper()}{said[1:]}{symbol}{allowed}{words}{such}.")
+    described = re.sub(r"\[(?=[a-z])", r"\\[", f"{said[0].upper()}{said[1:]}{allowed}{words}{such}.")
     return typer.Option(*names, help=described, rich_help_panel=panel, metavar=f"[{quantity.unit or 'TEXT'}]", **more)
 
 
@@ -181,7 +180,9 @@ class OutputOptions:
 
     format: Annotated[
         Literal["table", "csv", "json"],
-        typer.Option(help="For people; for spreadsheets, in the same units; for programs, in SI units."),
+        typer.Option(
+            help="table: for people; csv: for spreadsheets, in the same units; json: for programs, in SI units."
+        ),
     ] = "table"
     all: Annotated[bool, said("Show all values; CSV and JSON always have them.", "", "--all")] = False
 

@@ -39,7 +39,7 @@ def record(
     ] = True,
     fit: Annotated[bool, said("Fit a pulse and compare when both overturn the block.", "", "--fit")] = False,
     second: Annotated[
-        str | None, said("Second horizontal component: of all directions the worst.", "FILE|NAME")
+        str | None, said("Second horizontal component: the answer is for the worst direction.", "FILE|NAME")
     ] = None,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver.

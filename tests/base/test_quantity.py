@@ -90,7 +90,7 @@ def test_one_declaration_reads_python_options_json_and_tables():
     assert isinstance(shown, typer.models.OptionInfo)
     assert (shown.metavar, shown.help) == (
         r"[m/s2]",
-        "Peak ground acceleration; records are scaled to it, PGA, such as 0.3g.",
+        "Peak ground acceleration, PGA; records are scaled to it, such as 0.3g.",
     )
 
 
