@@ -33,8 +33,12 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 
 PREPARED = (
     *("snakemake.iocontainers", "snakemake.logging", "netCDF4", "dask.array", "scipy.integrate", "scipy.optimize"),
-    *("matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
-    *(f"workflow.scripts.{name}" for name in ("overturning", "spectrum_part", "spectra", "figure", "claims")),
+    # xarray asks for a cluster at each file that it writes
+    *("distributed", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg", "PIL.PngImagePlugin"),
+    *(
+        f"workflow.scripts.{name}"
+        for name in ("overturning", "spectrum_part", "spectra", "figure", "claims", "check_data_sets")
+    ),
 )
 """Modules that jobs import; of libraries those that they import late."""
 
