@@ -9,7 +9,6 @@ The server runs no thread, and no job before a fork: a job inherits modules and 
 another job. It ends with the run, the fork of a job with its client and with the run.
 """
 
-import array
 import atexit
 import gc
 import importlib
@@ -72,7 +71,7 @@ def start() -> None:
 def serve(listener: socket.socket) -> None:
     """Fork for each connection until standard input ends, as it does with the process that started this one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the run ends, and so does its server
-    is_prepared = False
+    prepare()
     jobs: dict[int, tuple[int, socket.socket]] = {}  # descriptor that reports the end of a fork -> its id, its client
     while True:
         ready = select.select([listener, sys.stdin, *jobs], [], [])[0]
@@ -85,9 +84,6 @@ def serve(listener: socket.socket) -> None:
             break
         if listener in ready:
             client, _ = listener.accept()
-            if not is_prepared:
-                prepare()
-                is_prepared = True
             if (fork := os.fork()) == 0:
                 listener.close()
                 run(client)
@@ -108,11 +104,11 @@ def prepare() -> None:
 
 def run(client: socket.socket) -> None:
     """Run the script that a client names, as Python would."""
-    _, controls, _, _ = client.recvmsg(1, socket.CMSG_SPACE(12))
+    _, files, _, _ = socket.recv_fds(client, 1, 3)
     request = b"".join(iter(lambda: client.recv(1 << 16), b"")).split(b"\0")
     process, folder, script, *variables = map(os.fsdecode, request)
     end_with(int(process))
-    for own, given in enumerate(array.array("i", controls[0][2])):
+    for own, given in enumerate(files):
         os.dup2(given, own)
         os.close(given)
     signal.signal(signal.SIGINT, signal.default_int_handler)
