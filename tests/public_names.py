@@ -127,7 +127,8 @@ def http_names() -> Iterator[str]:
 
 def column_names() -> Iterator[str]:
     """Fields of responses, columns of tables, variables of data sets."""
-    curves = curves_of("sine", 0.85, 0.0, nodes=16)
+    window = {"frequency_ratio": (0.2, 15.0), "slenderness": (0.02, 1.0)}
+    (curves,) = curves_of("sine", 0.85, [0.0], nodes=16, nodes_rigid=16, **window)
     yield entry("fields of a response", [field.name for field in RESPONSE_FIELDS])
     yield entry("columns of a table", [field.name for field in COLUMN_FIELDS])
     yield entry("variables of a spectrum cube", [*AXES, *SAMPLES, *VARIABLES, *OPTIONAL_VARIABLES])

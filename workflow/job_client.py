@@ -3,7 +3,6 @@
 The arguments are the path of the socket of the server and those of Python. It imports little, as each job starts it.
 """
 
-import array
 import os
 import signal
 import socket
@@ -23,7 +22,7 @@ def main(address: str, arguments: list[str]) -> None:
     variables = (name + b"=" + value for name, value in os.environb.items())
     folder = os.getcwdb()  # noqa: PTH109  (pathlib takes as long to import as all else)
     request = b"\0".join([b"%d" % os.getpid(), folder, os.fsencode(arguments[0]), *variables])
-    connection.sendmsg([b"\0"], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", [0, 1, 2]))])
+    socket.send_fds(connection, [b"\0"], [0, 1, 2])
     connection.sendall(request)
     connection.shutdown(socket.SHUT_WR)
     status = int(connection.recv(4) or -signal.SIGKILL)  # nothing if the server was killed

@@ -9,7 +9,6 @@ The server runs no thread, and no job before a fork: a job inherits modules and 
 another job. It ends with the run, the fork of a job with its client and with the run.
 """
 
-import array
 import atexit
 import gc
 import importlib
@@ -33,8 +32,12 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 
 PREPARED = (
     *("snakemake.iocontainers", "snakemake.logging", "netCDF4", "dask.array", "scipy.integrate", "scipy.optimize"),
-    *("matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
-    *(f"workflow.scripts.{name}" for name in ("overturning", "spectrum_part", "spectra", "figure", "claims")),
+    # xarray asks for a cluster at each file that it writes
+    *("distributed", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg", "PIL.PngImagePlugin"),
+    *(
+        f"workflow.scripts.{name}"
+        for name in ("overturning", "spectrum_part", "spectra", "figure", "claims", "check_data_sets")
+    ),
 )
 """Modules that jobs import; of libraries those that they import late."""
 
@@ -68,7 +71,7 @@ def start() -> None:
 def serve(listener: socket.socket) -> None:
     """Fork for each connection until standard input ends, as it does with the process that started this one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the run ends, and so does its server
-    is_prepared = False
+    prepare()
     jobs: dict[int, tuple[int, socket.socket]] = {}  # descriptor that reports the end of a fork -> its id, its client
     while True:
         ready = select.select([listener, sys.stdin, *jobs], [], [])[0]
@@ -81,9 +84,6 @@ def serve(listener: socket.socket) -> None:
             break
         if listener in ready:
             client, _ = listener.accept()
-            if not is_prepared:
-                prepare()
-                is_prepared = True
             if (fork := os.fork()) == 0:
                 listener.close()
                 run(client)
@@ -104,11 +104,11 @@ def prepare() -> None:
 
 def run(client: socket.socket) -> None:
     """Run the script that a client names, as Python would."""
-    _, controls, _, _ = client.recvmsg(1, socket.CMSG_SPACE(12))
+    _, files, _, _ = socket.recv_fds(client, 1, 3)
     request = b"".join(iter(lambda: client.recv(1 << 16), b"")).split(b"\0")
     process, folder, script, *variables = map(os.fsdecode, request)
     end_with(int(process))
-    for own, given in enumerate(array.array("i", controls[0][2])):
+    for own, given in enumerate(files):
         os.dup2(given, own)
         os.close(given)
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -145,7 +145,7 @@ def thresholds(
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = FREQUENCY_RATIO.number(needed("a pulse", frequency_ratio=frequency_ratio))
-    return amplitude_changes(block_solver(made, alpha, stop=stop), omega, eta, top)
+    return amplitude_changes(block_solver(made, stop=stop), omega, eta, top, check_one_alpha(alpha))
 
 
 def _record_changes(
@@ -175,11 +175,11 @@ def _record_changes(
     return Thresholds(found, above, there.outcome, there.impacts)
 
 
-def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float) -> Thresholds:
+def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float, alpha: float = 0.0) -> Thresholds:
     """`thresholds` under a pulse by any solver, whose amplitude is 1 at uplift."""
     lowest, log_omega = 1.0 / highest, float(np.log(omega))
     nodes = np.union1d(np.linspace(lowest, 1.0, 2001), np.geomspace(lowest, 1.0, 2001))
-    grid, codes = outcomes_along(0, (lowest, log_omega, eta), nodes, classifier(solve, counted_code))
+    grid, codes = outcomes_along(0, (lowest, log_omega, eta, alpha), nodes, classifier(solve, counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])[::-1]
     above = overturns[edge]  # 1/a falls as the amplitude rises
@@ -187,5 +187,5 @@ def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float) ->
     place, met = grid[overturned], codes[overturned]
     many = met == UNCOUNTED
     if many.any():
-        met[many], _ = classifier(solve)(place[many], *np.array([log_omega, eta]))
+        met[many], _ = classifier(solve)(place[many], *np.array([log_omega, eta, alpha]))
     return Thresholds(1.0 / place, above, *decode_outcomes(met))

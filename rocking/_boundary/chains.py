@@ -18,7 +18,6 @@ class Chains:
     """Points of the outlines of overturning regions, chain after chain; all arrays (points,)."""
 
     chain: Index  # number of the chain
-    eta: Floats  # restitution [-]
     # slenderness, log_omega: the last point within the region along a line omega = const [-]
     slenderness: Floats
     log_omega: Floats
@@ -57,7 +56,7 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
     """
     # a point is an end of a region in a whole column: parts of one column have it in common
     number: dict[tuple[int, int, int], int] = {}
-    points: list[tuple[float, float, float, int, int, int, float]] = []
+    points: list[tuple[float, float, int, int, int, float]] = []
     beside: list[list[int]] = []
     for join in joins:
         ends = []
@@ -89,24 +88,23 @@ def chains_of(joins: Iterable[tuple[Side, Side]]) -> Chains:
             chain.append(here)
         if len(beside[start]) == 2:
             chain.append(start)
-        if len({points[k][2] for k in chain}) == 1:
+        if len({points[k][1] for k in chain}) == 1:
             continue  # seen on one line only: shorter than the distance within which ends are known
         order += chain
         sizes.append(len(chain))
-    table = np.array([points[k] for k in order]).reshape(-1, 7).T
+    table = np.array([points[k] for k in order]).reshape(-1, 6).T
     return Chains(
         chain=np.repeat(np.arange(len(sizes)), sizes),
-        eta=table[0],
-        slenderness=table[1],
-        log_omega=table[2],
-        own=table[3].astype(np.int64),
-        neighbour=table[4].astype(np.int64),
-        side=table[5].astype(np.int64),
-        width=table[6],
+        slenderness=table[0],
+        log_omega=table[1],
+        own=table[2].astype(np.int64),
+        neighbour=table[3].astype(np.int64),
+        side=table[4].astype(np.int64),
+        width=table[5],
     )
 
 
-def _point(column: Column, m: int, side: int) -> tuple[float, float, float, int, int, int, float]:
+def _point(column: Column, m: int, side: int) -> tuple[float, float, int, int, int, float]:
     if side:
         top = column.below[m + 1] if m + 1 < column.below.size else column.top
         x, width = column.above[m], top - column.above[m]
@@ -114,7 +112,6 @@ def _point(column: Column, m: int, side: int) -> tuple[float, float, float, int,
         bottom = column.above[m - 1] if m else column.bottom
         x, width = column.below[m], column.below[m] - bottom
     return (
-        column.eta,
         float(x),
         column.log_omega,
         column.codes[m + side],

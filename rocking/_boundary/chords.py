@@ -19,15 +19,18 @@ SURE = 0.5
 FINE = 0.02  # accuracy of a measured distance, as a share of the largest one [-]
 HALVINGS = 12  # times that a chord is halved at most [-]
 
+Block = tuple[Floats, Floats]  # eta and alpha, arrays without dimensions
+
 
 def refine_chords(
-    chains: Chains, classify: Classify, *, largest: float, uncounted: float, end: float
+    chains: Chains, classify: Classify, block: Block, *, largest: float, uncounted: float, end: float
 ) -> tuple[Chains, float, float, int]:
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
     Regions of many impacts lie side by side with equal codes, and a chord can join two of them. Such a chord is taken
-    out, since the curve is not found at its middle. `largest`: distance in the plane of 1/a and log omega [-],
-    `uncounted` for regions of many impacts; `end`: width in log omega of the chords that end a region: not halved.
+    out, since the curve is not found at its middle. `block`: eta and alpha of all curves; `largest`: distance in the
+    plane of 1/a and log omega [-], `uncounted` for regions of many impacts; `end`: width in log omega of the chords
+    that end a region: not halved.
 
     Returns the curves, bounds of the largest distance of a chord from its curve, without regions of many impacts and
     for these, and the number of chords whose curve was not found at the middle.
@@ -51,7 +54,7 @@ def refine_chords(
             break
         many = _uncounted(chains, first)
         most = np.where(many, uncounted, largest)
-        middle, found, distance = _middles(chains, first, bend, most, classify)
+        middle, found, distance = _middles(chains, first, bend, most, classify, block)
         wrong = ~found & many
         unknown += int(np.sum(~found & ~wrong))
         chains = chains.divide(first[wrong] + 1)
@@ -74,7 +77,7 @@ def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:
 
 
 def _middles(
-    chains: Chains, first: Index, bend: Floats, largest: Floats, classify: Classify
+    chains: Chains, first: Index, bend: Floats, largest: Floats, classify: Classify, block: Block
 ) -> tuple[Chains, NDArray[np.bool_], Floats]:
     """Points of the curves halfway along some chords, whether they were found, and their distance from the chords.
 
@@ -86,7 +89,7 @@ def _middles(
     guess = chord + bend
     outward = np.where(one.side == 1, -1.0, 1.0)
     width = np.minimum(one.width, two.width)
-    nearest = np.where((one.eta == 1.0) & (one.own == UNCOUNTED), ELASTIC_RESOLUTION, 1e-8)
+    nearest = np.where((block[0] == 1.0) & (one.own == UNCOUNTED), ELASTIC_RESOLUTION, 1e-8)
     # a bracket around the predicted place, one end inside the region and one outside, widened until it holds the curve
     near = np.clip(0.3 * np.abs(bend), nearest, np.maximum(0.4 * width, nearest))
     ends, margins, met = np.empty((y.size, 2)), np.empty((y.size, 2)), np.empty(y.size, dtype=np.int64)
@@ -97,7 +100,7 @@ def _middles(
             break
         reach = (outward * near)[lost, None] * [-1.0, 1.0]
         ends[lost] = guess[lost, None] + reach
-        codes, margins[lost] = classify(ends[lost], y[lost, None], one.eta[lost, None])
+        codes, margins[lost] = classify(ends[lost], y[lost, None], *block)
         met[lost] = codes[:, 1]
         found[lost] = (codes[:, 0] == one.own[lost]) & (codes[:, 1] != one.own[lost])
         near = np.minimum(8.0 * near, 0.4 * width)
@@ -108,7 +111,7 @@ def _middles(
             break
         reach = np.maximum(1.5 * width[lost], 3.0 * np.abs(bend[lost]))
         x = np.clip(guess[lost, None] + (outward[lost] * reach)[:, None] * shares, 1e-6, 1.0)
-        codes, at = classify(x, y[lost, None], one.eta[lost, None])
+        codes, at = classify(x, y[lost, None], *block)
         k, found[lost] = _nearest_end(codes == one.own[lost, None])
         rows = np.arange(lost.size)
         ends[lost], margins[lost] = (np.stack([each[rows, k], each[rows, k + 1]], axis=1) for each in (x, at))
@@ -117,15 +120,15 @@ def _middles(
     distance = np.abs(ends - chord[:, None]).max(axis=1) / np.hypot(1.0, slope)
     for resolution in (FINE * largest, np.full(y.size, RESOLUTION)):  # the second one for new vertices only
         k = np.flatnonzero(found & (distance > largest))
-        points = np.stack([chord[k], y[k], one.eta[k]], axis=1)
+        points = np.stack(np.broadcast_arrays(chord[k], y[k], *block), axis=1)
         refined = refine_brackets(0, points, ends[k], margins[k], one.own[k], met[k], classify, resolution[k])
         ends[k], margins[k], met[k] = refined.ends, refined.margins, refined.met
         distance[k] = np.abs(ends[k] - chord[k, None]).max(axis=1) / np.hypot(1.0, slope[k])
     other = np.flatnonzero(found & (met != one.neighbour) & (met != two.neighbour))
     if other.size:  # another neighbour, unless it is too thin to be resolved
-        beyond, _ = classify(ends[other, 0] + THINNEST * outward[other], y[other], one.eta[other])
+        beyond, _ = classify(ends[other, 0] + THINNEST * outward[other], y[other], *block)
         met[other] = np.where(beyond == one.own[other], met[other], beyond)
-    middle = Chains(one.chain, one.eta, ends[:, 0], y, one.own, met, one.side, width)
+    middle = Chains(one.chain, ends[:, 0], y, one.own, met, one.side, width)
     return middle, found, distance
 
 

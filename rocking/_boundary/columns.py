@@ -18,9 +18,7 @@ Index = NDArray[np.intp]
 class Column:
     """Regions along one line omega = const between two values of 1/a, ascending, and the thresholds between them."""
 
-    # eta, log_omega: restitution and log omega of the line [-]
-    eta: float
-    log_omega: float
+    log_omega: float  # of the line [-]
     # below, above: (thresholds,) 1/a where the region below a threshold ends and where the one above it begins:
     # `RESOLUTION` apart, or up to `THINNEST` where thinner regions lie between them [-]
     below: Floats
@@ -61,7 +59,6 @@ class Column:
         top = self.below[last] if last < self.below.size else self.top
         cut = slice(first, last)
         part = Column(
-            self.eta,
             self.log_omega,
             self.below[cut],
             self.above[cut],
@@ -78,9 +75,9 @@ class Column:
 class Lines:
     """Classified nodes on many lines omega = const, every change of outcome between them refined.
 
-    `points` (lines, 3): 1/a (any), log omega and eta of each line; `classify`: the solver, with layer codes or region
-    codes; `thinnest` (lines,): as `THINNEST`, for overturning after many impacts and for the bands of surviving blocks
-    within it [-].
+    `points` (lines, 4): 1/a (any), log omega, eta and alpha of each line; `classify`: the solver, with layer codes or
+    region codes; `thinnest` (lines,): as `THINNEST`, for overturning after many impacts and for the bands of surviving
+    blocks within it [-].
     """
 
     def __init__(self, points: Floats, classify: Classify, thinnest: Floats) -> None:
@@ -120,7 +117,6 @@ class Lines:
         first = np.flatnonzero(np.append(True, np.diff(line) != 0))
         return [
             Column(
-                float(self.points[line[a], 2]),
                 float(self.points[line[a], 1]),
                 high[a : b - 1],
                 low[a + 1 : b],

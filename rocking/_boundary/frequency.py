@@ -16,7 +16,7 @@ from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
 from rocking._boundary.search import Floats, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._model.checks import check_ends
+from rocking._model.checks import check_ends, check_one_alpha
 from rocking._model.outcome_code import SURVIVES
 from rocking._numba.cancellation import StopFlag
 
@@ -60,8 +60,8 @@ def critical_frequency_ratio(
         raise InvalidArgumentError("window", (low, high), "two ascending frequency ratios, at most four decades apart")
 
     nodes = np.linspace(np.log(low), np.log(high), 2 + int(NODES_PER_DECADE * np.log10(high / low)))
-    point = SLENDERNESS.number(slenderness), float(nodes[0]), RESTITUTION.number(restitution)
-    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, alpha, stop=stop), counted_code))
+    point = SLENDERNESS.number(slenderness), float(nodes[0]), RESTITUTION.number(restitution), check_one_alpha(alpha)
+    grid, codes = outcomes_along(1, point, nodes, classifier(block_solver(made, stop=stop), counted_code))
     overturns = codes != SURVIVES
     edge = np.flatnonzero(overturns[1:] != overturns[:-1])
     above = overturns[edge + 1]

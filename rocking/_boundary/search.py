@@ -1,11 +1,11 @@
 """Points where the outcome changes, found with the solver itself: on one line of the control space, or on many.
 
-A point is 1/a, log omega and the restitution.
+A point is 1/a, log omega, the restitution and the slenderness angle, 0 for the slender limit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking._base.quantities import FREQUENCY_RATIO
-from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.checks import check_one_alpha
 from rocking._model.energy import outcome_margin
 from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
 from rocking._numba.cancellation import StopFlag
@@ -56,10 +54,10 @@ and from the mean without the logarithm; with it 8 % of the brackets take more t
 Floats = NDArray[np.float64]
 Codes = NDArray[np.int64]
 Index = NDArray[np.intp]
-Classify = Callable[[Floats, Floats, Floats], tuple[Codes, Floats]]
-"""From 1/a, log omega and eta, which broadcast, to the code of the outcome and its margin to another."""
-Solve = Callable[[Floats, Floats, Floats], tuple[NDArray[np.void], Floats]]
-"""From arrays (size,) of 1/a, omega and eta to response records and the margin of the outcome to another."""
+Classify = Callable[[Floats, Floats, Floats, Floats], tuple[Codes, Floats]]
+"""From 1/a, log omega, eta and alpha, which broadcast, to the code of the outcome and its margin to another."""
+Solve = Callable[[Floats, Floats, Floats, Floats], tuple[NDArray[np.void], Floats]]
+"""From arrays (size,) of 1/a, omega, eta and alpha to response records and the margin of the outcome to another."""
 
 
 class Outcomes(Protocol):
@@ -108,14 +106,19 @@ def counted_code(found: Outcomes) -> Codes:
 
 
 class Work:
-    """Impacts that the solver has followed, and blocks: what the search for curves has cost so far."""
+    """Impacts that the solver has followed, and blocks, for each angle: what the search for curves has cost so far."""
 
-    def __init__(self) -> None:
-        self.done = 0
+    def __init__(self, alphas: Sequence[float]) -> None:
+        self.alphas = np.unique(alphas)
+        self.done = np.zeros(self.alphas.size)
 
-    def add(self, impacts: NDArray[np.int32]) -> None:
+    def angle(self, alpha: Floats) -> Index:
+        """Numbers of some of the angles."""
+        return np.searchsorted(self.alphas, alpha)
+
+    def add(self, impacts: NDArray[np.int32], alpha: Floats) -> None:
         """Count blocks, and their impacts."""
-        self.done += impacts.size + int(impacts.sum())
+        self.done += np.bincount(self.angle(alpha), 1.0 + impacts, self.done.size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,20 +130,14 @@ class Found:
     chatter: NDArray[np.bool_]
 
 
-def block_solver(
-    pulse: AbstractPulse, alpha: Scalar | None, threads: int | None = None, stop: StopFlag | None = None
-) -> Solve:
+def block_solver(pulse: AbstractPulse, threads: int | None = None, stop: StopFlag | None = None) -> Solve:
     """The solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
 
     It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
-
-    Raises `InvalidArgumentError` for an angle out of range.
     """
-    angle = check_one_alpha(alpha)
 
-    def solve(slenderness: Floats, omega: Floats, eta: Floats) -> tuple[NDArray[np.void], Floats]:
-        cells = [slenderness, omega, eta, np.full(eta.size, angle)]
-        records = solve_cells(pulse, cells, FULL_PRECISION, threads, stop)
+    def solve(*cells: Floats) -> tuple[NDArray[np.void], Floats]:
+        records = solve_cells(pulse, [*cells], FULL_PRECISION, threads, stop)
         return records, outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
 
     return solve
@@ -149,18 +146,19 @@ def block_solver(
 def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] | None = None, work: Work | None = None) -> Classify:
     """A solver as a `Classify`, which notes its work in `work`; `code_of` tells more outcomes apart."""
 
-    def classify(slenderness: Floats, log_omega: Floats, eta: Floats) -> tuple[Codes, Floats]:
+    def classify(slenderness: Floats, log_omega: Floats, eta: Floats, alpha: Floats) -> tuple[Codes, Floats]:
         # rounding must not lead out of the range
         omega = np.clip(np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
-        s, w, e = np.broadcast_arrays(slenderness, omega, eta)
-        records, margin = solve(np.array(s).ravel(), np.array(w).ravel(), np.array(e).ravel())  # contiguous, writable
+        point = np.broadcast_arrays(slenderness, omega, eta, alpha)
+        cells = [np.array(each).ravel() for each in point]  # contiguous, writable
+        records, margin = solve(*cells)
         if work is not None:
-            work.add(records["impacts"])
+            work.add(records["impacts"], cells[3])
         if code_of is None:
             codes = outcome_codes(records["outcome"], records["impacts"])
         else:
             codes = code_of(Found(records["outcome"], records["impacts"], records["chatter"]))
-        return codes.reshape(s.shape), margin.reshape(s.shape)
+        return codes.reshape(point[0].shape), margin.reshape(point[0].shape)
 
     return classify
 
@@ -216,8 +214,8 @@ def refine_brackets(
 ) -> Brackets:
     """Shrink brackets along one axis of the control space to a width of `resolution` [-] at most.
 
-    `axis`: 0 for brackets in 1/a, 1 for log omega; `points` (points, 3): 1/a, log omega and eta, that along the axis
-    does not count; `ends`, `margins` (points, 2): coordinates and margins of both ends; `code`, `met` (points,):
+    `axis`: 0 for brackets in 1/a, 1 for log omega; `points` (points, 4): 1/a, log omega, eta and alpha, that along the
+    axis does not count; `ends`, `margins` (points, 2): coordinates and margins of both ends; `code`, `met` (points,):
     outcomes there.
 
     Given: brackets with one outcome at the first end and another at the second. Kept: the outcome at the first end, so
@@ -287,7 +285,7 @@ def refine_lines(
     is a change for certain; a region that no node shows is found only if a point of a search meets it. What is met is a
     node of the next round, so that a region that was seen once is not lost.
 
-    Where `layers` or `ELASTIC_RESOLUTION` hold, the two nodes may lie so far apart. `axis`, `points` (lines, 3): as for
+    Where `layers` or `ELASTIC_RESOLUTION` hold, the two nodes may lie so far apart. `axis`, `points` (lines, 4): as for
     `refine_brackets`; `nodes`: on these lines, in ascending order of line, then coordinate; `thinnest`: width below
     which a region between two others need not be found [-]; `layers` (lines,): distance of the two nodes where two
     layers of one region meet, see `region_code` [-].
@@ -348,12 +346,12 @@ def _classify_at(axis: int, points: Floats, x: Floats, classify: Classify) -> tu
 
 
 def outcomes_along(
-    axis: int, point: tuple[float, float, float], nodes: Floats, classify: Classify
+    axis: int, point: tuple[float, float, float, float], nodes: Floats, classify: Classify
 ) -> tuple[Floats, Codes]:
     """Nodes on one line of the control space, ascending, and their outcomes, with all changes refined (`refine_lines`).
 
-    `axis`: 0 for a line of 1/a, 1 for one of log omega; `point`: 1/a, log omega and eta, of which the coordinate along
-    the axis does not count; `nodes`: where outcomes are looked for first, ascending.
+    `axis`: 0 for a line of 1/a, 1 for one of log omega; `point`: 1/a, log omega, eta and alpha, of which the coordinate
+    along the axis does not count; `nodes`: where outcomes are looked for first, ascending.
     """
     places = np.tile(point, (nodes.size, 1))
     places[:, axis] = nodes

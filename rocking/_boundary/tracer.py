@@ -5,11 +5,11 @@ A thin region that any node shows is followed as long as it is wider than `THINN
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from rocking._boundary.columns import THINNEST, Column, Lines
+from rocking._boundary.columns import THINNEST, Column, Index, Lines
 from rocking._boundary.matching import Side, join_sides, learn_slopes, learn_smooth_slopes, match_thresholds
 from rocking._boundary.panels import Panel, probes_for_lost_regions
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
@@ -40,7 +40,8 @@ UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD = 3e-4, 3e-3, 3e-4
 """In these two cases, for regions of many impacts: in place of `THINNEST`, of `END` and of `CHORD` [-]."""
 
 EFFORT = 10_000_000
-"""After so many impacts and blocks regions are no longer followed; after twice as many steps are no longer halved [-].
+"""After so many impacts and blocks at an angle regions are no longer followed; after twice as many steps are no longer
+halved [-].
 
 It bounds the time for blocks that strike hundreds of times; `open_ends` counts what is left then.
 """
@@ -49,30 +50,30 @@ SEARCHES = 4  # times that the search starts anew for regions that go on beyond 
 
 
 class Tracer:
-    """Columns on the lines omega = const of a grid, and the joins between the regions of neighbouring ones.
+    """Columns on the lines omega = const of grids, and the joins between the regions of neighbouring ones.
 
-    `classify`, `classify_regions`: the solver with layer codes and with region codes, which note their work in `work`.
-    `joins`: by the index of the left column of a panel, pairs of ends of regions that follow each other on a curve.
-    `thinnest`: width in 1/a below which a region of many impacts is not resolved; `end`: distance in log omega within
-    which the end of such a region is known; `chord`: largest distance of a chord from the curve of such a region [-].
+    The grids are of different angles. They do not affect each other: the solver is called for all of them together,
+    since most of its calls are for a few blocks. `points` (lines, 4): 1/a (any), log omega, eta and alpha of each line,
+    grid after grid; `classify`, `classify_regions`: the solver with layer codes and with region codes, which note their
+    work in `work`. `joins`: by the index of the left column of a panel, pairs of ends of regions that follow each other
+    on a curve. By the number of the angle in `work`, `thinnest`: width in 1/a below which a region of many impacts is
+    not resolved; `end`: distance in log omega within which the end of such a region is known; `chord`: largest distance
+    of a chord from the curve of such a region [-].
     """
 
-    def __init__(
-        self, log_omega: Floats, eta: float, classify: Classify, classify_regions: Classify, work: Work
-    ) -> None:
-        self.size, self.eta = log_omega.size, eta
-        self.points = np.stack([np.zeros(self.size), log_omega, np.full(self.size, eta)], 1)
+    def __init__(self, points: Floats, classify: Classify, classify_regions: Classify, work: Work) -> None:
+        self.points, self.angle = points, work.angle(points[:, 3])
         self.classify = classify
         self.classify_regions = classify_regions
         self.work = work
         self.columns: list[Column] = []
-        self.panels = [*range(self.size - 1)]
+        self.panels = np.flatnonzero(np.diff(self.angle) == 0).tolist()
         self.joins: dict[int, list[tuple[Side, Side]]] = {}
         self._open: Counter[int] = Counter()
         self._tried: set[tuple[int, int, float, int]] = set()
 
-    def trace(self, rows: Floats) -> None:
-        """Find all joins, from nodes of 1/a (nodes, columns)."""
+    def trace(self, rows: Sequence[Floats]) -> None:
+        """Find all joins, from nodes of 1/a (nodes, columns) for each grid."""
         self._classify_grid(rows)
         smooth = set(self.panels)
         for k in self.panels:
@@ -84,22 +85,35 @@ class Tracer:
         for _ in range(SEARCHES):
             changed |= self._follow(changed, followed)
             ends = self._join(changed, halved)
-            changed = self._beyond(ends) if self.work.done <= followed else set()
+            within = self.work.done <= followed
+            changed = self._beyond([end for end in ends if within[self.angle[end.line]]])
             if not changed:
                 break
         else:
             self._join(changed, halved)
 
-    @property
-    def open_ends(self) -> int:
+    def open_ends(self, panels: Iterable[int]) -> int:
         """Places at which a region ends, divides or begins that are known to a step of the grid."""
-        return self._open.total()
+        return sum(self._open[k] for k in panels)
 
-    def _classify_grid(self, rows: Floats) -> None:
+    def _classify_grid(self, rows: Sequence[Floats]) -> None:
         """Columns from the nodes; after two impacts and more regions are thin, so there are finer nodes there."""
+        self.thinnest, self.end, self.chord = np.empty((3, len(rows)))
+        grids, first = [], 0
+        for own in rows:
+            lines = first + np.arange(own.shape[1])
+            grids.append(self._classified_grid(own, lines))
+            self._resolve_layers(grids[-1], lines)
+            first += lines.size
+        self.lines = Lines(self.points, self.classify, self.thinnest[self.angle])
+        columns = self.lines.add(Nodes.merged(grids))
+        self.columns = [columns[k] for k in range(len(self.points))]
+
+    def _classified_grid(self, rows: Floats, columns: Index) -> Nodes:
+        """The nodes of one grid, where the outcome changes, with the finer ones."""
         found = []
-        for part in np.array_split(np.arange(self.size), math.ceil(rows.size / BATCH_SIZE)):
-            x, lines = np.broadcast_arrays(rows.T[part], part[:, None])
+        for part in np.array_split(columns, math.ceil(rows.size / BATCH_SIZE)):
+            x, lines = np.broadcast_arrays(rows.T[part - columns[0]], part[:, None])
             codes, margin = self.classify(x, *self.points[part, 1:, None].swapaxes(0, 1))
             edge = np.diff(codes) != 0
             ends = np.ones((part.size, 1), dtype=bool)
@@ -111,25 +125,22 @@ class Tracer:
             finer = (low + (high - low) * np.arange(1, FINER)[:, None] / FINER).ravel()
             line = np.tile(line, FINER - 1)
             found.append(Nodes(line, finer, *self.classify(finer, *self.points[line, 1:].T)))
-        nodes = Nodes.merged(found)
-        self._resolve_layers(nodes)
-        self.lines = Lines(self.points, self.classify, np.full(self.size, self.thinnest))
-        columns = self.lines.add(nodes)
-        self.columns = [columns[k] for k in range(len(self.points))]
+        return Nodes.merged(found)
 
-    def _resolve_layers(self, nodes: Nodes) -> None:
+    def _resolve_layers(self, nodes: Nodes, lines: Index) -> None:
         """Choose how finely regions of many impacts are resolved, from how many of their ends the nodes show."""
         many = without_layers(nodes.codes) == UNCOUNTED
         ends = np.count_nonzero((many[1:] != many[:-1]) & (np.diff(nodes.line) == 0))
-        coarse = ends > LAYERED * self.size or self.eta > NEARLY_ELASTIC
-        fine = THINNEST, END, CHORD
-        self.thinnest, self.end, self.chord = (UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD) if coarse else fine
+        coarse = ends > LAYERED * lines.size or self.points[lines[0], 2] > NEARLY_ELASTIC
+        angle, fine = self.angle[lines[0]], (THINNEST, END, CHORD)
+        chosen = (UNCOUNTED_THINNEST, UNCOUNTED_END, UNCOUNTED_CHORD) if coarse else fine
+        self.thinnest[angle], self.end[angle], self.chord[angle] = chosen
 
-    def _follow(self, panels: Iterable[int], most: int) -> set[int]:
+    def _follow(self, panels: Iterable[int], most: Floats) -> set[int]:
         """Look in each column for the regions of its neighbours; the panels whose columns changed."""
         changed: set[int] = set()
         todo = set(panels)
-        while todo and self.work.done < most:
+        while todo := {k for k in todo if self._can_go_on(k, most)}:
             wanted: dict[int, list[Floats]] = defaultdict(list)
             matched = {k: match_thresholds(self.columns[k], self.columns[k + 1]) for k in sorted(todo)}
             # a region without partner in the next column is looked for there, where its slope leads; what is found is a
@@ -166,7 +177,12 @@ class Tracer:
                 panels |= {k - 1, k}
         return panels & set(self.panels)
 
-    def _join(self, lines: set[int], most: int) -> list[Panel]:
+    def _can_go_on(self, line: int, most: Floats) -> bool:
+        """Whether the work at the angle of a line is below a limit."""
+        angle = self.angle[line]
+        return bool(self.work.done[angle] < most[angle])
+
+    def _join(self, lines: set[int], most: Floats) -> list[Panel]:
         """Join the regions of neighbouring columns; the panels, or parts of them, in which one ends."""
         todo: list[Panel] = []
         for k in sorted(lines):
@@ -182,7 +198,7 @@ class Tracer:
                 # only the parts of a panel in which the columns differ are halved; in a part narrower than the end
                 # distance the regions end, and it counts as an open end if the effort ran out before
                 for gap in panel.gaps(pairs):
-                    if gap.step > self._end_distance(gap) and self.work.done < most:
+                    if gap.step > self._end_distance(gap) and self._can_go_on(gap.line, most):
                         halved.append(gap)
                     else:
                         self.joins[gap.line] += join_sides(gap.left, gap.right)
@@ -196,12 +212,8 @@ class Tracer:
         if not panels:
             return []
         shares = [panel.share(self._end_distance(panel)) for panel in panels]
-        points = np.array(
-            [
-                (0.0, panel.left.log_omega + share * panel.step, panel.left.eta)
-                for panel, share in zip(panels, shares, strict=True)
-            ]
-        )
+        points = self.points[[panel.line for panel in panels]]
+        points[:, 1] = [panel.left.log_omega + share * panel.step for panel, share in zip(panels, shares, strict=True)]
         expected = [panel.expected(share) for panel, share in zip(panels, shares, strict=True)]
         nodes = [panel.nodes(courses, share) for panel, courses, share in zip(panels, expected, shares, strict=True)]
         found, codes = self._classified(points, nodes)
@@ -239,7 +251,7 @@ class Tracer:
 
     def _end_distance(self, panel: Panel) -> float:
         """Distance in log omega within which the ends of regions in a panel are known [-]."""
-        return self.end if panel.uncounted else END
+        return float(self.end[self.angle[panel.line]]) if panel.uncounted else END
 
     def _beyond(self, ends: list[Panel]) -> set[int]:
         """Look for regions that end at a column of the grid beyond it, now that their course is known well."""

@@ -249,7 +249,8 @@ def boundary(
         )
         return _with_si_axes(found, problem.block.uplift_acceleration, unit)
     window = window or frequency_window(period, lambda one: unit / one)
-    curves = trace_curves(problem.solver(0, stop), float(problem.cells["eta"][0, 0]), window, (0.02, 1.0))
+    block = float(problem.cells["eta"][0, 0]), 0.0, 401  # the solver knows the angles
+    (curves,) = trace_curves(problem.solver(0, stop), [block], window, (0.02, 1.0))
     uplift = float(body.uplift_acceleration)
     curves.attrs |= {"pulse": problem.motion.name, "body": body.description, "uplift_acceleration": uplift}
     return _with_si_axes(curves, uplift, unit)

@@ -261,12 +261,12 @@ class Problem(EqualByValue):
         return solve_motion(self.motion, self.cells, threads, stop)
 
     def solver(self, index: int = 0, stop: StopFlag | None = None) -> Solve:
-        """One of the bodies as a `Solve`: slenderness over that of uplift, `rate` of the cell; eta is not read."""
+        """One of the bodies as a `Solve`: slenderness over that of uplift, `rate` of the cell; the rest is not read."""
         cell: KernelRecord = self.cells[index]
         uplift = cell["slenderness"] / cell["slenderness"].min()
         vertical = cell["vertical"] * cell["slenderness"].min()  # at uplift
 
-        def solve(slenderness: Array, omega: Array, eta: Array) -> tuple[NDArray[np.void], Array]:
+        def solve(slenderness: Array, omega: Array, eta: Array, _alpha: Array) -> tuple[NDArray[np.void], Array]:
             cells = np.repeat(cell, eta.size)
             cells["rate"], cells["slenderness"] = omega, slenderness[:, None] * uplift
             cells["vertical"] = vertical / slenderness

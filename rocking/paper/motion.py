@@ -140,8 +140,8 @@ def arc_terms(tau: Array, omega: Array) -> tuple[Array, Array]:
     Ys = -omega * np.expm1(-2 * tau) - 2 * decay * np.sin(omega * tau)
     short = np.maximum(tau, omega * tau) < _SERIES_UNTIL
     if short.any():
-        cosine_part, sine_part = _short_time_series(np.where(short, tau, 0.0), np.where(short, omega, 1.0))
-        Yc, Ys = np.where(short, cosine_part, Yc), np.where(short, sine_part, Ys)
+        Yc, Ys = np.asarray(Yc), np.asarray(Ys)
+        Yc[short], Ys[short] = _short_time_series(tau[short], omega[short])
     return np.asarray(Yc), np.asarray(Ys)
 
 

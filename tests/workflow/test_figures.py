@@ -121,8 +121,8 @@ def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Datase
     """Figure 10 at more angles than the smallest configuration has."""
     files = {}
     for pulse in ("sine", "cosine"):
-        window = {"nodes": 61, "slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
-        parts = [curves_of(pulse, 0.85, angle, **window) for angle in (0, 5, 10, 20)]
+        window = {"slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
+        parts = curves_of(pulse, 0.85, (0, 5, 10, 20), nodes=61, nodes_rigid=61, **window)
         files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
         write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
     return figure_10.data(**files, restitution=0.85, alpha_deg=[5, 10, 20])

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from rocking._excitation.pulses import as_pulse
+from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 
 Array = NDArray[np.float64]
@@ -45,17 +46,20 @@ class DimensionalProblem:
         period = 2 * np.pi / (frequency_ratio * block.frequency_parameter)
         return cls(block, pulse, acceleration, period, restitution)
 
+    @cached_property
+    def shape(self) -> AbstractPulse:
+        """The pulse."""
+        return as_pulse(self.pulse)
+
     @property
     def pulse_end(self) -> float:
         """Duration of the pulse [s]."""
-        shape = as_pulse(self.pulse)
-        return (shape.end - shape.start) / (2 * np.pi) * self.period
+        return (self.shape.end - self.shape.start) / (2 * np.pi) * self.period
 
     def ground_acceleration(self, time: Array | float) -> Array:
         """a_g f(omega_g t) [m/s2]; time [s] since the start of the pulse."""
-        shape = as_pulse(self.pulse)
-        phi = shape.start + 2 * np.pi / self.period * np.asarray(time)
-        return self.peak_acceleration * shape.acceleration(phi)
+        phi = self.shape.start + 2 * np.pi / self.period * np.asarray(time)
+        return self.peak_acceleration * self.shape.acceleration(phi)
 
     def history(self, time: Array) -> tuple[Array, Array]:
         """Rotation theta [rad] and angular velocity [rad/s] at ascending times [s]."""
@@ -116,7 +120,7 @@ class DimensionalProblem:
     def _rate(self, time: float, state: Array, sign: float) -> list[float]:
         p = self.block.frequency_parameter
         lean = sign * self.block.alpha - state[0]
-        ground = float(self.ground_acceleration(time)) / STANDARD_GRAVITY
+        ground = float(self.ground_acceleration(np.array([time]))[0]) / STANDARD_GRAVITY  # an array needs no checks
         if self.rigid:
             return [state[1], -p * p * (np.sin(lean) + ground * np.cos(lean))]  # (2.2)
         return [state[1], -p * p * (lean + ground)]  # (3.2)

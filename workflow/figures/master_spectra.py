@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from rocking._boundary.tracing import overturning_boundary
+from rocking._boundary.tracing import boundaries_at_angles
 from rocking._model.block import RectangularBlock
 from rocking._solver.peak_response import peak_response
 from rocking.plot.boundary_lines import Lines, draw_lines, outcome_lines
@@ -104,10 +104,11 @@ def _peaks(pulse: str, s: np.ndarray, omega: np.ndarray, eta: float, alpha: floa
 def _traced(
     s: np.ndarray, omega: np.ndarray, eta: np.ndarray, angles: np.ndarray
 ) -> Iterator[tuple[int, float, Lines]]:
-    window = {"slenderness": (s[0], min(s[-1], 1.0)), "frequency_ratio": (omega[0], omega[-1]), "nodes": NODES}
+    window = (omega[0], omega[-1]), (s[0], min(s[-1], 1.0))
+    blocks = [(one, alpha, NODES) for one, alpha in zip(eta.tolist(), angles.tolist(), strict=True)]
     for k, pulse in enumerate(PULSES):
-        for one, alpha in zip(eta.tolist(), angles.tolist(), strict=True):
-            yield k, alpha, outcome_lines(overturning_boundary(pulse, restitution=one, alpha=alpha or None, **window))
+        for (_, alpha, _), curves in zip(blocks, boundaries_at_angles(pulse, blocks, *window), strict=True):
+            yield k, alpha, outcome_lines(curves)
 
 
 def draw(data: xr.Dataset) -> Figure:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from rocking._boundary.curves import join_curves
 from rocking._boundary.search import RESOLUTION
-from rocking._boundary.tracing import overturning_boundary
+from rocking._boundary.tracing import boundaries_at_angles
 from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES, describe, scalar_coordinates, write_dataset
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.sampled import SampledPulse
@@ -48,22 +48,29 @@ def main(
     """
     shape = pulse_of_job(pulse, samples)
     window = {"slenderness": _ends(slenderness), "frequency_ratio": _ends(frequency_ratio)}
-    traced = [
-        curves_of(shape, restitution, angle, nodes=nodes_rigid if angle else nodes, threads=threads, **window)
-        for angle in alpha_deg
-    ]
+    traced = curves_of(shape, restitution, alpha_deg, nodes, nodes_rigid, threads=threads, **window)
     joined = join_curves([one.drop_attrs(deep=False) for one in traced])
     curves = described(joined, shape, restitution).assign_attrs(accuracy_of(traced))
     write_dataset(describe(curves, **provenance), boundaries)
     print(f"{boundaries}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
-def curves_of(pulse: str | SampledPulse, restitution: float, alpha_deg: float, **options: Any) -> xr.Dataset:
-    """The boundary curves at one slenderness angle: ragged polylines, `row_size` points each."""
-    alpha = math.radians(alpha_deg)
-    traced = overturning_boundary(pulse, restitution=restitution, alpha=alpha or None, **options)
-    closed = _closed_forms(traced, traced.restitution, slender=alpha == 0.0) if pulse == "sine" else {}
-    return traced.assign(closed).assign(alpha=("curve", np.full(traced.sizes["curve"], alpha)))
+def curves_of(
+    pulse: str | SampledPulse,
+    restitution: float,
+    alpha_deg: Sequence[float],
+    nodes: int,
+    nodes_rigid: int,
+    **options: Any,
+) -> list[xr.Dataset]:
+    """The boundary curves at each slenderness angle: ragged polylines, `row_size` points each."""
+    blocks = [(restitution, math.radians(angle), nodes_rigid if angle else nodes) for angle in alpha_deg]
+    return [
+        traced.assign(
+            _closed_forms(traced, restitution, slender=traced.alpha == 0.0) if pulse == "sine" else {}
+        ).assign(alpha=("curve", np.full(traced.sizes["curve"], traced.alpha)))
+        for traced in boundaries_at_angles(pulse, blocks, **options)
+    ]
 
 
 def accuracy_of(traced: Sequence[xr.Dataset]) -> dict[str, Any]:
