@@ -83,7 +83,7 @@ BODIES = {
     "on_pedestal": {"width": 0.4, "height": 1.2, "pedestal_width": 0.5, "pedestal_height": 0.4, "pedestal_mass": 2.0},
     "rectangle": {"width": 0.4, "height": 1.6, "sides": "left", "rebound": 0.4},
     "frame": {"width": 0.6, "height": 4.0, "mass_ratio": 2.0},
-    "structure": {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9},
+    "structure": {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9, "uplift_acceleration": 0.9},
 }
 PULSE = {"pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
 
