@@ -20,7 +20,7 @@ ROUTES = {
     "/v1/records/response": ({"record": RECORD}, RECORDS | {"scale": 1.5, "thresholds": False}),
     "/v1/records/history": ({"record": RECORD}, RECORDS | {"samples": 20, "contact": True, "format": "csv"}),
     "/v1/records/scales": ({"record": RECORD}, RECORDS | {"points": 5, "scale_max": 3.0}),
-    "/v1/records/pulse": ({"record": RECORD}, RECORDS | {"samples": 30}),
+    "/v1/records/pulse": ({"record": RECORD}, RECORDS | {"samples": 2}),
     "/v1/response": ({}, {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}),
     "/v1/spectrum": ({}, {"pulse": "sine", "slenderness": 0.4, "restitution": 0.85, "points": 3}),
     "/v1/identify": (TRACE, {"confidence": 0.9, "degrees": True, "edges": 2}),
@@ -83,7 +83,7 @@ BODIES = {
     "on_pedestal": {"width": 0.4, "height": 1.2, "pedestal_width": 0.5, "pedestal_height": 0.4, "pedestal_mass": 2.0},
     "rectangle": {"width": 0.4, "height": 1.6, "sides": "left", "rebound": 0.4},
     "frame": {"width": 0.6, "height": 4.0, "mass_ratio": 2.0},
-    "structure": {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9},
+    "structure": {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9, "uplift_acceleration": 0.9},
 }
 PULSE = {"pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
 

@@ -144,6 +144,7 @@ def test_a_length_that_is_not_read_is_read_once_it_is_named(tmp_path: Path) -> N
     assert one.depth == pytest.approx(0.12)
     unused = read_objects(path, columns={"Girth (mm)": "unused"})
     assert (unused.objects[0].depth, unused.skipped) == (None, ["Girth (mm)"])
+    assert unused.reading.endswith("; not read: Girth (mm)")
     assert unused.objects[0].details == {"Girth (mm)": "120"}
     assert unused.columns == {"name": "name", "width [cm]": "width", "height [cm]": "height"}
     assert "width [cm] as width" in repr(unused)

@@ -35,6 +35,8 @@ def test_response_is_that_of_the_groups():
     assert found.sentence == "rocks and comes to rest"
     assert found.warnings == []
     assert found.rocking_model_applies
+    with pytest.raises(InvalidArgumentError, match=r"^`alpha` = 9e-13 is not allowed; allowed: \[1e-12, 1\.57\]"):
+        rocking.Block(width=9e-13, height=1.0).response("sine", peak_acceleration=1e-11, period=0.5)
 
 
 def test_thresholds_and_margins_are_changes_of_the_outcome():

@@ -147,7 +147,8 @@ ODD = {
     "csv with semicolons and decimal commas": File(pairs(";", "Zeit (s);a (g)\n").replace(".", ",")),
     "csv with a trailing comma": File(pairs().replace("\n", ",\n").replace("acceleration_g,", "acceleration_g")),
     "csv with comments": File("# station ABC\n# unit: cm/s2\n" + pairs(header="time,acceleration\n"), unit="cm/s2"),
-    "csv with quotes": File(pairs(header='"time","acceleration (g)"\n')),
+    "csv with a title that begins like SMC": File("2 BLOCKS\n" + pairs()),
+    "csv with quotes": File(pairs(header='"sec","acceleration (g)"\n')),
     "csv that starts at 10 s": File(
         "t_s,a_g\n" + "".join(f"{10 + k * STEP:.2f},{v:.6f}\n" for k, v in enumerate(values()))
     ),

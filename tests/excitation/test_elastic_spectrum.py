@@ -59,5 +59,6 @@ def test_limits_and_errors() -> None:
     level = rocking.Record(MOTION.acceleration, 0.01, "m/s2")
     with pytest.raises(rocking.InvalidArgumentError, match="no vertical component"):
         rocking.elastic_spectrum(level, 1.0, component="vertical")
-    with pytest.raises(rocking.InvalidArgumentError, match="periods"):
-        rocking.elastic_spectrum(level, [[1.0]])
+    for name, wrong in (("periods", {"periods": [[1.0]]}), ("damping", {"periods": 1.0, "damping": 1.0})):
+        with pytest.raises(rocking.InvalidArgumentError, match=name):
+            rocking.elastic_spectrum(level, **wrong)

@@ -122,6 +122,7 @@ def test_volume_1_in_g():
         (cosmos(real=False), {}, "COSMOS file that states no time step"),
         (cosmos().replace("cm/sec2(04)", "counts(50)"), {"unit": "g"}, "found counts; expected a unit"),
         (geonet(2).replace("at 0.020 sec", "at 0.010 sec"), {"component": "Up"}, "0.02 s; expected that of its text"),
+        (geonet(2).replace("at 0.020 sec", ""), {"component": "Up"}, "0.02 s; expected that of its text, none s"),
         ("Response and Fourier amplitude spectra\n1 2\n", {}, "response spectra .Volume 3."),
         ("* VOL1DS FILE:  5522/01\nUNITS ARE SECONDS AND G/10\n1 2\n", {}, "a BHRC Volume 1 file"),
         ("UNCORRECTED ACCELEROGRAM DATA\n\n\nRENADIC\n0.0 1.0\n", {}, "a RENADIC Volume 1 file"),

@@ -74,6 +74,10 @@ def test_chatter_bound_applies_to_small_velocities_within_an_interval():
     assert not ends_in_rest(flight, 1e-7, 0.9, 0.1, end, 1e-15)  # a flight may exceed the peak
     assert not ends_in_rest(flight, 0.5, 0.9, 0.1, end, 0.5)  # the window is too short
     assert not ends_in_rest(flight, 1e-3, 0.9, end - 1e-6, end, 0.5)
+    flight["each_side"] = 1
+    for peaks, rests in (((0.5, 0.5), True), ((0.5, 1e-15), False), ((1e-15, 0.5), False)):  # on either edge
+        flight["side_peak"] = peaks
+        assert ends_in_rest(flight, 1e-7, 0.9, 0.1, end, 0.5) is rests
 
 
 @pytest.mark.parametrize("alpha", [None, 0.25])

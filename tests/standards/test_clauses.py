@@ -108,7 +108,8 @@ def test_circolare_follows_the_linear_capacity_curve() -> None:
     limit = 2 * G * b / h
     assert standards.circolare2009_linear_check([0.99 * limit, 1.01 * limit], b, h).tolist() == [True, False]
     assert not standards.circolare2009_linear_check(0.99 * limit, b, h, confidence_factor=1.2)
-    assert standards.circolare2009_floor_acceleration(3.0, 0.5, 1) == pytest.approx(1.5)  # one storey: gamma = 1
+    demand = standards.circolare2009_floor_acceleration(3.0, 0.5, [1, 1000])  # one storey: gamma = 1
+    assert demand == pytest.approx([1.5, 1.5 * 3000 / 2001])
     resonant, stiff = standards.circolare2009_floor_displacement(0.1, 0.5, [0.5, 1e-3], 1.0, 1)
     assert resonant == pytest.approx(0.1 / np.sqrt(0.02))
     assert stiff == pytest.approx(0.1 * (1e-3 / 0.5) ** 2, rel=0.01)  # follows the floor
