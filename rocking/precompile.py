@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from rocking._boundary.matching import load_entries
-from rocking._excitation.pulses import PULSE_NAMES, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.time_history import time_history
 from rocking._lookup.cube import Cube
@@ -32,8 +31,6 @@ def is_missing() -> bool:
 
 def load_kernels() -> None:
     """Load all kernels into this process from the cache; compile those that are missing."""
-    for name in PULSE_NAMES:
-        as_pulse(name)  # three of them import a part of scipy
     block: dict[str, Any] = {"slenderness": 0.8, "frequency_ratio": 3.0, "restitution": 0.85}
     peak_response("sine", **block)
     peak_response("sine", **block, alpha=0.3)

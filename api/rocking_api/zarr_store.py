@@ -18,7 +18,6 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import xarray as xr
-from zarr.storage import MemoryStore
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, UnknownDatasetError
@@ -171,6 +170,8 @@ def _contents_by_angle(solved: xr.Dataset) -> Contents:
 
 
 def _contents(dataset: xr.Dataset, encoding: dict[str, Any] | None = None) -> Contents:
+    from zarr.storage import MemoryStore  # noqa: PLC0415  # takes as long to load as the service
+
     known = {name: value for name, value in dataset.attrs.items() if not _is_nan(value)}  # JSON has no nan
     content: dict[str, Any] = {}  # buffers of zarr
     # the compression of netCDF differs; format 2: every client reads it with consolidated metadata, which format 3

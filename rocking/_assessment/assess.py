@@ -26,7 +26,6 @@ from rocking._boundary.scan import RESOLUTION, checked_resolution
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag, check_stop
 from rocking.suites.fits import FitStatus, binomial_interval, fit_curve
-from rocking.suites.hazard import curve_rates, outcome_rates
 
 WIDE = 0.1  # relative distance of the bounds of an annual rate above which a warning is given [-]
 
@@ -175,6 +174,8 @@ def _annual_rate(body: BodyArray, site: Site, stop: StopFlag | None) -> dict[str
     rate, lower, upper = (np.full(body.shape, np.nan) for _ in range(3))
     hazard: Any = site.hazard  # checked arrays, see `Site`
     if hazard is not None:
+        from rocking.suites.hazard import curve_rates, outcome_rates  # noqa: PLC0415  (xarray takes longer to load)
+
         intensity, rates = hazard
         levels = np.geomspace(intensity[0], intensity[-1], RATE_LEVELS)
         reached = [

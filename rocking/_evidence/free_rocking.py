@@ -32,9 +32,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import OptimizeResult, least_squares
-from scipy.special import ellipj, ellipkinc
-from scipy.stats import f as f_distribution
-from scipy.stats import t as student
+from scipy.special import ellipj, ellipkinc, fdtri, stdtrit
 
 from rocking._base.arrays import Array, Flags, Index
 from rocking._base.errors import InvalidArgumentError, in_range, integer, number
@@ -216,7 +214,7 @@ def _departure(residual: Array, jacobian: Array, trace: Callable[[Array], Array]
     told = float(np.sum((basis.T @ residual) ** 2))
     rank, freedom = basis.shape[1], residual.size - jacobian.shape[1] - basis.shape[1]
     noise = (float(residual @ residual) - told) / max(freedom, 1)
-    if freedom < 1 or told <= rank * noise * float(f_distribution.isf(0.01, rank, freedom)):
+    if freedom < 1 or told <= rank * noise * float(fdtri(rank, freedom, 0.99)):
         return 0.0, changes
     return math.sqrt((told - rank * noise) / float(np.sum(seen**2))), changes
 
@@ -367,11 +365,11 @@ def _described(
     inverse = np.linalg.pinv(fit.jac)
     deviation = np.sqrt(variance * (inverse**2).sum(axis=1))
     tail, texts = 0.5 * (1.0 + level), []
-    reach = float(student.ppf(tail, freedom)) * deviation
-    plain = float(student.ppf(tail, model.size - fit.x.size)) * np.sqrt(2.0 * fit.cost / (model.size - fit.x.size))
+    reach = float(stdtrit(freedom, tail)) * deviation
+    plain = float(stdtrit(model.size - fit.x.size, tail)) * np.sqrt(2.0 * fit.cost / (model.size - fit.x.size))
     if departure:
         by_changes = departure * np.sqrt(((inverse @ changes) ** 2).sum(axis=1))
-        reach = np.maximum(reach, float(student.ppf(tail, impacts.size)) * np.hypot(by_changes, deviation))
+        reach = np.maximum(reach, float(stdtrit(impacts.size, tail)) * np.hypot(by_changes, deviation))
         texts.append(f"the flights depart from those of one rigid body on ground at rest by {100 * departure:.2g} %")
     if correlated > 1.0:
         texts.append(f"errors follow each other over {correlated:.2g} samples")

@@ -83,15 +83,13 @@ def c2() -> SinusoidalPulse:
     return _type_c(2)
 
 
+TYPE_C_START = {1: 0.2189795224756257, 2: 0.12872979703677595}
+"""Phase x at which the displacement ends at zero, by the number of cycles n [rad]: the root in (0, 0.5) of
+cos(c - x) + (c - 2x) sin x - cos x, c = (2n + 1) pi."""
+
+
 def _type_c(cycles: int) -> SinusoidalPulse:
-    from scipy.optimize import brentq  # takes longer to import than the rest of the package; only these pulses need it
-
-    span = (2 * cycles + 1) * math.pi
-
-    def end_displacement(x: float) -> float:
-        return math.cos(span - x) + (span - 2 * x) * math.sin(x) - math.cos(x)
-
-    start = float(brentq(end_displacement, 0.0, 0.5, xtol=1e-16, rtol=8.9e-16))
+    span, start = (2 * cycles + 1) * math.pi, TYPE_C_START[cycles]
     stationary = tuple(k * math.pi for k in range(1, 2 * cycles + 1))
     return _sinusoid(f"c{cycles}", start, span - start, stationary)
 

@@ -27,9 +27,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import minimize
-from scipy.stats import beta, chi2
-from scipy.stats import t as student
+from scipy.special import betainccinv, betaincinv, gammaincinv, stdtrit
 
 from rocking._base.arrays import Array, Flags
 from rocking.suites.curve import LINKS, Link, curve_probability
@@ -87,8 +85,8 @@ def binomial_interval(count: ArrayLike, trials: int, confidence: float) -> tuple
     """
     successes, tail = np.asarray(count), 0.5 * (1.0 - confidence)
     with np.errstate(invalid="ignore"):
-        low = np.where(successes > 0, beta.ppf(tail, successes, trials - successes + 1), 0.0)
-        high = np.where(successes < trials, beta.isf(tail, successes + 1, trials - successes), 1.0)
+        low = np.where(successes > 0, betaincinv(successes, trials - successes + 1, tail), 0.0)
+        high = np.where(successes < trials, betainccinv(successes + 1, trials - successes, tail), 1.0)
     return low, high
 
 
@@ -151,6 +149,8 @@ def fit_curve(
 
 def _maximise(link: Link, fractions: Array, x: Array) -> tuple[float, float] | None:
     """(a, b) of z = a + b x at the largest likelihood; None if b is not positive there."""
+    from scipy.optimize import minimize  # noqa: PLC0415  # takes longer to load than the package
+
     centre, width = float(x.mean()), float(np.ptp(x))
     scaled = (x - centre) / width
     design = np.stack([np.ones_like(scaled), scaled])
@@ -211,7 +211,7 @@ def _described(
         ),
     )
     if covariance is not None:
-        quantile = float(student.ppf(0.5 + 0.5 * confidence, records - 1))
+        quantile = float(stdtrit(records - 1, 0.5 + 0.5 * confidence))
         of_median = np.array([-1.0 / b, a / b**2])
         half_width = quantile * math.sqrt(float(of_median @ covariance @ of_median))
         median_interval = (median * _exp(-half_width), median * _exp(half_width))
@@ -259,7 +259,7 @@ def _spread_factors(variance: float, confidence: float) -> tuple[float, float]:
     interval of the logarithm it allows for the estimate being too small in small samples.
     """
     freedom = (1.0 + math.sqrt(1.0 + 8.0 * variance)) / (4.0 * variance)
-    quantiles = chi2.ppf([0.5 + 0.5 * confidence, 0.5 - 0.5 * confidence], freedom)
+    quantiles = 2.0 * gammaincinv(0.5 * freedom, np.array([0.5 + 0.5 * confidence, 0.5 - 0.5 * confidence]))  # chi^2
     with np.errstate(divide="ignore"):
         low, high = np.sqrt((freedom + 1.0) / quantiles)
     return float(low), float(high)

@@ -132,6 +132,8 @@ def test_type_c_has_zero_final_velocity_and_displacement(name):
 
     assert final(pulse.shape) == pytest.approx(0, abs=1e-13)
     assert final(lambda phi: (pulse.end - phi) * pulse.shape(phi)) == pytest.approx(0, abs=1e-12)
+    span, x = (2 * int(name[1]) + 1) * math.pi, pulse.start  # its start is stated to all digits
+    assert abs(math.cos(span - x) + (span - 2 * x) * math.sin(x) - math.cos(x)) < 1e-15
 
 
 @pytest.mark.parametrize("name", ["square", "", "--sine", "Sine", "sine "])
