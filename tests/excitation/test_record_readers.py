@@ -137,6 +137,19 @@ def test_seismic_formats_without_obspy_name_the_package(monkeypatch) -> None:
         parse_record(sac.tobytes(), "x.sac", unit="g")
 
 
+@pytest.mark.parametrize(
+    ("missing", "decimals", "read"), [(400, 3, True), (200, 3, False), (398, 3, False), (400, 2, False)]
+)
+def test_times_are_uniform_as_far_as_their_last_decimal_says(missing: int, decimals: int, read: bool) -> None:
+    lines = [f"{k / 128:.{decimals}f},{np.sin(k):.4f}\n" for k in range(401) if k != missing]
+    text = ("time [s],acc [g]\n" + "".join(lines)).encode()
+    if read:
+        assert parse_record(text, "rounded").time_step == pytest.approx(1 / 128, rel=1e-3)
+    else:
+        with pytest.raises(RecordFileError, match="uniform steps"):
+            parse_record(text, "rounded")
+
+
 @pytest.mark.parametrize("rows", ["0.1\n0.2\n", "1 " * 4000])
 def test_words_of_long_lines_are_not_looked_up(rows: str, monkeypatch) -> None:
     words: list[str] = []
