@@ -89,11 +89,13 @@ HALF_HEIGHT = Quantity("half_height", "m", "half of the height", symbol="h", tim
 
 DEPTH = Quantity("depth", "m", "depth of the base", lower=0.0, example="30 cm",
     aliases="d, base depth, depth of base, depth of the base, tiefe, profondita, profondeur, p, profundidad, "
-    "profundidade, diepte, vathos, \u03b2\u03b1\u03b8\u03bf\u03c2", absent_beside=("diameter",))
+    "profundidade, diepte, vathos, \u03b2\u03b1\u03b8\u03bf\u03c2, \u5965\u884c, \u5965\u884c\u304d",
+    absent_beside=("diameter",))
 
 DIAMETER = Quantity("diameter", "m", "diameter of a round base", lower=0.0, example="30 cm",
     aliases="dia, diam, base diameter, diameter base, diameter of base, diameter of the base, durchmesser, diametro, "
-    "diametre, diametros, \u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2", absent_beside=("width",))
+    "diametre, diametre base, diametre de la base, \u76f4\u5f84, diametros, "
+    "\u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2", absent_beside=("width",))
 
 LENGTH = Quantity("length", "m", "horizontal length: the depth beside a width, otherwise the width",
     aliases="l, base length, length of base, lange, laenge, longueur, lunghezza, largo, longitud, comprimento, lengte, "

@@ -52,9 +52,10 @@ EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 
 _TOTAL = re.compile(
     r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne|"
+    r"avg|median|std|std\.?\s*dev|standard deviation|minimum|maximum|min|max|durchschnitt|"
     r"totaal|summa|razem|toplam|\u0438\u0442\u043e\u0433\u043e|\u03c3\u03cd\u03bd\u03bf\u03bb\u03bf|"
     r"[\u5408\u5c0f\u7dcf\u603b][\u8a08\u8ba1])"
-    r"\s*(?:[:(\d].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos)\b.*)?",
+    r"\.?\s*(?:[:(\d].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos)\b.*)?",
     re.IGNORECASE | re.DOTALL,
 )
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""

@@ -249,7 +249,7 @@ def test_rows_that_could_be_misread_are_reported(row: str) -> None:
 
 def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
     names = ["Total Eclipse (bronze)", "bust", "Mean old man", "Somme, battlefield", "Sum-1"]
-    totals = ["Total:", "SUM", " Mittelwert : ", "\u5408\u8a08"]
+    totals = ["Total:", "SUM", " Mittelwert : ", "\u5408\u8a08", "Avg.", "Std dev"]
     rows = [f"{name};30;30;60\n" for name in [*names, *totals]]
     found = objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)};Total;30;60\n")
     assert found.totals == [
@@ -257,7 +257,9 @@ def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
         "row 8: SUM",
         "row 9: Mittelwert :",
         "row 10: \u5408\u8a08",
-        "row 11: Total",
+        "row 11: Avg.",
+        "row 12: Std dev",
+        "row 13: Total",
     ]
     assert "row 8: SUM (no object)" in found.reading
     assert [one.name for one in found.objects] == names
