@@ -34,18 +34,22 @@ class ObjectTable:
         Headers of columns that are not read; their cells are kept in the `details` of the objects.
     columns : dict of str to str
         What each other column was read as, by its header; of JSON nothing, whose keys say it.
+    totals : list of str
+        Rows of totals, which are no objects, such as "row 9: Total".
     """
 
     objects: list[Object]
     bad_rows: list[BadRow] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
     columns: dict[str, str] = field(default_factory=dict)
+    totals: list[str] = field(default_factory=list)
 
     @property
     def reading(self) -> str:
-        """How each column was read, and which ones were not, in words."""
+        """How each column was read, and which columns and rows were not, in words."""
         read = ", ".join(f"{header} as {name}" for header, name in self.columns.items())
-        unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
+        skipped = [*self.skipped, *(f"{row} (no object)" for row in self.totals)]
+        unread = f"; not read: {', '.join(skipped)}" if skipped else ""
         return f"columns read: {read}{unread}" if read else ""
 
     def __repr__(self) -> str:
@@ -121,7 +125,7 @@ def _objects(table: Table[Object]) -> ObjectTable:
     for one, row in zip(table.items, zip(*table.cells.values(), strict=True), strict=True):
         details = RowDetails(one.details, dict(zip(table.cells, row, strict=True)))
         vars(one)["details"] = details  # a frozen dataclass
-    return ObjectTable(table.items, table.bad_rows, skipped, table.columns)
+    return ObjectTable(table.items, table.bad_rows, skipped, table.columns, table.totals)
 
 
 def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:

@@ -56,7 +56,7 @@ def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
         raise InvalidArgumentError(one.name, text, allowed)
     if written == "%" and not found[3] and 0.0 < abs(number) <= 1.0:
         raise InvalidArgumentError(one.name, text, f"a percentage above 1: is it {text} %, or {text}?")
-    value = number * UNITS[one.unit].get(written, 1.0)
+    value = number * UNITS[one.unit].get(written, 1.0) * one.times
     if value > one.highest:
         raise InvalidArgumentError(one.name, text, f"at most {one.highest:g}; a percentage has its sign, {text} %")
     return value
@@ -102,7 +102,7 @@ def plain_name(text: str) -> str:
     """A name in small letters, without accents, signs and doubled blanks; the sign of a diameter is its word."""
     text = _ROUND.sub(" diameter ", text).replace("\u00df", "ss")
     bare = "".join(one for one in unicodedata.normalize("NFKD", text.lower()) if not unicodedata.combining(one))
-    return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff]+", " ", bare).split())
+    return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff\u3040-\u30ff\u4e00-\u9fff]+", " ", bare).split())
 
 
 def name_and_unit(text: str) -> tuple[str, str]:

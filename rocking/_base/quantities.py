@@ -75,19 +75,27 @@ NUMBER = Quantity("number", "", "inventory number, the name of an object without
 
 WIDTH = Quantity("width", "m", "width of the base", symbol="2b", lower=0.0, example="0.4m",
     aliases="w, b, breadth, base width, width of base, width of the base, breite, larghezza, largeur, ancho, anchura, "
-    "largura, breedte, platos, \u03c0\u03bb\u03b1\u03c4\u03bf\u03c2", absent_beside=("diameter",))
+    "largura, breedte, platos, \u03c0\u03bb\u03b1\u03c4\u03bf\u03c2, \u5e45, 2b", absent_beside=("diameter",))
 
 HEIGHT = Quantity("height", "m", "height of the object", symbol="2h", lower=0.0, example="160 cm",
     aliases="h, overall height, total height, hohe, hoehe, gesamthohe, altezza, hauteur, alto, altura, hoogte, ypsos, "
-    "\u03c5\u03c8\u03bf\u03c2")
+    "\u03c5\u03c8\u03bf\u03c2, \u9ad8\u3055, 2h")
+
+HALF_WIDTH = Quantity("half_width", "m", "half of the width of the base", symbol="b", times=2.0, stands_for=("width",),
+    aliases="half base, half base width, half breadth, halbe breite")
+
+HALF_HEIGHT = Quantity("half_height", "m", "half of the height", symbol="h", times=2.0, stands_for=("height",),
+    aliases="halbe hohe, halbe hoehe")
 
 DEPTH = Quantity("depth", "m", "depth of the base", lower=0.0, example="30 cm",
     aliases="d, base depth, depth of base, depth of the base, tiefe, profondita, profondeur, p, profundidad, "
-    "profundidade, diepte, vathos, \u03b2\u03b1\u03b8\u03bf\u03c2", absent_beside=("diameter",))
+    "profundidade, diepte, vathos, \u03b2\u03b1\u03b8\u03bf\u03c2, \u5965\u884c, \u5965\u884c\u304d",
+    absent_beside=("diameter",))
 
 DIAMETER = Quantity("diameter", "m", "diameter of a round base", lower=0.0, example="30 cm",
     aliases="dia, diam, base diameter, diameter base, diameter of base, diameter of the base, durchmesser, diametro, "
-    "diametre, diametros, \u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2", absent_beside=("width",))
+    "diametre, diametre base, diametre de la base, \u76f4\u5f84, diametros, "
+    "\u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2", absent_beside=("width",))
 
 LENGTH = Quantity("length", "m", "horizontal length: the depth beside a width, otherwise the width",
     aliases="l, base length, length of base, lange, laenge, longueur, lunghezza, largo, longitud, comprimento, lengte, "

@@ -47,6 +47,8 @@ class Quantity:
         Other names in headers of tables, in small letters without accents, the best ones first, with commas between.
     stands_for : tuple of str
         Quantities of which this one is the first that the table has no column for: a length beside a width is a depth.
+    times : float
+        What a cell is multiplied by to have the quantity that it stands for, 2 of a half size.
     absent_beside : tuple of str
         Quantities beside which 0 says that this one does not apply.
     words : tuple of str
@@ -71,6 +73,7 @@ class Quantity:
     example: str = ""
     aliases: str = ""
     stands_for: tuple[str, ...] = ()
+    times: float = 1.0
     absent_beside: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
     highest: float = math.inf

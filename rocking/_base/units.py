@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from itertools import chain
 from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
@@ -134,6 +135,17 @@ _NAMES["kg"] |= dict.fromkeys(("gram", "grams", "gramme", "grammes", "gramm"), "
 def unit_name(text: str, unit: str) -> str | None:
     """The name in `UNITS` of a unit such as "M/S^2"; None if it is none of the quantity with the SI unit `unit`."""
     return _NAMES[unit].get(_plain(text)) if len(text) <= MAX_LENGTH else None
+
+
+def quantities_of(text: str) -> frozenset[str]:
+    """The SI units of the quantities that have a unit such as "M/S^2"."""
+    return _QUANTITIES.get(_plain(text), frozenset()) if len(text) <= MAX_LENGTH else frozenset()
+
+
+_QUANTITIES = {
+    form: frozenset(unit for unit, names in _NAMES.items() if form in names)
+    for form in {*chain.from_iterable(_NAMES.values())}
+}
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:

@@ -291,7 +291,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
 
     columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
     if form.kind == "json":
-        about = {"details": found.details, "columns": table.columns, "skipped": table.skipped}
+        about = {"details": found.details, "columns": table.columns, "skipped": table.skipped, "totals": table.totals}
         printing.print_json(
             columns | about | {"motions": found.motions, "resolution": found.resolution, "bad_rows": bad}
         )

@@ -137,7 +137,14 @@ def responses(table: BlockTable, form: Form) -> None:
     with progress(f"solving {len(table.problems)} blocks"):
         found = respond_table(table)
     if form.kind == "json":
-        print_json(found | {"table": table.read.cells, "bad_rows": [vars(one) for one in table.read.bad_rows]})
+        print_json(
+            found
+            | {
+                "table": table.read.cells,
+                "totals": table.read.totals,
+                "bad_rows": [vars(one) for one in table.read.bad_rows],
+            }
+        )
         return
     found = {name: column for name, column in found.items() if name not in table.read.columns.values()}
     results = {name: found[name] for name in dict.fromkeys((*_OF_ROWS, *found))}
@@ -147,6 +154,8 @@ def responses(table: BlockTable, form: Form) -> None:
         given = {label: table.read.cells[label] for label, name in table.read.columns.items() if name == "name"}
         results = {name: results[name] for name in _OF_ROWS}
     print_columns(given | results, form)
+    if form.kind == "table" and table.read.totals:
+        typer.echo(printable(f"not read: {', '.join(table.read.totals)}"))
 
 
 _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")

@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeVar
 
 from rocking._base.cells import name_and_unit, named, plain_name, rank, read_header, stated_unit
@@ -150,6 +150,12 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
         raise line.error
     for name in schema.renamed.keys() - set(map(str.strip, line.labels)):
         raise InvalidArgumentError("columns", name, f"a column of the table: {'; '.join(line.labels)[:MAX_NAME]}")
+    best = {one.name: (*one.names, "")[rank(one, line.texts[place])] for place, (one, _) in line.columns.items()}
+    symbols = [best.get("width") == "b", best.get("height") == "h"]
+    half = any(one.times != 1.0 for one, _ in line.columns.values())
+    if any(symbols) if half else all(symbols) and "depth" not in best:
+        allowed = "width and height, or 2b and 2h, or half width and half height: b and h may be either"
+        raise InvalidArgumentError(f"{schema.argument}, header", "b; h", allowed)
     count = Counter(one.name for one, _ in line.columns.values() if one.unit)
     for name in (name for name, several in count.items() if several > 1):
         same = "; ".join(line.texts[place] for place, (one, _) in line.columns.items() if one.name == name)
@@ -207,7 +213,7 @@ def _assigned(
         if target is None:
             found = {place: pair for place, pair in found.items() if place not in places}
         else:
-            found |= {place: (known[target], found[place][1]) for place in places}
+            found |= {place: (replace(known[target], times=column.times), found[place][1]) for place in places}
     return found
 
 

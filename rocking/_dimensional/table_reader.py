@@ -51,8 +51,11 @@ EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 """Limits: rows without an item, where rows are limited; columns and cells of a sheet (one far out makes all)."""
 
 _TOTAL = re.compile(
-    r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne)"
-    r"\s*(?:[:(\d].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos)\b.*)?",
+    r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne|"
+    r"avg|median|std|std\.?\s*dev|standard deviation|minimum|maximum|min|max|durchschnitt|"
+    r"totaal|summa|razem|toplam|\u0438\u0442\u043e\u0433\u043e|\u03c3\u03cd\u03bd\u03bf\u03bb\u03bf|"
+    r"[\u5408\u5c0f\u7dcf\u603b][\u8a08\u8ba1])"
+    r"\.?\s*(?:[:(\d].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos)\b.*)?",
     re.IGNORECASE | re.DOTALL,
 )
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
@@ -98,6 +101,8 @@ class Table(Generic[Item]):
     errors: list[tuple[int, InvalidArgumentError]] = field(default_factory=list)
     # the cells of each of these rows
     unread: list[dict[str, str]] = field(default_factory=list)
+    # rows of totals, which are no items: "row 9: Total"
+    totals: list[str] = field(default_factory=list)
 
     @property
     def bad_rows(self) -> list[BadRow]:
@@ -280,12 +285,16 @@ def read_rows(
     top = list(islice(rest, HEADER_ROWS + 1))  # with a line of units
     header = find_header(top, schema)
     body: list[tuple[int, Sequence[str]]] = []
+    totals: list[str] = []
     for number, row in enumerate(chain(top[header.last + 1 :], rest), start=header.last + 2):
         if _is_item(row):
             if len(body) == most:
                 raise TooManyRowsError(schema.argument, f"more than {most} rows", f"at most {most}")
             body.append((number, row))
-        elif most is not None and number - len(body) > EMPTY_ROWS:
+            continue
+        if any(map(str.isalnum, "".join(row))):
+            totals.append(f"row {number}: {next(filter(None, map(str.strip, row)))[:MAX_NAME]}")
+        if most is not None and number - len(body) > EMPTY_ROWS:
             allowed = f"at most {EMPTY_ROWS} rows that are empty or totals"
             raise TooManyRowsError(schema.argument, f"{number} rows", allowed)
     numeric = [place for place, (one, _) in header.columns.items() if one.unit]
@@ -314,13 +323,16 @@ def read_rows(
     padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
     columns = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
     columns = {label: column for label, column in columns.items() if not label.startswith("#") or any(column)}
-    read = {labels[place]: one.name for place, (one, _) in header.columns.items()}
+    read = {
+        labels[place]: one.name if one.times == 1.0 else f"half_{one.name}"
+        for place, (one, _) in header.columns.items()
+    }
     read |= {labels[place]: "units" for place in header.units.values()}
     units = {
         one.name: unit or next((written for row in padded if (written := _written_unit(row[place], one))), "")
         for place, (one, unit) in header.columns.items()
     }
-    return Table(items, columns, read, units, errors, unread)
+    return Table(items, columns, read, units, errors, unread, totals)
 
 
 def _is_item(row: Sequence[str]) -> bool:

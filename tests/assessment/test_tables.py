@@ -250,9 +250,19 @@ def test_rows_that_could_be_misread_are_reported(row: str) -> None:
 
 def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
     names = ["Total Eclipse (bronze)", "bust", "Mean old man", "Somme, battlefield", "Sum-1"]
-    totals = ["Total:", "SUM", " Mittelwert : "]
+    totals = ["Total:", "SUM", " Mittelwert : ", "\u5408\u8a08", "Avg.", "Std dev"]
     rows = [f"{name};30;30;60\n" for name in [*names, *totals]]
     found = objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)};Total;30;60\n")
+    assert found.totals == [
+        "row 7: Total:",
+        "row 8: SUM",
+        "row 9: Mittelwert :",
+        "row 10: \u5408\u8a08",
+        "row 11: Avg.",
+        "row 12: Std dev",
+        "row 13: Total",
+    ]
+    assert "row 8: SUM (no object)" in found.reading
     assert [one.name for one in found.objects] == names
     assert found.bad_rows == []
 
@@ -289,3 +299,26 @@ def test_columns_with_names_like_those_that_are_read_are_others() -> None:
 def test_two_columns_of_one_quantity_are_named() -> None:
     with pytest.raises(InvalidArgumentError, match=r"Height \(in\.\); Height \(cm\)"):
         objects_of_csv("Height (in.),Height (cm),Width (cm)\n24.5,62.2,25.4\n")
+
+
+@pytest.mark.parametrize("header", ["b [m];h [m]", "B_m;H (m)", "half width [m];h [m]", "b [m];half height [m]"])
+def test_b_and_h_are_refused_where_they_may_be_half_sizes(header: str) -> None:
+    with pytest.raises(InvalidArgumentError, match="2b and 2h"):
+        objects_of_csv(f"name;{header}\na;0.3;0.9\n")
+
+
+@pytest.mark.parametrize(
+    ("header", "width", "height"),
+    [
+        ("2b [m];2h [m]", 0.3, 0.9),
+        ("half width [m];half height [m]", 0.6, 1.8),
+        ("half width [m];height [m]", 0.6, 0.9),
+        ("b [m];height [m]", 0.3, 0.9),
+        ("width (b) [m];height (h) [m]", 0.3, 0.9),
+        ("\u5e45 [m];\u9ad8\u3055 [m]", 0.3, 0.9),
+    ],
+)
+def test_half_and_full_sizes(header: str, width: float, height: float) -> None:
+    found = objects_of_csv(f"name;{header}\na;0.3;0.9\n")
+    assert (found.objects[0].width, found.objects[0].height) == (width, height)
+    assert ("half_width" in found.reading) == (width == 0.6)

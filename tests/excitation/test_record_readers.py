@@ -11,6 +11,7 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
+from rocking._excitation.records.readers import layout
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._excitation.records.readers.read_record import parse_record
@@ -134,6 +135,30 @@ def test_seismic_formats_without_obspy_name_the_package(monkeypatch) -> None:
     sac[304] = 6
     with pytest.raises(RecordFileError, match="pip install obspy"):
         parse_record(sac.tobytes(), "x.sac", unit="g")
+
+
+@pytest.mark.parametrize(
+    ("missing", "decimals", "read"), [(400, 3, True), (200, 3, False), (398, 3, False), (400, 2, False)]
+)
+def test_times_are_uniform_as_far_as_their_last_decimal_says(missing: int, decimals: int, read: bool) -> None:
+    lines = [f"{k / 128:.{decimals}f},{np.sin(k):.4f}\n" for k in range(401) if k != missing]
+    text = ("time [s],acc [g]\n" + "".join(lines)).encode()
+    if read:
+        assert parse_record(text, "rounded").time_step == pytest.approx(1 / 128, rel=1e-3)
+    else:
+        with pytest.raises(RecordFileError, match="uniform steps"):
+            parse_record(text, "rounded")
+
+
+@pytest.mark.parametrize("rows", ["0.1\n0.2\n", "1 " * 4000])
+def test_words_of_long_lines_are_not_looked_up(rows: str, monkeypatch) -> None:
+    words: list[str] = []
+    for name in ("quantities_of", "unit_name"):
+        looked_up = getattr(layout, name)
+        monkeypatch.setattr(layout, name, lambda text, *given, of=looked_up: words.append(text) or of(text, *given))
+    with pytest.raises(RecordFileError):
+        parse_record((("a " * 4000 + "\n") * 3 + rows).encode(), "long")
+    assert len(words) < 100
 
 
 def test_mutated_files_are_read_or_refused() -> None:

@@ -45,7 +45,8 @@ def test_nearly_all_outcomes_are_those_of_the_solver(changed: dict[str, float]) 
     if changed == {"alpha": 0.0}:
         cells["slenderness"][:, 1] = cells["slenderness"][:, 0]
     records, _ = solve_bodies(samples, cells, 1, None, True)
-    overturned, reach = estimate_outcomes(samples, cells, 1)
+    overturned, ends = estimate_outcomes(samples, cells, 1)
+    reach = ends[:, :2]
     expected = records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
     assert 0 < expected.sum() < cells.size
     assert (overturned != expected).mean() < 0.01
@@ -54,7 +55,7 @@ def test_nearly_all_outcomes_are_those_of_the_solver(changed: dict[str, float]) 
     assert (reach[still] > 0.5 * FAR).all()
     again = estimate_outcomes(samples, cells[::-1].copy(), 2)
     np.testing.assert_array_equal(again[0], overturned[::-1])
-    np.testing.assert_array_equal(again[1], reach[::-1])
+    np.testing.assert_array_equal(again[1], ends[::-1])
 
 
 @pytest.mark.parametrize("blocked", [0, 1])
@@ -74,9 +75,11 @@ def test_the_reach_is_the_distance_to_overturning_where_the_peak_depends_on_the_
     samples = motion_samples(rocking.Record(np.sin(np.linspace(0.0, 2.0 * np.pi, 101)), 0.01, "m/s2"))
     cells = bodies(200, 1, rate=0.05, alpha=0.2, eta=0.8)
     cells["slenderness"] = 1.0 / np.linspace(1.0, 2.0, 200)[:, None]
-    overturned, (reach, _) = (each.T for each in estimate_outcomes(samples, cells, 1))
+    overturned, (reach, _, squares, slope) = (each.T for each in estimate_outcomes(samples, cells, 1))
     first = int(overturned.argmax())
     factor = 1.0 / cells["slenderness"][:, 0]
     distance = np.log(factor[first] / factor[first - 4 : first - 1])
     assert first > 10
     assert (np.abs(np.log(reach[first - 4 : first - 1] / distance)) < 1.2).all()
+    rise = np.diff(squares[6:14]) / np.diff(np.log(factor[6:14]))  # taken at the end of the step of a peak
+    np.testing.assert_allclose(0.5 * (slope[6:13] + slope[7:14]), rise, rtol=0.7)

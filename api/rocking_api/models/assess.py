@@ -197,3 +197,4 @@ class AssessResponse(Echoed[AssessParams], Solved[AssessParams]):
     details: dict[str, list[str]] = said("unchanged cells of the object of each row, by the headers of the table", {})
     columns: dict[str, str] = said("meaning of the columns that were read, by header")
     skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
+    totals: list[str] = said("rows of totals of the table, which are no objects, with their first cells")

@@ -99,6 +99,7 @@ def _assess(
                 "bad_rows": [vars(one) for one in table.bad_rows],
                 "columns": table.columns,
                 "skipped": table.skipped,
+                "totals": table.totals,
             }
         ),
         request,

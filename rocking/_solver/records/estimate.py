@@ -14,7 +14,8 @@ Each flight carries the derivatives of z and w with respect to the logarithm of 
 and at an impact with the velocity w at a time that changes by -dz/w. At a peak z of a flight, (1 - z)/|dz/d ln g| is
 about how far away in ln g it reaches the unstable equilibrium, above g or below it by the sign of the derivative. It is
 divided by z, since a low peak seldom grows so far. The smallest of all peaks, and the same for z + w at the end of the
-record without that division, are the reaches of the response.
+record without that division, are the reaches of the response. The sum of z**2 over all peaks and its derivative tell
+whether the response jumps between two factors.
 """
 
 from __future__ import annotations
@@ -59,11 +60,11 @@ SHORTEST = 256.0
 
 RATE, FACTOR = 0, 1
 A, ETA, PULL, S_RATE, C_RATE, RATIO = range(2, 14, 2)
-SIGN, Z, W, S, C, DZ, DW, UP, DOWN, PLACE, AT, F0, F1, V0, V1, IN_USE, PER_RATE, ROWS = range(14, 32)
+SIGN, Z, W, S, C, DZ, DW, UP, DOWN, PLACE, AT, F0, F1, V0, V1, IN_USE, PER_RATE, SUM, SLOPE, ROWS = range(14, 34)
 """Rows of the lanes: constants of the body, those of the right edge followed by those of the left one; sgn(theta), the
 state with its derivatives, the reaches, the sample before and the time since it, f and V there and at the next one."""
 
-OVER, REACH, END_Z, END_W, END_SIGN = 0, 1, 3, 4, 5
+OVER, REACH, SQUARES, END_Z, END_W, END_SIGN = 0, 1, 3, 5, 6, 7
 
 CHUNK = 16 * FLOAT_LANES
 
@@ -73,7 +74,7 @@ TINY = 1e-30
 def estimate_outcomes(
     samples: Array, cells: NDArray[np.void], threads: int | None = None, stop: StopFlag | None = None
 ) -> tuple[NDArray[np.bool_], Array]:
-    """Whether each body overturns, array (size,), and the reaches of its response above and below, array (size, 2).
+    """Whether each body overturns, array (size,); the reaches above and below, sum and derivative, array (size, 4).
 
     `samples` (7, samples): of `sample_rows`, equidistant. `cells` (size,): the bodies, `BODY_CELL`; the work is least
     where neighbours are alike. `threads`, `stop`: as for `rocking._solver.records.record_response.solve_bodies`.
@@ -87,7 +88,7 @@ def estimate_outcomes(
     fill_chunks(fill, cells.size, CHUNK, threads or AVAILABLE_CORES, stop)
     ends, edges = np.zeros(cells.size, RESPONSE_RECORD), np.zeros((cells.size, EDGE_COLUMNS))
     ends["end_rotation"], ends["end_velocity"], edges[:, 2] = found[:, END_Z], found[:, END_W], found[:, END_SIGN]
-    return (found[:, OVER] > 0.0) | (outcome_margin_of(ends, edges, cells) >= 0.0), found[:, REACH : REACH + 2]
+    return (found[:, OVER] > 0.0) | (outcome_margin_of(ends, edges, cells) >= 0.0), found[:, REACH : SQUARES + 2]
 
 
 @kernel
@@ -96,6 +97,7 @@ def set_lane(lanes: FloatArray, lane: int, cell: Record) -> None:
     lanes[RATE, lane], lanes[PER_RATE, lane], lanes[FACTOR, lane] = cell.rate, 1.0 / cell.rate, cell.vertical
     lanes[UP, lane], lanes[DOWN, lane], lanes[IN_USE, lane] = FAR, FAR, 1.0
     lanes[SIGN, lane], lanes[PLACE, lane], lanes[AT, lane] = 1.0, 0.0, -1.0
+    lanes[SUM, lane], lanes[SLOPE, lane] = 0.0, 0.0
     for side in range(2):
         ratio, stiffness = (1.0, 1.0) if side == 0 else (cell.ratio, cell.stiffness)
         sine, cosine, alpha = math.sin(cell.alpha * ratio), math.cos(cell.alpha * ratio), cell.alpha
@@ -216,6 +218,9 @@ def take_step(lanes: FloatArray, f: FloatArray, vertical: FloatArray, upright: b
         up, down = load(lanes, UP), load(lanes, DOWN)
         store(lanes, UP, select(turns, minimum(up, left / maximum(dz, TINY)), up))
         store(lanes, DOWN, select(turns, minimum(down, left / maximum(-1.0 * dz, TINY)), down))
+        total, slope = load(lanes, SUM), load(lanes, SLOPE)
+        store(lanes, SUM, select(turns, total + top * top, total))
+        store(lanes, SLOPE, select(turns, slope + 2.0 * top * dz, slope))
     arrived = in_use & (step >= h - at)
     at = select(arrived, 0.0, at + maximum(step, LEAST * h))
     held = hits & (step < 0.0)
@@ -264,6 +269,7 @@ def take_step(lanes: FloatArray, f: FloatArray, vertical: FloatArray, upright: b
 def write_result(lanes: FloatArray, lane: int, found: FloatArray, cell: int) -> None:
     """Write the result of a lane."""
     over = lanes[S, lane] == -math.inf
+    found[cell, SQUARES], found[cell, SQUARES + 1] = lanes[SUM, lane], lanes[SLOPE, lane]
     if not over:  # after the record it overturns from z + w of 1, about, see `rocking._solver.free_rocking`
         left = max(lanes[RATIO + (0 if lanes[SIGN, lane] > 0.0 else 1), lane] - lanes[Z, lane] - lanes[W, lane], 0.0)
         slope = lanes[DZ, lane] + lanes[DW, lane]
@@ -285,7 +291,7 @@ def follow_lanes(
     stop: FloatArray,
     found: FloatArray,
 ) -> None:
-    """Fill `found` (cells, 6); `motion` (2, samples): f and vertical acceleration over g in single precision.
+    """Fill `found` (cells, 8); `motion` (2, samples): f and vertical acceleration over g in single precision.
 
     `lanes` (ROWS, FLOAT_LANES) and `places` (FLOAT_LANES,) are to work with: the cell of each lane, -1 at first.
     """

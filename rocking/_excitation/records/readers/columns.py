@@ -41,6 +41,8 @@ from rocking._excitation.records.record import Record
 STEP_TOLERANCE = 0.02
 """Largest deviation of a time from the uniform grid, in steps [-]: times are often rounded to a few digits."""
 
+LARGEST_ROUNDING = 0.25  # largest last place of times, in steps [-]: a missing row is off by more
+
 MAX_TIME = 1e12  # largest time in a column of times [s]; times are often counted from an epoch
 WRAPPED = "rows"  # the component that stands for the values of all columns, row by row
 JUMP = 3.0  # a leading value this many times larger than all others is no sample [-]
@@ -80,7 +82,8 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     measured = None
     if before:
         found_times, values = _table(layout, [before[-1], chosen])
-        measured = _uniform_step(layout, found_times * _time_factor(layout, layout.columns[before[-1]]))
+        in_seconds = _time_factor(layout, layout.columns[before[-1]])
+        measured = _uniform_step(layout, found_times * in_seconds, _last_place(layout, before[-1]) * in_seconds)
         known = time_step or header.step(time_step).value
         if layout.columns[before[-1]].unit("s") is None:  # the step may say which one it is
             units = (
@@ -421,8 +424,18 @@ def _no_unit(layout: Layout, column: Column, quantity: str) -> RecordFileError:
     return layout.file.error(layout.line, f"the column {column.shown}", expected)
 
 
-def _uniform_step(layout: Layout, times: Array) -> float:
-    """The step of times that are uniform; the error names the first line that is not."""
+def _last_place(layout: Layout, column: int) -> float:
+    """The unit of the last decimal that the first rows of a column have; 0 with exponents."""
+    rows = (cells_of(layout, row) for row in layout.file.head[layout.first :] if row.strip())
+    forms = [_form(row[column])[0] for row in rows if len(row) > column]
+    return 0.0 if any(exponent for _, exponent in forms) else 10.0 ** -max(decimals for decimals, _ in forms)
+
+
+def _uniform_step(layout: Layout, times: Array, place: float) -> float:
+    """The step of times that are uniform, as far as their last place says; the error names the first line that is not.
+
+    Each time is off by half of the last place, and so are the two that give the step.
+    """
     file, first = layout.file, layout.first
     if times.size < 2:
         raise file.error(first, "one row", "at least 2")
@@ -433,7 +446,8 @@ def _uniform_step(layout: Layout, times: Array) -> float:
     if not (middle > 0.0 and np.isfinite(middle)):
         raise file.error(first + 1, f"times {times[0]:g} and {times[1]:g}", "times that increase")
     off = times[0] + step * np.arange(times.size) - times
-    if step > 0.0 and max(off.max(), -off.min()) <= STEP_TOLERANCE * step:
+    rounding = 1.001 * place if place <= LARGEST_ROUNDING * step else 0.0
+    if step > 0.0 and max(off.max(), -off.min()) <= max(STEP_TOLERANCE * step, rounding):
         return float(f"{step:.12g}")  # removes the rounding of the difference
     wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
     more = "; or the argument `skip`" if wrong == 0 and not layout.skipped else ""

@@ -8,12 +8,13 @@ import re
 from dataclasses import dataclass
 from itertools import chain
 
-from rocking._base.units import UNITS, unit_name
+from rocking._base.units import UNITS, quantities_of, unit_name
 from rocking._excitation.records.readers.header import Header, read_header, units_in
 from rocking._excitation.records.readers.lines import NUMBER, TOUCHING, TextFile, to_float
 
 LONGEST_STEP = 0.5  # longest step of a record [s] that is taken from times without a unit
 MAX_UNIT_PARTS = 8  # most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2
+MAX_NAMES = 512  # most columns whose names are searched: more numbers in a row are one series
 MAX_NAME = 60  # most characters of the name of a column; longer ones are sentences
 
 _COMMENT = "#%!*/\"'"
@@ -202,7 +203,9 @@ def _columns(
     """Line of the names, and the columns: of the nearest line above the rows that names as many; else numbered."""
     found: list[tuple[int, list[Column]]] = []
     units: list[str] = []
-    for k in range(first - 1, -1, -1):
+    for k in range(first - 1, -1, -1) if width <= MAX_NAMES else ():
+        if file.stop is not None:
+            file.stop.check()
         whole = file.head[k].strip()
         line = whole.strip(_COMMENT).strip() if whole[:1] in "#%!*/" else whole
         parts = _row_of_units(line, separator, width)
@@ -233,10 +236,10 @@ def _row_of_units(line: str, separator: str | None, width: int) -> list[str]:
     """The texts of a line of units, one of each column; empty if it is none."""
     joined = _BRACKETS.sub(lambda found: "".join(found[0].split()), line)
     for fields in (fields_of(line, separator), joined.split(), re.split(r"\s{2,}", line)):
-        known = [_is_unit(part) for part in fields]
-        blank = [part in ("", "-", "[-]", "(-)") for part in fields]
-        if len(fields) == width > 1 and any(known) and all(map(max, known, blank)):
-            return fields
+        if len(fields) == width > 1:
+            known = [_is_unit(part) for part in fields]
+            if any(known) and all(k or part in ("", "-", "[-]", "(-)") for k, part in zip(known, fields, strict=True)):
+                return fields
     return []
 
 
@@ -244,7 +247,7 @@ def _is_unit(text: str) -> bool:
     """Whether a text is a unit, or two names of one, such as gal(cm/s/s)."""
     pair = re.fullmatch(r"([^()\[\]]+)\(([^()]+)\)", text.strip(" .[]"))
     parts = (pair[1], pair[2]) if pair else (text,)
-    return any(all(unit_name(part.strip(" ."), one) for part in parts) for one in UNITS)
+    return bool(frozenset.intersection(*(quantities_of(part.strip(" .")) for part in parts)))
 
 
 def _names(line: str, separator: str | None, width: int, quantity: str, surely: bool = False) -> list[str]:
