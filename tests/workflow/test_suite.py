@@ -135,7 +135,8 @@ def test_map_is_that_of_single_blocks(products: Path, suite: SuiteConfiguration)
 def test_second_run_does_nothing_and_a_lost_record_is_made_again_alone(
     suite_run: Path, configuration: Path, tmp_path: Path
 ) -> None:
-    copy = Path(shutil.copytree(suite_run, tmp_path / "run"))
+    # beside it: paths of records are relative to the folder of the run
+    copy = Path(shutil.copytree(suite_run, tmp_path, dirs_exist_ok=True))
     again = snakemake(copy, module="workflow.run", configuration=configuration)
     assert "Nothing to be done" in again.stdout
     place = "results/suites/demonstration/records/napa_HNE.csv.nc"
