@@ -4,6 +4,8 @@ import sqlite3
 import subprocess
 from pathlib import Path
 
+import pytest
+
 from stress.mutants import ImportGraph, ordered_tests, run_tests, sample
 
 ROOT = Path(__file__).parents[2]
@@ -77,6 +79,7 @@ def test_tests_of_each_module_are_those_that_import_it() -> None:
     assert {path.name for path in missing} <= {"__init__.py", *by_name}  # docstrings
 
 
+@pytest.mark.long  # starts pytest four times
 def test_a_change_is_noticed_if_a_test_that_imports_the_module_fails(tmp_path: Path) -> None:
     files = {"rocking/__init__.py": "", "rocking/a.py": "g = 1", "rocking/b.py": "from rocking.a import g"}
     tests = {name: f"from rocking.{name} import g\ndef test_g():\n    assert g > 0" for name in "ab"}
