@@ -193,11 +193,12 @@ def _lowest(motion: AbstractPulse, cells: NDArray[np.void], count: Index, top: A
     if above.size:
         line = nodes.line[above]
 
-        def classify(slenderness: Array, lines: Array, _eta: Array) -> tuple[NDArray[np.int64], Array]:
+        def classify(slenderness: Array, lines: Array, *_others: Array) -> tuple[NDArray[np.int64], Array]:
             _, overturned, margin, _ = solve(lines.astype(np.intp), slenderness)
             return overturned.astype(np.int64), margin
 
-        points = np.stack([np.ones(line.size), line, np.zeros(line.size)], axis=1)
+        unused = np.zeros(line.size)
+        points = np.stack([unused, line, unused, unused], axis=1)
         pair = np.stack([above, above - 1], axis=1)
         codes = np.ones(line.size, dtype=np.int64)
         met = np.zeros(line.size, dtype=np.int64)
