@@ -149,8 +149,8 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] | None = None,
     def classify(slenderness: Floats, log_omega: Floats, eta: Floats, alpha: Floats) -> tuple[Codes, Floats]:
         # rounding must not lead out of the range
         omega = np.clip(np.exp(log_omega), FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper)
-        point = np.broadcast_arrays(slenderness, omega, eta, alpha)
-        cells = [np.array(each).ravel() for each in point]  # contiguous, writable
+        point = np.stack(np.broadcast_arrays(slenderness, omega, eta, alpha))
+        cells = point.reshape(4, -1)  # rows that are contiguous and writable
         records, margin = solve(*cells)
         if work is not None:
             work.add(records["impacts"], cells[3])
@@ -158,7 +158,7 @@ def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] | None = None,
             codes = outcome_codes(records["outcome"], records["impacts"])
         else:
             codes = code_of(Found(records["outcome"], records["impacts"], records["chatter"]))
-        return codes.reshape(point[0].shape), margin.reshape(point[0].shape)
+        return codes.reshape(point.shape[1:]), margin.reshape(point.shape[1:])
 
     return classify
 
