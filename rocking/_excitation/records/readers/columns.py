@@ -220,7 +220,7 @@ def _is_wrapped(layout: Layout, component: str | None) -> bool:
     if any((rows - 1) * width < (count or 0) <= rows * width for count in counts) and rows not in counts:  # type: ignore[operator]
         return True
     whole = np.array([row for row in lines if len(row) == width])
-    if len(whole) > 2 and rows not in counts:
+    if len(whole) > 2 and rows not in counts and np.isfinite(whole).all():
         series = whole.ravel()
         along, down = np.abs(np.diff(series)), np.abs(np.diff(whole, axis=0)).mean()
         places = [along[k::width].mean() for k in range(width)]
