@@ -73,11 +73,11 @@ def json_of(values):
 
 
 UPLOADS = {
-    "record": (ROUTE, CSV, lambda: column_file(number(2_000_000, 5_000_000))),
+    "record": (ROUTE, CSV, lambda: column_file(number(3_000_000, 5_000_000))),
     "blocks in JSON": ("/v1/response", JSON, lambda: json_of("groups")),
     "records of a site in JSON": ("/v1/assess", JSON, lambda: json_of("records")),
 }
-CLIENTS = number(12, 64)
+CLIENTS = number(24, 64)
 
 CLIENT = """
 import json, sys
