@@ -170,7 +170,7 @@ def _contents_by_angle(solved: xr.Dataset) -> Contents:
 
 
 def _contents(dataset: xr.Dataset, encoding: dict[str, Any] | None = None) -> Contents:
-    from zarr.storage import MemoryStore  # noqa: PLC0415  # takes as long to load as the service
+    from zarr.storage import MemoryStore  # noqa: PLC0415  # 0.2 s of the start of the service, for one route
 
     known = {name: value for name, value in dataset.attrs.items() if not _is_nan(value)}  # JSON has no nan
     content: dict[str, Any] = {}  # buffers of zarr

@@ -12,13 +12,7 @@ INPUTS = (
 )
 """What an object has."""
 
-STAND_INS = (
-    q.NUMBER,
-    q.LENGTH,
-    q.THICKNESS,
-    q.HALF_WIDTH,
-    q.HALF_HEIGHT,
-)  # other columns of tables, which are read as one of these
+STAND_INS = (q.NUMBER, q.LENGTH, q.THICKNESS, q.HALF_WIDTH, q.HALF_HEIGHT)  # columns of tables, read as one of these
 
 SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination")
 """Parameters of kinds of bodies that an object may have in place of or beside its own dimensions."""

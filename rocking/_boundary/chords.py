@@ -19,18 +19,16 @@ SURE = 0.5
 FINE = 0.02  # accuracy of a measured distance, as a share of the largest one [-]
 HALVINGS = 12  # times that a chord is halved at most [-]
 
-Block = tuple[Floats, Floats]  # eta and alpha, arrays without dimensions
-
 
 def refine_chords(
-    chains: Chains, classify: Classify, block: Block, *, largest: float, uncounted: float, end: float
+    chains: Chains, classify: Classify, block: tuple[Floats, Floats], *, largest: float, uncounted: float, end: float
 ) -> tuple[Chains, float, float, int]:
     """Halve chords until each passes its curve within a distance, measured at the middle of the chord.
 
     Regions of many impacts lie side by side with equal codes, and a chord can join two of them. Such a chord is taken
-    out, since the curve is not found at its middle. `block`: eta and alpha of all curves; `largest`: distance in the
-    plane of 1/a and log omega [-], `uncounted` for regions of many impacts; `end`: width in log omega of the chords
-    that end a region: not halved.
+    out, since the curve is not found at its middle. `block`: eta and alpha of all curves, arrays without dimensions;
+    `largest`: distance in the plane of 1/a and log omega [-], `uncounted` for regions of many impacts; `end`: width in
+    log omega of the chords that end a region: not halved.
 
     Returns the curves, bounds of the largest distance of a chord from its curve, without regions of many impacts and
     for these, and the number of chords whose curve was not found at the middle.
@@ -77,7 +75,7 @@ def _uncounted(chains: Chains, first: Index) -> NDArray[np.bool_]:
 
 
 def _middles(
-    chains: Chains, first: Index, bend: Floats, largest: Floats, classify: Classify, block: Block
+    chains: Chains, first: Index, bend: Floats, largest: Floats, classify: Classify, block: tuple[Floats, Floats]
 ) -> tuple[Chains, NDArray[np.bool_], Floats]:
     """Points of the curves halfway along some chords, whether they were found, and their distance from the chords.
 

@@ -137,14 +137,8 @@ def responses(table: BlockTable, form: Form) -> None:
     with progress(f"solving {len(table.problems)} blocks"):
         found = respond_table(table)
     if form.kind == "json":
-        print_json(
-            found
-            | {
-                "table": table.read.cells,
-                "totals": table.read.totals,
-                "bad_rows": [vars(one) for one in table.read.bad_rows],
-            }
-        )
+        about = {"table": table.read.cells, "totals": table.read.totals}
+        print_json(found | about | {"bad_rows": [vars(one) for one in table.read.bad_rows]})
         return
     found = {name: column for name, column in found.items() if name not in table.read.columns.values()}
     results = {name: found[name] for name in dict.fromkeys((*_OF_ROWS, *found))}

@@ -150,6 +150,7 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
         raise line.error
     for name in schema.renamed.keys() - set(map(str.strip, line.labels)):
         raise InvalidArgumentError("columns", name, f"a column of the table: {'; '.join(line.labels)[:MAX_NAME]}")
+    # b and h are half sizes in papers on rocking, and full ones in other tables
     best = {one.name: (*one.names, "")[rank(one, line.texts[place])] for place, (one, _) in line.columns.items()}
     symbols = [best.get("width") == "b", best.get("height") == "h"]
     half = any(one.times != 1.0 for one, _ in line.columns.values())

@@ -62,7 +62,8 @@ RATE, FACTOR = 0, 1
 A, ETA, PULL, S_RATE, C_RATE, RATIO = range(2, 14, 2)
 SIGN, Z, W, S, C, DZ, DW, UP, DOWN, PLACE, AT, F0, F1, V0, V1, IN_USE, PER_RATE, SUM, SLOPE, ROWS = range(14, 34)
 """Rows of the lanes: constants of the body, those of the right edge followed by those of the left one; sgn(theta), the
-state with its derivatives, the reaches, the sample before and the time since it, f and V there and at the next one."""
+state with its derivatives, the reaches, the sample before and the time since it, f and V there and at the next one, and
+the sum of squares of the peaks with its derivative."""
 
 OVER, REACH, SQUARES, END_Z, END_W, END_SIGN = 0, 1, 3, 5, 6, 7
 
