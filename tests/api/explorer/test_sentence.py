@@ -50,7 +50,7 @@ def test_is_a_vase_stable_at_this_site_and_how_wide_must_its_base_be(open_page, 
     expect(page.locator("#site-answer")).to_have_attribute("data-verdict", row["verdict"])
     percent = float(page.locator("#site-answer").inner_text().split("overturns with ")[1].split()[0])
     assert 0 <= 100 * (row["factor"] - 1) - percent < 10  # two digits, rounded down
-    width = float(page.locator("#site-answer").inner_text().split("From a base of ")[1].split()[0])
+    width = float(page.locator("#site-answer").inner_text().split("With a base of ")[1].split()[0])
     assert width / 100 == pytest.approx(row["smallest_width"], rel=0.01)
     assert width / 100 >= row["smallest_width"]
 

@@ -91,7 +91,7 @@ function showVerdict({ rows: [row], motions, highest_factor: highest }) {
     ? `It overturns under ${count} of ${motions.length} pulse shapes ${where}.`
     : `None of ${motions.length} pulse shapes overturns it ${where}.`;
   const lines = [element("p", words, { class: `headline ${count ? "overturns" : ""}` }), element("p", changeOf(row, highest))];
-  if (row.smallest_width) lines.push(element("p", `From a base of ${length(row.smallest_width, upwards)} on, at this height, none of them does.`));
+  if (row.smallest_width) lines.push(element("p", `With a base of ${length(row.smallest_width, upwards)} or more at this height, none of them does.`));
   if (row.warnings) lines.push(element("p", `In doubt: ${row.warnings}.`, { class: "small" }));
   answer.replaceChildren(...lines);
   answer.dataset.verdict = row.verdict;
