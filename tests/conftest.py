@@ -67,8 +67,12 @@ def pytest_collection_finish() -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
-    """While a test marked `alone` runs, the other processes of the test run wait before their next test."""
-    with contextlib.nullcontext() if sys.platform == "win32" else _turn(item.get_closest_marker("alone") is not None):
+    """While a test marked `alone` runs, the other processes of the test run wait before their next test.
+
+    A test run that a test starts has one process and does not wait: the test that started it would never end.
+    """
+    others = hasattr(item.config, "workerinput") and sys.platform != "win32"
+    with _turn(item.get_closest_marker("alone") is not None) if others else contextlib.nullcontext():
         return (yield)
 
 

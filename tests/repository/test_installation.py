@@ -87,7 +87,20 @@ def test_the_tests_of_command_line_and_service_pass_in_the_installation(
     environment = installed.environment(NUMBA_CACHE_DIR=str(kernels), **made)
     where = "import rocking, rocking_api; print(rocking.__file__, rocking_api.__file__)"
     program = f"{where}; import sys, pytest; sys.exit(pytest.main(sys.argv[1:]))"
-    command = [installed.python, "-P", "-c", program, "-q", "-p", "no:cacheprovider", "-n", "0", *INSIDE]
+    command = [
+        installed.python,
+        "-P",
+        "-c",
+        program,
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-n",
+        "0",
+        "-m",
+        "not alone",
+        *INSIDE,
+    ]
     done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert all(path.startswith(str(installed.packages)) for path in done.stdout.splitlines()[0].split())
