@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
-from rocking._base.errors import InvalidArgumentError, in_range, number, positive
+from rocking._base.errors import InvalidArgumentError, float_array, in_range, number, positive
 from rocking._excitation.pulse_file import read_pulse_file
 from rocking._excitation.series import ExcitationSeries, Family
 from rocking._excitation.shapes import AbstractPulse
@@ -153,7 +153,7 @@ class SampledPulse(AbstractPulse):
 
     def shape(self, phi: ArrayLike) -> Array:
         """f(phi) [-] on the window, constant outside; `phi` [rad], any shape."""
-        return np.asarray(np.interp(np.asarray(phi, dtype=np.float64), self.phases, self.values))
+        return np.asarray(np.interp(float_array("phi", phi, unit="rad"), self.phases, self.values))
 
     def mirrored(self) -> SampledPulse:
         opposite = self.name.removeprefix("-") if self.name.startswith("-") else f"-{self.name}"

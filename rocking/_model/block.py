@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
-from rocking._base.errors import number, positive
+from rocking._base.errors import float_array, number, positive
 from rocking._base.quantities import GRAVITY, HEIGHT, WIDTH
 from rocking._base.units import Scalar, Values
 from rocking._model.body import AbstractBody, Array, Edge
@@ -149,9 +149,10 @@ class AbstractBlock(AbstractBody):
 
     def top_displacement(self, rotation: Number) -> Number:
         """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
-        if np.ndim(rotation) or self.shape:
-            return super().top_displacement(rotation)
-        return self.top_height * math.sin(rotation) if math.isfinite(rotation) else math.nan
+        angle = float_array("rotation", rotation, unit="rad")
+        if angle.ndim or self.shape:
+            return super().top_displacement(angle)
+        return self.top_height * math.sin(angle) if math.isfinite(angle) else math.nan
 
 
 @dataclass(frozen=True, init=False, eq=False)

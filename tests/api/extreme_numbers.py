@@ -60,9 +60,9 @@ PART = 0.1
 POWERS = (300, 30, 12, 6)
 EXTREMES = (
     tuple(sign * 10.0 ** (end * power) for power in POWERS for end in (-1, 1) for sign in (1, -1)),
-    (0.0, math.nan, math.inf, -math.inf),
+    (0.0, math.nan, math.inf, -math.inf, 10**400),
 )
-"""Values that replace each number: powers of ten, and others."""
+"""Values that replace each number: powers of ten, and others, among them an integer beyond all floats."""
 
 INTEGERS = (0, *(sign * 10**power for power in POWERS for sign in (1, -1)))
 """Values that replace an integer as well."""
@@ -213,12 +213,17 @@ def csv_of(table: dict[str, list[float]]) -> str:
     return "\n".join([",".join(table), *(",".join(map(str, row)) for row in rows)]) + "\n"
 
 
+def scaled(scale: float) -> list[float]:
+    """The samples times a factor; an integer beyond all floats as it is."""
+    return [scale * value for value in MOTION[:20]] if isinstance(scale, float) else [scale]
+
+
 STRENGTH = {"peak_acceleration": 4.0, "period": 0.5}
 BLOCK_COLUMNS = {"width": 0.5, "height": 2.0} | STRENGTH
 ENCODERS: dict[str, Callable[[Any], str]] = {
     "application/json": json.dumps,
     "text/csv": csv_of,
-    "text/plain": lambda body: "".join(f"{body['scale'] * value}\n" for value in MOTION[:20]) + f"{body['last']}\n",
+    "text/plain": lambda body: "".join(f"{one}\n" for one in [*scaled(body["scale"]), body["last"]]),
 }
 GROUPS = {"slenderness": [0.4, 0.5], "frequency_ratio": [5.0, 3.0], "restitution": [0.85, 0.9]}
 UNDER_SAMPLES = {"pulse": PULSE, "restitution": 0.85, "alpha_deg": 5.0}
@@ -315,7 +320,7 @@ class Walk:
             yield from ({**given, name: other} for name, value in given.items() for other in self.replaced(value))
         elif isinstance(given, (list, tuple)):
             if len(given) > 1 and all(isinstance(one, float) for one in given):  # all of them, as in a wrong unit
-                for factor in self.values(1.0):
+                for factor in filter(lambda one: isinstance(one, float), self.values(1.0)):
                     yield type(given)(one * factor for one in given)
             for place in range(0, len(given), max(len(given) // 4, 1)):
                 others = self.replaced(given[place])

@@ -163,7 +163,8 @@ def _of_validation(error: ErrorDetails, source: str, model: type[Params]) -> Inv
         return InvalidArgumentError(name, own.value, own.allowed)
     if kind in _RANGES and name in names:
         index = tuple(part for part in place[1:] if isinstance(part, int))
-        return _out_of_range(model, name, float(error["input"]), index)
+        value = error["input"]  # an integer may exceed all floats
+        return _out_of_range(model, name, value if isinstance(value, int) else float(value), index)
     if kind == "missing":
         return refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
     if kind == "extra_forbidden":
