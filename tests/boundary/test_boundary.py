@@ -8,7 +8,16 @@ import pytest
 
 import rocking
 from rocking import Outcome, paper
-from rocking._boundary.search import ELASTIC_RESOLUTION, MANY_IMPACTS, MOST_COUNTED, RESOLUTION, UNCOUNTED, region_code
+from rocking._boundary.search import (
+    ELASTIC_RESOLUTION,
+    MANY_IMPACTS,
+    MOST_COUNTED,
+    RESOLUTION,
+    UNCOUNTED,
+    Nodes,
+    refine_lines,
+    region_code,
+)
 from rocking._boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD, UNCOUNTED_THINNEST
 from rocking._model.outcome_code import outcome_codes
 from rocking._solver import chunks
@@ -336,3 +345,20 @@ def test_threads(monkeypatch):
 def test_wrong_thresholds(value):
     with pytest.raises(rocking.InvalidArgumentError, match="highest"):
         rocking.thresholds("sine", frequency_ratio=2.0, restitution=0.9, highest=value)
+
+
+@pytest.mark.parametrize(("thinnest", "regions"), [(8e-4, [0, 1, 2, 3, 4]), (2e-3, [0, 1, 3, 4])])
+def test_regions_in_a_gap_are_left_out_only_if_it_is_thin(thinnest, regions):
+    """Regions 1 to 3 lie in a gap of 0.001 between the two that the nodes show; its ends are exact all the same."""
+    ends = np.array([0.4, 0.4002, 0.4004, 0.401])
+
+    def classify(x, *_):
+        codes = np.searchsorted(ends, x, side="right")
+        return codes, np.where(codes % 2 == 0, 1.0, -1.0) * np.abs(np.subtract.outer(x, ends)).min(axis=1)
+
+    x = np.array([0.0, 1.0])
+    nodes = refine_lines(0, np.zeros((1, 4)), Nodes(np.zeros(2, dtype=np.intp), x, *classify(x)), classify, thinnest)
+    assert np.unique(nodes.codes).tolist() == regions
+    for end, below, above in ((0.4, 0, 1), (0.401, 3, 4)):
+        assert end - nodes.x[nodes.codes == below].max() <= 2 * RESOLUTION
+        assert nodes.x[nodes.codes == above].min() - end <= 2 * RESOLUTION
