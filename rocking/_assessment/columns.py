@@ -61,9 +61,11 @@ OUTPUTS = (
     Quantity("sliding", "m",
         "largest displacement where it slides first and then only slides; vertical components count"),
     Quantity("smallest_width", "m",
-        "smallest base at this height that survives up to a factor of 1; all wider ones that were tried survive too"),
+        "smallest base at this height that survives up to a factor of 1, of those down to an eighth of one without "
+        "uplift; all wider ones that were tried survive too"),
     Quantity("largest_height", "m",
-        "largest height on this base that survives up to a factor of 1; all lower ones that were tried survive too"),
+        "largest height on this base that survives up to a factor of 1, of those up to eight times one without uplift; "
+        "all lower ones that were tried survive too"),
     Quantity("factor_less_restitution", "-", "factor with a restitution 0.05 lower"),
     Quantity("factor_more_restitution", "-", "factor with a restitution 0.05 higher"),
     Quantity("factor_slenderer", "-", "factor with the base smaller and the height larger by the tolerance"),

@@ -8,8 +8,8 @@ unstable equilibrium, by the derivative of the peak (`rocking._solver.records.es
 is wide beside the reach at one of its ends, by two limits one after the other (`MULTIPLES`, `WIDER`), down to a 4096th
 of the resolution. A flight that just touches the ground makes the response jump, and ranges lie close to such a
 strength while both ends are calm: an interval is halved too where the sum of squares of all peaks changes otherwise
-than by its derivative at the ends (`JUMP`), down to a 16th of the resolution. All this as long as the body has had
-fewer than `BUDGET` responses in a `WINDOW`. Close below the lowest that overturns the intervals are as narrow as a 32nd
+than by its derivative at the ends (`JUMP`), down to a 128th of the resolution. All this as long as the body has had
+fewer than `BUDGET` responses in a `WINDOW`. Close below the lowest that overturns the intervals are as narrow as an 8th
 of their distance from it. All of these are estimates: at the end of each window the solver confirms the lowest, there
 or close by, or else the next ones, and the change of outcome below the lowest is bisected with it. A narrower range can
 be missed.
@@ -49,25 +49,23 @@ RESOLUTIONS = 1e-4, 0.1
 PARTS = 4096
 """Parts of the resolution, a power of two, into which it is divided where the body may overturn."""
 
-CLOSE, CLOSE_RATIO = PARTS, 32
+CLOSE, CLOSE_RATIO = PARTS, 8
 """Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
-MULTIPLES, WIDER = (4.0, 16.0), 512.0
+MULTIPLES, WIDER = (1.0, 8.0), 64.0
 """An interval is halved if so many times its width exceeds the reach at one of its ends, one after the other.
 
 They are more by the factor 1 + `WIDER` width/resolution: in a wide interval the response may change in a way that no
 derivative at its ends shows.
 """
 
-JUMP, SMALLEST, NARROWEST = 0.02, 1e-3, PARTS // 16
+JUMP, SMALLEST, STRICTER, NARROWEST = 0.02, 1e-3, 8.0, PARTS // 128
 """An interval is halved, down to `NARROWEST` parts, where the sum of squares changes otherwise than by its derivative,
-by more than `JUMP` of itself [-]. A sum below `SMALLEST` counts as that [-].
-
-Of 1,168 pairs of `python -m benchmarks.cost.assessment --scan 2000` with other seeds 42 overturn below the lowest that
-is found without it, 15 by more than 1 %; 25 and 8 with it, for 17 % more responses. Down to a 64th it is 24 and 7.
+by more than `JUMP` of itself [-]. A sum below `SMALLEST` counts as that [-]. The share that is allowed is less by the
+factor 1 + `STRICTER` width/resolution: wide intervals are few, and some ranges of 0.01 % lie in them.
 """
 
-WINDOW, BUDGET = 16, 3000
+WINDOW, BUDGET = 16, 6000
 """Intervals of the resolution that are searched together, from the weakest on; responses of a body in them after which
 only those close below the lowest that overturns are halved."""
 
@@ -142,11 +140,13 @@ class Intervals:
     def wanted(self, multiple: Array) -> Bools:
         """Whether each is wide beside a reach into it, or its ends disagree; never where the multiple is 0."""
         gap = self.high - self.low
+        share = gap / PARTS
         reach = np.minimum(self.low_end[:, 0], self.high_end[:, 1])
+        wide = multiple * gap * (1.0 + WIDER * share) > reach
         low, high, slope = self.low_end[:, 2], self.high_end[:, 2], self.low_end[:, 3] + self.high_end[:, 3]
-        jump = np.abs(high - low - 0.5 * gap * slope) > JUMP * np.maximum(np.maximum(low, high), SMALLEST)
-        wide = multiple * gap * (1.0 + WIDER * gap / PARTS) > reach
-        return np.asarray(wide | (jump & (gap > NARROWEST) & (multiple > 0.0)))
+        allowed = JUMP * np.maximum(np.maximum(low, high), SMALLEST) / (1.0 + STRICTER * share)
+        jumps = np.abs(high - low - 0.5 * gap * slope) > allowed
+        return np.asarray(wide | (jumps & (gap > NARROWEST) & (multiple > 0.0)))
 
     def take(self, index: Index | Bools) -> Self:
         """Some of them."""

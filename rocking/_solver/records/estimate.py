@@ -208,20 +208,22 @@ def take_step(lanes: FloatArray, f: FloatArray, vertical: FloatArray, upright: b
     # the derivatives
     start = g_z * dz + g - pull * s0
     rate = (g_tz + square * w * g) * dz + g_z * dw + w_rate - pull * tilt_s * w
+    turns = in_use & (w > 0.0) & (end_w <= 0.0)
+    if any_lane(turns):
+        time = step * (w / maximum(w - end_w, TINY))  # of the peak
+        top = z + 0.5 * time * w
+        peak_dz = dz + time * (dw + 0.5 * time * (start + (1.0 / 3.0) * time * rate))
+        left = maximum(select(on_right, load(lanes, RATIO), load(lanes, RATIO + 1)) - top, 0.0) / maximum(top, TINY)
+        up, down = load(lanes, UP), load(lanes, DOWN)
+        store(lanes, UP, select(turns, minimum(up, left / maximum(peak_dz, TINY)), up))
+        store(lanes, DOWN, select(turns, minimum(down, left / maximum(-1.0 * peak_dz, TINY)), down))
+        total, slope = load(lanes, SUM), load(lanes, SLOPE)
+        store(lanes, SUM, select(turns, total + top * top, total))
+        store(lanes, SLOPE, select(turns, slope + 2.0 * top * peak_dz, slope))
     dz, dw = (
         dz + step * (dw + 0.5 * step * (start + (1.0 / 3.0) * step * rate)),
         dw + step * (start + 0.5 * step * rate),
     )
-    turns = in_use & (w > 0.0) & (end_w <= 0.0)
-    if any_lane(turns):
-        top = maximum(z, end_z)
-        left = maximum(select(on_right, load(lanes, RATIO), load(lanes, RATIO + 1)) - top, 0.0) / maximum(top, TINY)
-        up, down = load(lanes, UP), load(lanes, DOWN)
-        store(lanes, UP, select(turns, minimum(up, left / maximum(dz, TINY)), up))
-        store(lanes, DOWN, select(turns, minimum(down, left / maximum(-1.0 * dz, TINY)), down))
-        total, slope = load(lanes, SUM), load(lanes, SLOPE)
-        store(lanes, SUM, select(turns, total + top * top, total))
-        store(lanes, SLOPE, select(turns, slope + 2.0 * top * dz, slope))
     arrived = in_use & (step >= h - at)
     at = select(arrived, 0.0, at + maximum(step, LEAST * h))
     held = hits & (step < 0.0)
