@@ -11,7 +11,6 @@ from fastapi import APIRouter, Query, Request, Response
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import GROUPS
-from rocking._dimensional.margins import Margins as FoundMargins
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import BodyResponse as Found
 from rocking._dimensional.response import respond
@@ -137,7 +136,7 @@ def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockRe
     found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
     about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
     about["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *about["notes"]]
-    margins = None if found.margins is None else _margins(found.margins)
+    margins = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
     return m.BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
 
 
@@ -165,9 +164,3 @@ def _point(
     service.metrics.points(SOURCES[found.from_cube.item()], 1)
     answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
     return answer, found.reshape(())
-
-
-def _margins(found: FoundMargins) -> m.Margins:
-    periods = [m.PeriodThreshold(period=one.value, overturns_above=one.overturns_above) for one in found.periods]
-    sizes = [m.SizeThreshold(half_diagonal=one.value, overturns_above=one.overturns_above) for one in found.sizes]
-    return m.Margins.model_validate(vars(found) | {"periods": periods, "sizes": sizes})
