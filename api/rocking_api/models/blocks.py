@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel
 
-from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.margins import MARGINS
+from rocking._dimensional.table import RESPONSES
 from rocking_api.models import quantity as q
 from rocking_api.models.answer import BY_SOLVER, Echoed, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
@@ -62,8 +62,7 @@ _OF_TABLE = [
     one
     if one.missing or one.kinds >= {"edges"}
     else replace(one, missing="the edges of the body differ from those of a block")
-    for one in FIELDS
-    if {"pulse", "block"} <= one.kinds and one.name not in ("half_diagonal", "frequency_parameter")
+    for one in RESPONSES
 ]
 """Columns of `respond_table`."""
 
