@@ -24,6 +24,7 @@ from rocking_api.models.quantity import (
     said,
 )
 from rocking_api.models.responses import OF_SOLVER, ContactResponse, Motion, declared, with_fields
+from rocking_api.models.suites import SuiteRecord
 
 MAX_SCALES = 2000  # most factors of a curve over the scale [-]
 MAX_DRAWN = 100_000  # most samples of a drawing [-]
@@ -102,25 +103,19 @@ def with_record(kind: type[RecordFileParams]) -> type[RecordBody]:
     return model
 
 
-class RecordDescription(BaseModel):
+class RecordDescription(SuiteRecord):
     """The record, as read; SI units."""
 
-    name: str = said("name of the file, without its ending, and the component")
     source: str = said("file, format, and what was done to the record")
     remarks: list[str] = said("warnings of the reader of the file")
     samples: int = said("number of samples [-]")
-    time_step: float = said("time step [s]")
-    peak_acceleration: float = said("PGA [m/s2]")
     peak_vertical_acceleration: float | None = said(
         "largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
     )
-    peak_velocity: float = said("PGV [m/s]")
     peak_displacement: float = said("PGD [m]")
     arias_intensity: float = said("Arias intensity [m/s]")
     significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
-    mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
     final_velocity: float = said("velocity at the last sample [m/s]; large if the acceleration has an offset")
-    digest: str = said("sha256 of the time step and the samples of all components")
 
 
 class RecordAnswer(InUnits[Q]):

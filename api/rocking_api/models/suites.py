@@ -6,10 +6,11 @@ from typing import Literal
 
 from pydantic import BaseModel
 
+from rocking._dimensional.fields import FIELDS
 from rocking_api.models.answer import InUnits, ListAnswer
 from rocking_api.models.params import ListParams, Params
 from rocking_api.models.quantity import said, with_intervals
-from rocking_api.models.responses import Link
+from rocking_api.models.responses import Link, declared
 
 _NAME = said("name of the suite")
 _TITLE = said("title of its fragility")
@@ -50,14 +51,14 @@ class SuiteCatalogue(ListAnswer[ListParams]):
 
 
 class SuiteRecord(BaseModel):
-    """A record of a suite, as recorded."""
+    """A record, as recorded."""
 
-    name: str = said("name of the record")
+    name: str = said("name of the record, of a file without its ending, and of the component")
     peak_acceleration: float = said("peak ground acceleration [m/s2]")
     peak_velocity: float = said("peak ground velocity [m/s]")
-    mean_period: float | None = said("mean period [s]; null if it has none")
+    mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
     time_step: float = said("time between samples [s]")
-    digest: str = said("sha256 of the time step and the samples in m/s2")
+    digest: str = said("sha256 of the time step and the samples of all components in m/s2")
 
 
 @with_intervals(
@@ -155,16 +156,13 @@ class Sensitivity(BaseModel):
     records: list[RecordSensitivity] = said("each record")
 
 
+_OF_BLOCK = {"width", "height", "half_diagonal", "alpha", "frequency_parameter", "uplift_acceleration", "restitution"}
+
+
+@declared([one for one in FIELDS if one.name in _OF_BLOCK])
 class SuiteBlock(BaseModel):
     """A block under the records of a suite."""
 
-    width: float = said("width 2b [m]")
-    height: float = said("height 2h [m]")
-    half_diagonal: float = said("half diagonal R [m]")
-    alpha_deg: float = said("slenderness angle [deg]")
-    frequency_parameter: float = said("frequency parameter p [rad/s]")
-    uplift_acceleration: float = said("peak ground acceleration of uplift, g tan(alpha) [m/s2]")
-    restitution: float = said("coefficient of restitution eta [-]")
     limit_states: list[LimitState] = said("counts, intervals and curves of each limit state")
     margins: list[RecordMargin] = said("margin of each record")
     rotation_quantiles: list[RotationQuantile] = said("quantiles of the peak rotation")
