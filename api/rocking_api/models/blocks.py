@@ -33,9 +33,7 @@ class BlocksParams(Params):
     """Values that many blocks of a body share."""
 
     pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
-    restitution: q.BodyRestitution = q.said(
-        "eta [-] of the blocks that state none, momentum or kalliontzis(k=0.8)", "momentum"
-    )
+    restitution: q.BodyRestitution = q.said("eta [-] where a block has none; momentum, kalliontzis(k=0.8)", "momentum")
     format: q.TableFormat = None
 
 

@@ -36,9 +36,7 @@ class PulseSamples(BaseModel):
 
     acceleration: Samples = said("ground acceleration at the samples, in any unit")
     time: Samples | None = said("their times, ascending, in any unit; absent: equidistant", None)
-    period: float | None = said(
-        "period T_p in the unit of the times; absent: the time from the first sample to the last", None
-    )
+    period: float | None = said("T_p in the unit of the times; absent: the time from first to last sample", None)
     name: str = said("name that the response repeats", "sampled", min_length=1, max_length=200)
 
 

@@ -42,9 +42,7 @@ class RecordFileParams(BodyParams):
     unit: Unit = None
     time_step: TimeStep = None
     component: str | None = said("column or trace of a file with several", None, max_length=200)
-    vertical: str | None = said(
-        "column or trace of the vertical component, upwards, in the same file", None, max_length=200
-    )
+    vertical: str | None = said("column or trace of its vertical component, upwards", None, max_length=200)
     skip: Skip = None
     baseline_order: BaselineOrder = None
 
@@ -109,9 +107,7 @@ class RecordDescription(SuiteRecord):
     source: str = said("file, format, and what was done to the record")
     remarks: list[str] = said("warnings of the reader of the file")
     samples: int = said("number of samples [-]")
-    peak_vertical_acceleration: float | None = said(
-        "largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
-    )
+    peak_vertical_acceleration: float | None = said("largest vertical acceleration [m/s2]; null: there is none")
     peak_displacement: float = said("PGD [m]")
     arias_intensity: float = said("Arias intensity [m/s]")
     significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
@@ -168,9 +164,7 @@ class RecordHistoryResponse(Motion, RecordAnswer[RecordHistoryParams]):
 
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")
-    vertical_acceleration: list[float] | None = said(
-        "of the ground over g, upwards [-]; null: the record has no vertical component", None
-    )
+    vertical_acceleration: list[float] | None = said("of the ground over g, upwards [-]; null: there is none", None)
 
 
 @declared(OF_SOLVER[1:-1])

@@ -26,9 +26,7 @@ class SuiteParams(Params):
     format: Literal["json", "csv", "nrml"] | None = said(
         "format of the response; absent: by the Accept header, else JSON (nrml: of OpenQuake)", None
     )
-    curves: Literal["discrete", "lognormal"] = said(
-        "what NRML holds: fractions at the levels, or curves fitted to them", "discrete"
-    )
+    curves: Literal["discrete", "lognormal"] = said("NRML holds fractions at the levels, or fitted curves", "discrete")
 
 
 class SuiteSummary(BaseModel):
@@ -71,9 +69,7 @@ class FragilityCurve(BaseModel):
     model: str = said("lognormal or logistic (log-logistic)")
     fit_status: str = said("FITTED, or why the outcomes determine no curve")
     fit_meaning: str = said("the status in words")
-    annual_rate: float | None = said(
-        "annual rate of reaching the limit state [1/year]; null without a hazard curve", None
-    )
+    annual_rate: float | None = said("annual rate of reaching it [1/year]; null without a hazard curve", None)
     fitted: list[float | None] = said("probability at each level [-]")
 
 
@@ -84,13 +80,9 @@ class LimitState(BaseModel):
     demand: str = said("overturning, alpha (passed at some time), or a threshold of |theta|/alpha")
     exceedances: list[int] = said("number k of the N records that reach it, at each level [-]")
     first_exceedances: list[int] = said("number of records that reach it at this or a milder level [-]; for comparison")
-    first_median_intensity: float | None = said(
-        "lognormal median of these counts [unit of the measure]; for comparison: it is on the low side"
-    )
+    first_median_intensity: float | None = said("lognormal median of these counts, too low [unit of the measure]")
     curves: list[FragilityCurve] = said("fitted curves")
-    records_surviving_above_first: list[str] = said(
-        "records that do not reach it at a level above the first at which they do"
-    )
+    records_surviving_above_first: list[str] = said("records that do not reach it at a level above their first")
 
 
 class RecordMargin(BaseModel):
@@ -109,9 +101,7 @@ class RotationQuantile(BaseModel):
     """The peak rotation that a share of the records does not exceed."""
 
     quantile: float = said("share of the records [-]")
-    peak_rotation: list[float | None] = said(
-        "peak |theta|/alpha at each level [-]; null where too many records overturn the block"
-    )
+    peak_rotation: list[float | None] = said("peak |theta|/alpha at each level [-]; null where too many overturn")
 
 
 class RecordSensitivity(BaseModel):
@@ -120,14 +110,10 @@ class RecordSensitivity(BaseModel):
     record: str = said("name of the record")
     overturned: bool = said("whether the block overturns")
     peak_rotation: float | None = said("peak |theta|/alpha [-]; null if the block overturns")
-    friction_demand: float | None = said(
-        "largest friction demand |H|/N [-], impacts excluded; null if the block lifts off the ground"
-    )
+    friction_demand: float | None = said("largest friction demand |H|/N, impacts excluded [-]; null: it lifts off")
     overturned_low_restitution: bool = said("whether it overturns with the smaller restitution")
     overturned_high_restitution: bool = said("whether it overturns with the larger restitution")
-    overturned_resampled: bool = said(
-        "whether it overturns under the record interpolated band-limited at half its step"
-    )
+    overturned_resampled: bool = said("whether it overturns with the record interpolated band-limited at half its step")
 
 
 @with_intervals(fraction=(float, "share of the records that overturn it, with its Clopper-Pearson interval", "-"))
@@ -142,17 +128,11 @@ class Sensitivity(BaseModel):
     restitution_high: float = said("larger coefficient of restitution [-]")
     fraction_high_restitution: float = said("share that overturns it with the larger restitution [-]")
     changed_high_restitution: int = said("number of records whose outcome is then another one [-]")
-    fraction_resampled: float = said(
-        "share that overturns it with the records interpolated band-limited at half their step [-]"
-    )
+    fraction_resampled: float = said("share that overturns it with the records interpolated so [-]")
     changed_resampled: int = said("number of records whose outcome is then another one [-]")
     records_changed_by_sampling: list[str] = said("names of these records")
-    friction_demand_median: float | None = said(
-        "largest friction demand |H|/N that half of the records do not exceed [-]; null if infinite"
-    )
-    friction_demand_largest: float | None = said(
-        "largest friction demand |H|/N under all records [-]; null if the block lifts off"
-    )
+    friction_demand_median: float | None = said("|H|/N that half of the records do not exceed [-]; null if infinite")
+    friction_demand_largest: float | None = said("largest |H|/N under all records [-]; null if the block lifts off")
     records: list[RecordSensitivity] = said("each record")
 
 
@@ -166,9 +146,7 @@ class SuiteBlock(BaseModel):
     limit_states: list[LimitState] = said("counts, intervals and curves of each limit state")
     margins: list[RecordMargin] = said("margin of each record")
     rotation_quantiles: list[RotationQuantile] = said("quantiles of the peak rotation")
-    sensitivity: list[Sensitivity] = said(
-        "friction demand, and the effect of restitution and sampling, at the levels that the suite asks for"
-    )
+    sensitivity: list[Sensitivity] = said("friction, restitution and sampling at the levels that the suite asks for")
 
 
 class SuiteResponse(InUnits[SuiteParams]):
