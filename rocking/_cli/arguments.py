@@ -35,24 +35,11 @@ MAX_ERRORS = 20  # lines of a file that an error names at most
 
 @dataclass(frozen=True)
 class Params:
-    """One block under one pulse, as groups; `problem` if it was given with units."""
+    """One body under one pulse: a block by the groups, which are arguments of the solver; `problem` if with units."""
 
     pulse: AbstractPulse
-    slenderness: float
-    frequency_ratio: float
-    restitution: float
-    alpha: float | None
+    groups: dict[str, Any]
     problem: Problem | None = None
-
-    @property
-    def groups(self) -> dict[str, float | None]:
-        """Arguments of the solver."""
-        return {
-            "slenderness": self.slenderness,
-            "frequency_ratio": self.frequency_ratio,
-            "restitution": self.restitution,
-            "alpha": self.alpha,
-        }
 
 
 @contextmanager
@@ -216,10 +203,11 @@ def _refuse_groups(options: ShapeOptions, *names: str) -> None:
 
 def _in_groups(options: ShapeOptions, slenderness: float, ratio: float) -> Params:
     angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-    eta = "momentum" if options.restitution is None else read_eta(options.restitution)
+    eta = _restitution(options)
     if isinstance(eta, str):
         raise InvalidArgumentError("restitution", options.restitution, "a number, or momentum for a block with units")
-    return Params(read_pulse(options.pulse), slenderness, ratio, eta, angle or None)
+    groups = {"slenderness": slenderness, "frequency_ratio": ratio, "restitution": eta, "alpha": angle or None}
+    return Params(read_pulse(options.pulse), groups)
 
 
 def _of_problem(options: ShapeOptions, body: AbstractBody, peak_acceleration: Any, period: Any) -> Params:
@@ -227,9 +215,7 @@ def _of_problem(options: ShapeOptions, body: AbstractBody, peak_acceleration: An
 
     pulse = read_pulse(options.pulse)
     problem = Problem.of(body, pulse, peak_acceleration, period, _restitution(options))
-    if not problem.is_block:
-        return Params(pulse, math.nan, math.nan, math.nan, None, problem)
-    return Params(pulse, **problem.groups, problem=problem)
+    return Params(pulse, problem.groups if problem.is_block else {}, problem)
 
 
 def _window(
@@ -260,11 +246,5 @@ def _given(options: BodyOptions, name: str) -> str:
     return text
 
 
-def _restitution(options: ShapeOptions) -> float | str:
-    return "momentum" if options.restitution is None else read_eta(options.restitution)
-
-
-def read_eta(text: str) -> float | str:
-    """The coefficient of restitution of a text, or what names a rule: momentum, kalliontzis(k=0.8)."""
-    found: float | str = text if text.partition("(")[0] in RESTITUTION.words else RESTITUTION.read(text)
-    return found
+def _restitution(options: ShapeOptions) -> Any:
+    return "momentum" if options.restitution is None else RESTITUTION.read(options.restitution)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from rocking._assessment.columns import INPUTS, SHAPES
-from rocking._base.quantities import PERIOD, PGA, PGV, TIME_STEP
-from rocking._cli.options import BaselineOrder, Component, OutputOptions, Skip, option, said, with_options
+from rocking._base.quantities import PERIOD, PGA, PGV
+from rocking._cli.options import BaselineOrder, OutputOptions, SeriesOptions, option, said, with_options
 
 if TYPE_CHECKING:
     from rocking._assessment.report import Project
@@ -40,6 +40,7 @@ Texts = list[str] | None
 @with_options
 def assess(
     form: OutputOptions,
+    stated: SeriesOptions,
     objects: Annotated[
         str | None,
         typer.Argument(
@@ -90,12 +91,6 @@ def assess(
     vertical: Annotated[
         Texts, said("Vertical component: one for each --record, then one for each --pair, or none.", "FILE")
     ] = None,
-    unit: Annotated[str | None, said("Unit of the records if their files state none, such as g.", "UNIT")] = None,
-    time_step: Annotated[
-        str | None, option(TIME_STEP, text="Time step of the records if their files state none")
-    ] = None,
-    component: Component = None,
-    skip: Skip = None,
     baseline_order: BaselineOrder = None,
     hazard: Annotated[
         str | None, said("Hazard curve of PGA of the site, for instance from OpenQuake or the USGS.", "FILE")
@@ -178,12 +173,11 @@ def assess(
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
         if friction is not None and not mesh:
             raise InvalidArgumentError("friction", friction, "a mesh beside it; a table has a column for it")
-        stated = {"unit": unit, "time_step": time_step, "component": component, "skip": skip}
         site = Site(
             pga,
             pgv,
             None if period_min is None or period_max is None else (period_min, period_max),
-            _read(record or (), pair or (), vertical or (), baseline_order, stated),
+            _read(record or (), pair or (), vertical or (), baseline_order, vars(stated)),
             None if hazard is None else read_hazard(hazard),
             None if shapes is None else split_pulses(shapes),
             moving_ground,

@@ -105,7 +105,7 @@ def history(block: ProblemOptions, duration: Duration = None) -> Panels:
         if problem is not None and not problem.is_block:
             data = history_of(problem, duration=length)
         else:
-            data = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
+            data = time_history(params.pulse, **params.groups, duration=length)
             data = data if problem is None else in_si_units(data, problem)
         _draw_history(pictures, figure, data)
 
@@ -280,7 +280,7 @@ def _found(params: Params) -> Any:
 
     if params.problem is not None:
         return respond(params.problem)
-    return peak_response(params.pulse, **params.groups)  # type: ignore[arg-type]
+    return peak_response(params.pulse, **params.groups)
 
 
 def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
@@ -292,7 +292,8 @@ def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
 
     if params.problem is None:
         groups = params.groups | {"frequency_ratio": np.linspace(*window, POINTS)}
-        return peak_response(params.pulse, **groups).to_xarray()  # type: ignore[arg-type]
+        solved: xr.Dataset = peak_response(params.pulse, **groups).to_xarray()
+        return solved
     unit = unit_period(params.problem.body)
     return spectrum_of(params.problem, np.geomspace(unit / window[1], unit / window[0], POINTS))
 
@@ -306,13 +307,8 @@ def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:
     block = None if params.problem is None else params.problem.block
     amplitude = np.geomspace(*AMPLITUDE, ROWS)
     omega = np.linspace(*window, POINTS) if params.problem is None else np.geomspace(*window, POINTS)[::-1]
-    found = peak_response(
-        params.pulse,
-        slenderness=1.0 / amplitude[:, None],
-        frequency_ratio=omega,
-        restitution=params.restitution,
-        alpha=params.alpha,
-    ).to_xarray()
+    groups = params.groups | {"slenderness": 1.0 / amplitude[:, None], "frequency_ratio": omega}
+    found: xr.Dataset = peak_response(params.pulse, **groups).to_xarray()
     if block is None:
         return found
     return found.assign_coords(

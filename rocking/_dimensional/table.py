@@ -150,7 +150,7 @@ def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> list[dict
     """The rows of blocks."""
     if not problems:
         return []
-    columns = {name: np.array([one.groups[name] for one in problems]) for name in problems[0].groups}
+    columns: dict[str, Any] = {name: np.array([one.groups[name] for one in problems]) for name in problems[0].groups}
     sizes = (np.array([getattr(one.block, name) for one in problems]) for name in ("width", "height"))
     found = solve_with_bound(problems[0].pulse, **columns, stop=stop, body=Block(*sizes))
     solved = {one.name: getattr(found, one.name).tolist() for one in RESPONSES if hasattr(found, one.name)}
