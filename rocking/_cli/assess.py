@@ -6,13 +6,12 @@ import datetime as dt
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._assessment.columns import INPUTS, SHAPES
+from rocking._assessment.columns import CLAUSES, INPUTS, SHAPES
 from rocking._base.quantities import PERIOD, PGA, PGV
 from rocking._cli.options import BaselineOrder, OutputOptions, SeriesOptions, option, said, with_options
 
@@ -52,11 +51,7 @@ def assess(
     ] = None,
     column: Annotated[
         Texts,
-        said(
-            'Meaning of a column: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
-            "HEADER=NAME",
-            "--columns",
-        ),
+        said('Meaning of a column: "Length (cm)=depth", "Age=unused"; may be repeated.', "HEADER=NAME", "--columns"),
     ] = None,
     mesh: Annotated[
         Texts, said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE")
@@ -75,14 +70,10 @@ def assess(
     ] = None,
     period_min: Annotated[
         str | None,
-        option(
-            replace(PERIOD, example="0.2s"),
-            text="Where you have no PGV: shortest period of the pulses to try, with --period-max",
-        ),
+        option(PERIOD, text="Where you have no PGV: shortest period of the pulses to try, with --period-max"),
     ] = None,
     period_max: Annotated[
-        str | None,
-        option(replace(PERIOD, example="1s"), text="Longest of these periods; longer pulses overturn larger objects"),
+        str | None, option(PERIOD, text="Longest of these periods; longer pulses overturn larger objects")
     ] = None,
     record: Annotated[Texts, said("Accelerogram of the suite; may be repeated.", "FILE", "--record")] = None,
     pair: Annotated[
@@ -112,19 +103,10 @@ def assess(
     ] = False,
     sensitivity: Annotated[
         bool,
-        said(
-            "Whether to find the factors of changed objects and the sizes that survive.",
-            "",
-            "--sensitivity/--no-sensitivity",
-        ),
+        said("Find factors of changed objects, and sizes that survive.", "", "--sensitivity/--no-sensitivity"),
     ] = True,
     standards: Annotated[
-        str,
-        said(
-            "Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
-            "circolare_nonlinear.",
-            "NAME,NAME,...",
-        ),
+        str, said(f"Checks by standards beside the outcome: all, or some of {', '.join(CLAUSES)}.", "NAME,NAME,...")
     ] = "",
     samples: Annotated[
         int, said("Number of variants of each object within its tolerance to try, such as 10000.", "NUMBER")

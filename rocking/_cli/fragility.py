@@ -55,12 +55,7 @@ def fragility(
     baseline_order: BaselineOrder = None,
     file: Annotated[
         str | None,
-        said(
-            "File to write in place of printing: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.",
-            "FILE",
-            "--output",
-            "-o",
-        ),
+        said("File to write: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.", "FILE", "--output", "-o"),
     ] = None,
 ) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
