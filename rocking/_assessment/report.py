@@ -10,7 +10,6 @@ from importlib import metadata, resources
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
 from rocking._assessment.columns import CLAUSES, VERDICTS
@@ -22,8 +21,6 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.version import __version__
 from rocking._dimensional.table_reader import BadRow
 from rocking._excitation.records.record import Record
-
-Array = NDArray[np.float64]
 
 TEMPLATE = "report.html"
 

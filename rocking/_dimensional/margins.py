@@ -93,17 +93,10 @@ def margins_of(
 
     `served`: frequency ratios beyond which periods are not searched [-].
     """
-    groups, block = problem.groups, problem.block
-    omega = groups["frequency_ratio"]
+    groups, block = dict(problem.groups), problem.block
+    omega = groups.pop("frequency_ratio")
     low, high = max(omega / SEARCH_FACTOR, served[0]), min(omega * SEARCH_FACTOR, served[1])
-    found = critical_frequency_ratio(
-        problem.pulse,
-        slenderness=groups["slenderness"],
-        restitution=groups["restitution"],
-        alpha=groups["alpha"],
-        window=(low, high),
-        stop=stop,
-    )
+    found = critical_frequency_ratio(problem.pulse, **groups, window=(low, high), stop=stop)
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))
 
     def period(ratio: float) -> float:

@@ -147,15 +147,8 @@ def _point(
     groups = problem.groups
     for one in (SLENDERNESS, FREQUENCY_RATIO):
         one.convert(groups[one.name])
-    dimensionless = ResponseParams.model_construct(
-        pulse=params.pulse,
-        method=params.method,
-        absolute_tolerance=params.absolute_tolerance,
-        alpha_deg=math.degrees(groups["alpha"]),
-        slenderness=groups["slenderness"],
-        frequency_ratio=groups["frequency_ratio"],
-        restitution=groups["restitution"],
-    )
+    given: dict[str, Any] = groups | {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
+    dimensionless = ResponseParams.model_construct(**given, alpha_deg=math.degrees(given.pop("alpha")))
     points = np.array([groups[one.name] for one in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:
