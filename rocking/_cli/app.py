@@ -136,35 +136,26 @@ def history(
 @app.command()
 @options.with_options
 def spectrum(
-    context: typer.Context,
     block: options.SpectrumOptions,
     output: options.OutputOptions,
-    frequency_ratio_min: options.FrequencyRatioMin = 0.5,
-    frequency_ratio_max: options.FrequencyRatioMax = 12.0,
     points: Annotated[int, options.said("Number of points, spaced evenly in the logarithm.", "NUMBER")] = 24,
 ) -> None:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
-        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
+        params, window = arguments.read_spectrum(block, (0.5, 12.0))
         printing.spectrum(params, window, points, printing.output_format(output, block))
 
 
 @app.command()
 @options.with_options
-def boundary(
-    context: typer.Context,
-    block: options.WindowOptions,
-    output: options.OutputOptions,
-    frequency_ratio_min: options.FrequencyRatioMin = 0.2,
-    frequency_ratio_max: options.FrequencyRatioMax = 15.0,
-) -> None:
+def boundary(block: options.WindowOptions, output: options.OutputOptions) -> None:
     """Overturning boundary curves, traced with the solver."""
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+        params, window = arguments.read_boundary(block, (0.2, 15.0))
         printing.boundary(params, window, printing.output_format(output, block))
 
 

@@ -126,6 +126,12 @@ class HistoryOptions(ProblemOptions):
 class WindowOptions(ShapeOptions):
     """A block under pulses of all periods of a window."""
 
+    frequency_ratio_min: Annotated[
+        float | None, said("Lower end of omega_g/p; by default 0.5, of boundaries 0.2.", "-")
+    ] = None
+    frequency_ratio_max: Annotated[
+        float | None, said("Upper end of omega_g/p; by default 12, of boundaries 15.", "-")
+    ] = None
     period_min: Annotated[str | None, option(q.PERIOD, text="Shortest T_p", panel=_UNITS)] = None
     period_max: Annotated[str | None, option(q.PERIOD, text="Longest T_p", panel=_UNITS)] = None
 
@@ -202,8 +208,6 @@ class PictureOptions:
 
 GROUPS = (BodyOptions, SeriesOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
 
-FrequencyRatioMin = Annotated[float, said("Lower end of omega_g/p.", "-")]
-FrequencyRatioMax = Annotated[float, said("Upper end of omega_g/p.", "-")]
 Duration = Annotated[
     str | None, said("Length: a number tau = p t, or a time such as 3s for a block with units.", "-|s")
 ]

@@ -15,8 +15,6 @@ import typer
 from rocking._cli.fragility import Configuration
 from rocking._cli.options import (
     Duration,
-    FrequencyRatioMax,
-    FrequencyRatioMin,
     PictureOptions,
     ProblemOptions,
     RecordOptions,
@@ -134,16 +132,11 @@ def record(
 
 
 @picture()
-def spectrum(
-    context: typer.Context,
-    block: SpectrumOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.5,
-    frequency_ratio_max: FrequencyRatioMax = 12.0,
-) -> Panels:
+def spectrum(block: SpectrumOptions) -> Panels:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments
 
-    params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
+    params, window = arguments.read_spectrum(block, (0.5, 12.0))
 
     def panel(pictures: Any, figure: Any) -> None:
         ax = pictures.spectrum(_spectrum(params, window), figure.add_subplot(), label="survives")
@@ -153,30 +146,20 @@ def spectrum(
 
 
 @picture()
-def boundary(
-    context: typer.Context,
-    block: WindowOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.2,
-    frequency_ratio_max: FrequencyRatioMax = 15.0,
-) -> Panels:
+def boundary(block: WindowOptions) -> Panels:
     """Boundaries of overturning: amplitude against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
 
-    given = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+    given = arguments.read_boundary(block, (0.2, 15.0))
     return lambda pictures, figure: pictures.boundary(printing.boundary_curves(*given), figure.add_subplot()).legend()
 
 
 @picture("map")
-def control_map(
-    context: typer.Context,
-    block: WindowOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.5,
-    frequency_ratio_max: FrequencyRatioMax = 12.0,
-) -> Panels:
+def control_map(block: WindowOptions) -> Panels:
     """Peak rotation and outcome over amplitude and frequency ratio, or over peak acceleration and period."""
     from rocking._cli import arguments
 
-    given = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+    given = arguments.read_boundary(block, (0.5, 12.0))
     return lambda pictures, figure: pictures.control_map(_map(*given), figure.add_subplot())
 
 

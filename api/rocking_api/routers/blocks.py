@@ -136,8 +136,8 @@ def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockRe
     found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
     about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
     about["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *about["notes"]]
-    margins = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
-    return m.BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
+    about["margins"] = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
+    return m.BlockResponse(query=params, response=point, data_version=point.data_version, **about)
 
 
 def _point(
