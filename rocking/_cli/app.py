@@ -202,6 +202,7 @@ app.add_typer(plot, name="plot")
 
 
 @app.command()
+@options.with_options
 def serve(
     host: Annotated[str, options.said("Address to listen on.", "ADDRESS")] = "127.0.0.1",
     port: Annotated[int, options.said("Port to listen on.", "NUMBER", min=0, max=65535)] = 8000,
