@@ -233,7 +233,7 @@ def _window(options: WindowOptions, usual: Window, body: AbstractBody | None = N
         ends[k] = unit_period(body) / periods[name]
     if len(periods) == 2:
         number("period_max", periods["period_max"], periods["period_min"], math.inf, closed="neither", unit="s")
-    return check_window(FREQUENCY_RATIO, *ends)
+    return check_window(FREQUENCY_RATIO, ends[0], ends[1])
 
 
 def _given(options: BodyOptions, name: str) -> str:

@@ -16,7 +16,6 @@ from rocking._base.quantities import PERIOD, PGA, PGV
 from rocking._cli.options import BaselineOrder, OutputOptions, SeriesOptions, option, said, with_options
 
 if TYPE_CHECKING:
-    from rocking._assessment.report import Project
     from rocking._assessment.result import Assessment
     from rocking._assessment.tables import ObjectTable
     from rocking._cli.printing import Form
@@ -137,7 +136,7 @@ def assess(
     """
     from rocking._assessment.assess import assess as assess_objects
     from rocking._assessment.objects import Object
-    from rocking._assessment.report import Project
+    from rocking._assessment.report import Project, report_html
     from rocking._assessment.site import Site
     from rocking._assessment.tables import ObjectTable, read_objects
     from rocking._base.errors import InvalidArgumentError, plain_numbers
@@ -193,7 +192,8 @@ def assess(
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
-            _write("report", report, _html(found, project, table, detail == "all"))
+            text = report_html(found, project, table.bad_rows, table.reading, detailed=detail == "all")
+            _write("report", report, text)
     _print(found, kind, table, bad, directions)
     if kind.kind == "table" and table.reading:
         typer.echo(printing.printable(table.reading))
@@ -234,19 +234,6 @@ def _read(
             raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
         found.append((read(first, next(up, None)), read(second)))
     return found
-
-
-def _html(found: Assessment, project: Project, table: ObjectTable, detailed: bool) -> str:
-    """The report."""
-    from rocking._assessment.report import report_html
-    from rocking._base.errors import InvalidArgumentError
-
-    try:
-        return report_html(found, project, table.bad_rows, table.reading, detailed=detailed)
-    except ModuleNotFoundError as error:
-        raise InvalidArgumentError(
-            "report", error.name, "with the extra `report`: pip install 'rocking[report]'"
-        ) from None
 
 
 def _write(option: str, path: str, content: str | bytes) -> None:

@@ -66,7 +66,12 @@ def picture(name: str | None = None) -> Callable[[Callable[..., Panels]], None]:
 
 
 def _draw(panels: Panels, path: str | None) -> None:
-    pictures, output = _pictures()
+    try:
+        import rocking.plot as pictures
+        from rocking.plot import output
+    except ModuleNotFoundError as error:
+        typer.echo(f"rocking plot: {error}", err=True)
+        raise typer.Exit(1) from error
     with output.style():
         with progress("drawing"):
             figure = output.new_figure(path, SIZE)
@@ -238,17 +243,6 @@ def fragility(configuration: Configuration) -> Panels:
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
 
     return panels
-
-
-def _pictures() -> tuple[Any, Any]:
-    """The modules `rocking.plot` and `rocking.plot.output`."""
-    try:
-        import rocking.plot as pictures
-        from rocking.plot import output
-    except ModuleNotFoundError as error:
-        typer.echo(f"rocking plot: {error}", err=True)
-        raise typer.Exit(1) from error
-    return pictures, output
 
 
 def _draw_history(pictures: Any, figure: Any, data: xr.Dataset) -> None:

@@ -302,13 +302,10 @@ def _beside(line: HeaderLine, columns: Mapping[int, tuple[Quantity, str]], units
     found = set()
     for place, text in enumerate(line.texts[: last + 1]):
         name = plain_name(name_and_unit(text)[0])
-        if (
-            place >= first
-            and place not in columns
-            and place not in units.values()
-            and (text.strip() or 0 < place < last)
-        ):
-            found |= {place} if not name.startswith(_UNUSED) and not NO_LENGTH.search(name) else set()
+        is_read = place in columns or place in units.values()
+        says_no = name.startswith(_UNUSED) or NO_LENGTH.search(name)
+        if place >= first and not is_read and not says_no and (text.strip() or 0 < place < last):
+            found.add(place)
     return found
 
 

@@ -44,13 +44,9 @@ def _made(samples: PulseSamples) -> SampledPulse:
     return SampledPulse(**dict(samples))
 
 
-def _tag(value: Any) -> str:
-    return "name" if isinstance(value, str) else "samples"
-
-
 GivenPulse = Annotated[
     Annotated[PulseName, Tag("name")] | Annotated[PulseSamples, AfterValidator(_made), Tag("samples")],
-    Discriminator(_tag),
+    Discriminator(lambda value: "name" if isinstance(value, str) else "samples"),
     PlainSerializer(lambda pulse: pulse if isinstance(pulse, str) else pulse.name, return_type=str),
     said("a pulse by its name, or by samples"),
 ]
