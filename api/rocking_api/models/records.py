@@ -63,9 +63,7 @@ class RecordResponseParams(RecordParams):
 class RecordHistoryParams(RecordParams):
     """The same, and which samples are wanted."""
 
-    samples: int | None = between(
-        2, math.inf, "uniform samples [-]; absent: those of the record; the events are added", default=None
-    )
+    samples: int | None = between(2, math.inf, "uniform samples [-]; absent: those of the record", default=None)
     contact: Contact = False
     format: Format = None
 

@@ -19,7 +19,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
 from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, csv_response, json_response, negotiated_form
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import blocks as m
@@ -32,7 +32,6 @@ from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
 
 MAX_BODY = 4 * 1024 * 1024  # largest body with blocks [bytes]
-_FORMS: tuple[Form, ...] = ("json", "csv")  # formats of a table of blocks, and of its response
 
 _EXAMPLE = {
     "blocks": [
@@ -76,9 +75,9 @@ async def post_blocks(request: Request, service: ServiceDep) -> Response:
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
     optionally name and restitution; or the parameters of another kind of body. Others are not used.
     """
-    given = body_form(request, _FORMS)
+    given = body_form(request, TABLE_FORMS)
     params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
-    form = negotiated_form(request, params.format, _FORMS, default=given)
+    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
     table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
     return await service.run_heavy(lambda stop: _blocks(service, params, request, table, form, stop), request)
 
