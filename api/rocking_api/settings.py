@@ -23,6 +23,9 @@ def _nonempty(folder: Any) -> Any:
     return folder
 
 
+Folder = Annotated[Path, BeforeValidator(_nonempty)]
+
+
 def _origins(given: Any) -> Any:
     if not isinstance(given, str):
         return given
@@ -37,27 +40,17 @@ class Settings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix="ROCKING_", frozen=True, extra="forbid")
 
-    results: Annotated[Path, BeforeValidator(_nonempty)] = Field(
-        default=Path("results"), description="folder that the workflow filled"
-    )
-    guide: Annotated[Path, BeforeValidator(_nonempty)] = Field(
-        default=Path("build/docs"), description="folder of the guide, which `make docs` fills"
-    )
+    results: Folder = Field(default=Path("results"), description="folder that the workflow filled")
+    guide: Folder = Field(default=Path("build/docs"), description="folder of the guide, which `make docs` fills")
     max_points: int = Field(default=1_000_000, ge=1, description="largest number of points of a batch")
     max_body_bytes: int = Field(default=64 * 1024 * 1024, ge=1, description="largest body of a request")
-    max_record_bytes: int = Field(
-        default=8 * 1024 * 1024, ge=1, description="largest file of a record in the body of a request"
-    )
+    max_record_bytes: int = Field(default=8 * 1024 * 1024, ge=1, description="largest file of a record in a request")
     max_connections: int = Field(default=1000, ge=1, description="connections beyond which requests are refused")
-    max_samples: int = Field(
-        default=100_000, ge=2, description="largest number of samples of a time history or spectrum"
-    )
+    max_samples: int = Field(default=100_000, ge=2, description="most samples of a time history or spectrum")
     max_workers: int = Field(default=2, ge=1, description="concurrent requests of heavy work (all but one block)")
     max_queue: int = Field(default=16, ge=0, description="requests of heavy work that may wait; more are refused")
     max_seconds: float = Field(default=60.0, gt=0.0, description="time limit of a request of heavy work [s]")
-    max_bytes_in_flight: int = Field(
-        default=64 * 1024 * 1024, ge=1, description="limit of bodies and batches, all together [bytes]"
-    )
+    max_bytes_in_flight: int = Field(default=64 * 1024 * 1024, ge=1, description="bodies and batches together [bytes]")
     arrival_seconds: float = Field(default=20.0, gt=0.0, description="time for a body to arrive [s]")
     stop_seconds: int = Field(default=30, ge=1, description="time for running requests at shutdown [s]")
     access_log: bool = Field(default=True, description="one line of the log for each request")

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.objects import STEP, Bodies, Plane
 from rocking._assessment.search import HIGHEST_FACTOR, factor_from_one_side, problem_of
@@ -18,8 +17,6 @@ from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 LEAST_COMPONENT = 1e-9  # cosine up to which a motion has no component along a direction [-]
 

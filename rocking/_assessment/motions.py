@@ -51,9 +51,7 @@ def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     return max(found, key=lambda each: float(np.abs(each["rotation"]).max()))
 
 
-def frictions_of(
-    given: Sequence[tuple[Object, str]], motions: Sequence[Motion], stop: StopFlag | None = None
-) -> tuple[Array, Array]:
+def frictions_of(given: Sequence[tuple[Object, str]], motions: Sequence[Motion]) -> tuple[Array, Array]:
     """Friction that objects in a direction need under each motion, and when their own is first exceeded [s].
 
     Arrays (objects, motions), as the variables of `Assessment.friction`.
@@ -68,10 +66,10 @@ def frictions_of(
         needed[(static > uplift) & (body.side != 0.0), k] = math.nan  # the forces of a wall are not known
         for row in np.flatnonzero((static > uplift) & (body.side == 0.0)).tolist():
             both = problems if mirrored[row] else problems[:1]
-            found = (contact_extremes(one.body_motion(stop=stop, index=row)) for one in both)
+            found = (contact_extremes(one.body_motion(index=row)) for one in both)
             needed[row, k] = max(one.largest_friction_demand for one in found)
     own: list[Any] = [math.nan if one.friction is None else one.friction for one, _ in given]
-    return needed, first_exceedances(body, np.array(own, dtype=np.float64), motions, stop)
+    return needed, first_exceedances(body, np.array(own, dtype=np.float64), motions)
 
 
 def first_exceedances(
@@ -99,7 +97,7 @@ def first_exceedances(
 
 
 def envelope_of(
-    given: Sequence[tuple[Object, str]], motions: Sequence[Motion], highest: float, stop: StopFlag | None = None
+    given: Sequence[tuple[Object, str]], motions: Sequence[Motion], highest: float
 ) -> tuple[Array, dict[str, Array]]:
     """Periods [s], and by shape of pulse the lowest peak accelerations [m/s2] (objects, periods) that overturn objects.
 
@@ -117,6 +115,6 @@ def envelope_of(
     found = {}
     for name, pulse in pulses.items():
         problems = [Problem(side, pulse, np.asarray(1.0), periods, None) for side in body.sides]
-        lowest = [lowest_thresholds(one, highest, stop) for one in problems]
+        lowest = [lowest_thresholds(one, highest) for one in problems]
         found[name] = least(np.stack([one.ravel() for one in lowest], axis=1)).reshape(lowest[0].shape)
     return periods, found

@@ -10,7 +10,6 @@ from importlib import metadata, resources
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rocking._assessment.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
 from rocking._assessment.columns import CLAUSES, VERDICTS
@@ -22,8 +21,6 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.version import __version__
 from rocking._dimensional.table_reader import BadRow
 from rocking._excitation.records.record import Record
-
-Array = NDArray[np.float64]
 
 TEMPLATE = "report.html"
 
@@ -62,7 +59,11 @@ def report_html(
     Objects that rock, overturn or are within 20 % of overturning have half a page each, in their worse direction. With
     `detailed` every object has a page for each direction.
     """
-    from jinja2 import Environment, StrictUndefined  # noqa: PLC0415  (an extra)
+    try:
+        from jinja2 import Environment, StrictUndefined  # noqa: PLC0415  (an extra)
+    except ImportError as error:
+        text = "a report needs the extra `report`: pip install 'rocking[report]'"
+        raise ImportError(text, name=error.name) from None
 
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     environment.filters |= {"css": css_text, "shown": text_of, "rounded": number_of}

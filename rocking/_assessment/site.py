@@ -9,7 +9,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking._numba.cancellation import StopFlag
-
-Array = NDArray[np.float64]
 
 STRENGTHS = 1e-3, 1e3  # smallest and largest PGA [m/s2] and PGV [m/s]
 LENGTH = 0.01, 10.0  # shortest and longest period of a pulse, and ratio of PGV to PGA [s]

@@ -94,25 +94,25 @@ def lines_of(found: Assessment, *, directions: bool = False, only: Line | None =
     return lines
 
 
-def rounded(value: Any, unit: str = "-", digits: int = 3) -> Any:
-    """A number in the unit of the output, rounded; a small one is 0. Other values are returned unchanged."""
+def rounded(value: Any, unit: str = "-") -> Any:
+    """A number in the unit of the output, to three digits; a small one is 0. Other values are returned unchanged."""
     if not isinstance(value, float):
         return value
     shown = value / UNITS[unit][PEOPLE[unit]] if unit in PEOPLE else value
-    return float(f"{shown:.{digits}g}") if abs(shown) >= SMALL.get(unit, 5e-4) else 0.0
+    return float(f"{shown:.3g}") if abs(shown) >= SMALL.get(unit, 5e-4) else 0.0
 
 
-def text_of(value: Any, unit: str = "-", digits: int = 3) -> str:
+def text_of(value: Any, unit: str = "-") -> str:
     """The same as text with its unit; a dash for what is not known."""
     sign = {"rad": "\u00b0"}.get(unit, f" {PEOPLE.get(unit, unit)}" if unit not in ("", "-") else "")
-    return number_of(value, unit, digits) + (sign if isinstance(value, float) and value == value else "")
+    return number_of(value, unit) + (sign if isinstance(value, float) and value == value else "")
 
 
-def number_of(value: Any, unit: str = "-", digits: int = 3) -> str:
+def number_of(value: Any, unit: str = "-") -> str:
     """The same without its unit."""
     if value is None or value != value:
         return "\u2013"
-    return f"{rounded(value, unit, digits):.10g}" if isinstance(value, float) else str(value)
+    return f"{rounded(value, unit):.10g}" if isinstance(value, float) else str(value)
 
 
 def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[Any]]:

@@ -4,12 +4,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._boundary.curves import curves_at
 
 MARGIN = 0.1  # a curve is widened by this share of a cell: a chord lies that close to its curve [-]
 STEP = 0.2  # distance of points on a curve, in cells [-]
-
-Array = NDArray[np.float64]
 
 
 def crossed_cells(boundary: xr.Dataset, alpha: float, rows: Array, columns: Array) -> NDArray[np.bool_]:

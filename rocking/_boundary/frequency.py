@@ -8,8 +8,8 @@ gives the critical periods of a block and the critical sizes of a shape.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Flags
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
@@ -21,8 +21,6 @@ from rocking._model.outcome_code import SURVIVES
 from rocking._numba.cancellation import StopFlag
 
 NODES_PER_DECADE = 1000  # nodes on which outcomes are first computed, before their changes are refined [-]
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

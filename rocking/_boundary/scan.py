@@ -25,6 +25,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import number
 from rocking._base.units import Scalar
 from rocking._model.outcome import Outcome
@@ -33,7 +34,6 @@ from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.estimate import estimate_outcomes
 from rocking._solver.records.record_response import solve_bodies
 
-Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Index = NDArray[np.intp]
 

@@ -115,12 +115,8 @@ def history(
     block: options.HistoryOptions,
     output: options.OutputOptions,
     duration: options.Duration = None,
-    samples: Annotated[
-        int, typer.Option(help="Number of uniform samples; the events are added.", metavar="[NUMBER]")
-    ] = 400,
-    contact: Annotated[
-        bool, typer.Option("--contact", help="Add reactions of the ground and friction demand.", metavar="")
-    ] = False,
+    samples: Annotated[int, options.said("Number of uniform samples; the events are added.", "NUMBER")] = 400,
+    contact: Annotated[bool, options.said("Add reactions of the ground and friction demand.", "", "--contact")] = False,
 ) -> None:
     """Rotation and angular velocity of one block against time, under a pulse or released from a rotation."""
     from rocking._base.errors import InvalidArgumentError
@@ -140,37 +136,26 @@ def history(
 @app.command()
 @options.with_options
 def spectrum(
-    context: typer.Context,
     block: options.SpectrumOptions,
     output: options.OutputOptions,
-    frequency_ratio_min: options.FrequencyRatioMin = 0.5,
-    frequency_ratio_max: options.FrequencyRatioMax = 12.0,
-    points: Annotated[
-        int, typer.Option(help="Number of points, spaced evenly in the logarithm.", metavar="[NUMBER]")
-    ] = 24,
+    points: Annotated[int, options.said("Number of points, spaced evenly in the logarithm.", "NUMBER")] = 24,
 ) -> None:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
-        params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
+        params, window = arguments.read_spectrum(block, (0.5, 12.0))
         printing.spectrum(params, window, points, printing.output_format(output, block))
 
 
 @app.command()
 @options.with_options
-def boundary(
-    context: typer.Context,
-    block: options.WindowOptions,
-    output: options.OutputOptions,
-    frequency_ratio_min: options.FrequencyRatioMin = 0.2,
-    frequency_ratio_max: options.FrequencyRatioMax = 15.0,
-) -> None:
+def boundary(block: options.WindowOptions, output: options.OutputOptions) -> None:
     """Overturning boundary curves, traced with the solver."""
     from rocking._cli import arguments, printing
 
     with arguments.option_errors():
-        params, window = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+        params, window = arguments.read_boundary(block, (0.2, 15.0))
         printing.boundary(params, window, printing.output_format(output, block))
 
 
@@ -217,18 +202,15 @@ app.add_typer(plot, name="plot")
 
 
 @app.command()
+@options.with_options
 def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on.", metavar="[ADDRESS]")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on.", min=0, max=65535, metavar="[NUMBER]")] = 8000,
+    host: Annotated[str, options.said("Address to listen on.", "ADDRESS")] = "127.0.0.1",
+    port: Annotated[int, options.said("Port to listen on.", "NUMBER", min=0, max=65535)] = 8000,
     results: Annotated[
         str | None,
-        typer.Option(
-            help="Folder with the data sets of the workflow; by default ROCKING_RESULTS, or results.",
-            show_default=False,
-            metavar="[FOLDER]",
-        ),
+        options.said("Folder with the data sets of the workflow; by default ROCKING_RESULTS, or results.", "FOLDER"),
     ] = None,
-    workers: Annotated[int, typer.Option(help="Processes that serve.", min=1, max=256, metavar="[NUMBER]")] = 1,
+    workers: Annotated[int, options.said("Processes that serve.", "NUMBER", min=1, max=256)] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
     from importlib.metadata import entry_points

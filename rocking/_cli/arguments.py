@@ -35,24 +35,11 @@ MAX_ERRORS = 20  # lines of a file that an error names at most
 
 @dataclass(frozen=True)
 class Params:
-    """One block under one pulse, as groups; `problem` if it was given with units."""
+    """One body under one pulse: a block by the groups, which are arguments of the solver; `problem` if with units."""
 
     pulse: AbstractPulse
-    slenderness: float
-    frequency_ratio: float
-    restitution: float
-    alpha: float | None
+    groups: dict[str, Any]
     problem: Problem | None = None
-
-    @property
-    def groups(self) -> dict[str, float | None]:
-        """Arguments of the solver."""
-        return {
-            "slenderness": self.slenderness,
-            "frequency_ratio": self.frequency_ratio,
-            "restitution": self.restitution,
-            "alpha": self.alpha,
-        }
 
 
 @contextmanager
@@ -118,31 +105,30 @@ def read_params(options: ProblemOptions) -> Params:
     return _of_problem(options, body, _given(options, "peak_acceleration"), _given(options, "period"))
 
 
-def read_spectrum(
-    options: SpectrumOptions, low: float, high: float, context: typer.Context
-) -> tuple[Params, tuple[float, float]]:
+Window = tuple[float, float]  # frequency ratios [-]
+
+
+def read_spectrum(options: SpectrumOptions, usual: Window) -> tuple[Params, Window]:
     """A body under pulses of one amplitude, at the lowest frequency ratio, and the window of frequency ratios."""
     if not _has_units(options):
         if options.slenderness is None:
             raise InvalidArgumentError("slenderness", None, "a number; or a block and an amplitude with units instead")
-        window = check_window(FREQUENCY_RATIO, low, high)
+        window = _window(options, usual)
         return _in_groups(options, options.slenderness, window[0]), window
     _refuse_groups(options, "slenderness", "alpha")
     body = read_body(options)
-    window = _window(options, body, low, high, context)
+    window = _window(options, usual, body)
     return _of_problem(options, body, _given(options, "peak_acceleration"), unit_period(body) / window[0]), window
 
 
-def read_boundary(
-    options: WindowOptions, low: float, high: float, context: typer.Context
-) -> tuple[Params, tuple[float, float]]:
+def read_boundary(options: WindowOptions, usual: Window) -> tuple[Params, Window]:
     """A body without amplitude, and the window of frequency ratios."""
     if not _has_units(options):
-        window = check_window(FREQUENCY_RATIO, low, high)
+        window = _window(options, usual)
         return _in_groups(options, 1.0, window[0]), window
     _refuse_groups(options, "alpha")
     body = read_body(options)
-    window = _window(options, body, low, high, context)
+    window = _window(options, usual, body)
     return _of_problem(options, body, float(body.uplift_acceleration), unit_period(body) / window[0]), window
 
 
@@ -216,10 +202,11 @@ def _refuse_groups(options: ShapeOptions, *names: str) -> None:
 
 def _in_groups(options: ShapeOptions, slenderness: float, ratio: float) -> Params:
     angle = None if options.alpha is None else si_value("alpha", options.alpha, "rad")
-    eta = "momentum" if options.restitution is None else read_eta(options.restitution)
+    eta = _restitution(options)
     if isinstance(eta, str):
         raise InvalidArgumentError("restitution", options.restitution, "a number, or momentum for a block with units")
-    return Params(read_pulse(options.pulse), slenderness, ratio, eta, angle or None)
+    groups = {"slenderness": slenderness, "frequency_ratio": ratio, "restitution": eta, "alpha": angle or None}
+    return Params(read_pulse(options.pulse), groups)
 
 
 def _of_problem(options: ShapeOptions, body: AbstractBody, peak_acceleration: Any, period: Any) -> Params:
@@ -227,30 +214,26 @@ def _of_problem(options: ShapeOptions, body: AbstractBody, peak_acceleration: An
 
     pulse = read_pulse(options.pulse)
     problem = Problem.of(body, pulse, peak_acceleration, period, _restitution(options))
-    if not problem.is_block:
-        return Params(pulse, math.nan, math.nan, math.nan, None, problem)
-    return Params(pulse, **problem.groups, problem=problem)
+    return Params(pulse, problem.groups if problem.is_block else {}, problem)
 
 
-def _window(
-    options: WindowOptions, body: AbstractBody, low: float, high: float, context: typer.Context
-) -> tuple[float, float]:
-    """Frequency ratios of the periods, by default as for groups."""
-    for name, ratio, period in (("min", low, "period_max"), ("max", high, "period_min")):  # two options for one end
-        source = context.get_parameter_source(f"frequency_ratio_{name}")
-        if getattr(options, period) is not None and source is not None and source.name == "COMMANDLINE":
-            option = f"--{period.replace('_', '-')}"
-            raise InvalidArgumentError(f"frequency_ratio_{name}", ratio, f"either this or {option}")
-    ends = {
-        name: PERIOD.number(getattr(options, name), name)
-        for name in ("period_min", "period_max")
-        if getattr(options, name) is not None
-    }
-    if len(ends) == 2:
-        number("period_max", ends["period_max"], ends["period_min"], math.inf, closed="neither", unit="s")
-    unit = unit_period(body)
-    lowest = unit / ends["period_max"] if "period_max" in ends else low
-    return check_window(FREQUENCY_RATIO, lowest, unit / ends["period_min"] if "period_min" in ends else high)
+def _window(options: WindowOptions, usual: Window, body: AbstractBody | None = None) -> Window:
+    """Frequency ratios, or those of the periods of a body; by default the usual ones."""
+    given = options.frequency_ratio_min, options.frequency_ratio_max
+    ends = [own if ratio is None else ratio for ratio, own in zip(given, usual, strict=True)]
+    periods: dict[str, float] = {}
+    for k, (end, name) in enumerate((("min", "period_max"), ("max", "period_min"))):  # two options for one end
+        text = getattr(options, name)
+        if body is None or text is None:
+            continue
+        if given[k] is not None:
+            option = f"--{name.replace('_', '-')}"
+            raise InvalidArgumentError(f"frequency_ratio_{end}", given[k], f"either this or {option}")
+        periods[name] = PERIOD.number(text, name)
+        ends[k] = unit_period(body) / periods[name]
+    if len(periods) == 2:
+        number("period_max", periods["period_max"], periods["period_min"], math.inf, closed="neither", unit="s")
+    return check_window(FREQUENCY_RATIO, ends[0], ends[1])
 
 
 def _given(options: BodyOptions, name: str) -> str:
@@ -260,11 +243,5 @@ def _given(options: BodyOptions, name: str) -> str:
     return text
 
 
-def _restitution(options: ShapeOptions) -> float | str:
-    return "momentum" if options.restitution is None else read_eta(options.restitution)
-
-
-def read_eta(text: str) -> float | str:
-    """The coefficient of restitution of a text, or what names a rule: momentum, kalliontzis(k=0.8)."""
-    found: float | str = text if text.partition("(")[0] in RESTITUTION.words else RESTITUTION.read(text)
-    return found
+def _restitution(options: ShapeOptions) -> Any:
+    return "momentum" if options.restitution is None else RESTITUTION.read(options.restitution)

@@ -6,18 +6,16 @@ import datetime as dt
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._assessment.columns import INPUTS, SHAPES
-from rocking._base.quantities import PERIOD, PGA, PGV, TIME_STEP
-from rocking._cli.options import BaselineOrder, Component, OutputOptions, Skip, option, said, with_options
+from rocking._assessment.columns import CLAUSES, INPUTS, SHAPES
+from rocking._base.quantities import PERIOD, PGA, PGV
+from rocking._cli.options import BaselineOrder, OutputOptions, SeriesOptions, option, said, with_options
 
 if TYPE_CHECKING:
-    from rocking._assessment.report import Project
     from rocking._assessment.result import Assessment
     from rocking._assessment.tables import ObjectTable
     from rocking._cli.printing import Form
@@ -40,6 +38,7 @@ Texts = list[str] | None
 @with_options
 def assess(
     form: OutputOptions,
+    stated: SeriesOptions,
     objects: Annotated[
         str | None,
         typer.Argument(
@@ -51,11 +50,7 @@ def assess(
     ] = None,
     column: Annotated[
         Texts,
-        said(
-            'Meaning of a column: "Length (cm)=depth", "Seat height (cm)=unused"; may be repeated.',
-            "HEADER=NAME",
-            "--columns",
-        ),
+        said('Meaning of a column: "Length (cm)=depth", "Age=unused"; may be repeated.', "HEADER=NAME", "--columns"),
     ] = None,
     mesh: Annotated[
         Texts, said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE")
@@ -74,14 +69,10 @@ def assess(
     ] = None,
     period_min: Annotated[
         str | None,
-        option(
-            replace(PERIOD, example="0.2s"),
-            text="Where you have no PGV: shortest period of the pulses to try, with --period-max",
-        ),
+        option(PERIOD, text="Where you have no PGV: shortest period of the pulses to try, with --period-max"),
     ] = None,
     period_max: Annotated[
-        str | None,
-        option(replace(PERIOD, example="1s"), text="Longest of these periods; longer pulses overturn larger objects"),
+        str | None, option(PERIOD, text="Longest of these periods; longer pulses overturn larger objects")
     ] = None,
     record: Annotated[Texts, said("Accelerogram of the suite; may be repeated.", "FILE", "--record")] = None,
     pair: Annotated[
@@ -90,12 +81,6 @@ def assess(
     vertical: Annotated[
         Texts, said("Vertical component: one for each --record, then one for each --pair, or none.", "FILE")
     ] = None,
-    unit: Annotated[str | None, said("Unit of the records if their files state none, such as g.", "UNIT")] = None,
-    time_step: Annotated[
-        str | None, option(TIME_STEP, text="Time step of the records if their files state none")
-    ] = None,
-    component: Component = None,
-    skip: Skip = None,
     baseline_order: BaselineOrder = None,
     hazard: Annotated[
         str | None, said("Hazard curve of PGA of the site, for instance from OpenQuake or the USGS.", "FILE")
@@ -117,19 +102,10 @@ def assess(
     ] = False,
     sensitivity: Annotated[
         bool,
-        said(
-            "Whether to find the factors of changed objects and the sizes that survive.",
-            "",
-            "--sensitivity/--no-sensitivity",
-        ),
+        said("Find factors of changed objects, and sizes that survive.", "", "--sensitivity/--no-sensitivity"),
     ] = True,
     standards: Annotated[
-        str,
-        said(
-            "Checks by standards beside the outcome: all, or some of static, ishiyama, asce43, circolare_linear, "
-            "circolare_nonlinear.",
-            "NAME,NAME,...",
-        ),
+        str, said(f"Checks by standards beside the outcome: all, or some of {', '.join(CLAUSES)}.", "NAME,NAME,...")
     ] = "",
     samples: Annotated[
         int, said("Number of variants of each object within its tolerance to try, such as 10000.", "NUMBER")
@@ -160,7 +136,7 @@ def assess(
     """
     from rocking._assessment.assess import assess as assess_objects
     from rocking._assessment.objects import Object
-    from rocking._assessment.report import Project
+    from rocking._assessment.report import Project, report_html
     from rocking._assessment.site import Site
     from rocking._assessment.tables import ObjectTable, read_objects
     from rocking._base.errors import InvalidArgumentError, plain_numbers
@@ -178,12 +154,11 @@ def assess(
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
         if friction is not None and not mesh:
             raise InvalidArgumentError("friction", friction, "a mesh beside it; a table has a column for it")
-        stated = {"unit": unit, "time_step": time_step, "component": component, "skip": skip}
         site = Site(
             pga,
             pgv,
             None if period_min is None or period_max is None else (period_min, period_max),
-            _read(record or (), pair or (), vertical or (), baseline_order, stated),
+            _read(record or (), pair or (), vertical or (), baseline_order, vars(stated)),
             None if hazard is None else read_hazard(hazard),
             None if shapes is None else split_pulses(shapes),
             moving_ground,
@@ -217,7 +192,8 @@ def assess(
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
-            _write("report", report, _html(found, project, table, detail == "all"))
+            text = report_html(found, project, table.bad_rows, table.reading, detailed=detail == "all")
+            _write("report", report, text)
     _print(found, kind, table, bad, directions)
     if kind.kind == "table" and table.reading:
         typer.echo(printing.printable(table.reading))
@@ -258,19 +234,6 @@ def _read(
             raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
         found.append((read(first, next(up, None)), read(second)))
     return found
-
-
-def _html(found: Assessment, project: Project, table: ObjectTable, detailed: bool) -> str:
-    """The report."""
-    from rocking._assessment.report import report_html
-    from rocking._base.errors import InvalidArgumentError
-
-    try:
-        return report_html(found, project, table.bad_rows, table.reading, detailed=detailed)
-    except ModuleNotFoundError as error:
-        raise InvalidArgumentError(
-            "report", error.name, "with the extra `report`: pip install 'rocking[report]'"
-        ) from None
 
 
 def _write(option: str, path: str, content: str | bytes) -> None:

@@ -55,12 +55,7 @@ def fragility(
     baseline_order: BaselineOrder = None,
     file: Annotated[
         str | None,
-        said(
-            "File to write in place of printing: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.",
-            "FILE",
-            "--output",
-            "-o",
-        ),
+        said("File to write: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.", "FILE", "--output", "-o"),
     ] = None,
 ) -> None:
     """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
@@ -104,7 +99,7 @@ def fragility(
         tables["sensitivity"] = _sensitivity(suite)
     unit = found["intensity"].attrs["units"]
     measured = ("intensity", *(f"median_intensity{end}" for end in ("", "_lower", "_upper")))
-    usual = re.sub(r" s-(\d)", _per_second, unit)
+    usual = re.sub(r" s-(\d)", lambda power: "/s" + power[1].replace("1", ""), unit)  # m/s2 for m s-2
     units = dict.fromkeys(measured, usual) if unit != "1" else {}
     if form.kind == "csv":
         printing.print_csv(tables[table], form, units)
@@ -271,8 +266,3 @@ def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[
     shown["resampled"] = [count(value) for value in rows["fraction_resampled"]]
     friction = ("friction_demand_median", "friction_demand_largest", "records_changed_by_sampling")
     return shown | {name: rows[name] for name in friction}
-
-
-def _per_second(power: re.Match[str]) -> str:
-    """The end of a unit of the data sets as the other output writes it: m/s2 for m s-2."""
-    return "/s" + power[1].replace("1", "")

@@ -64,22 +64,18 @@ def _columns() -> list[str]:
 def _found(path: str, degrees: bool, time_step: str | None, edges: int, confidence: float) -> xr.Dataset:
     from pathlib import Path
 
-    from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError, number
-    from rocking._cli.record import with_options_named
+    from rocking._base.errors import InvalidArgumentError, number
+    from rocking._cli.record import file_errors
+    from rocking._dimensional.table_reader import read_bytes
     from rocking._evidence.free_rocking import identify_free_rocking
     from rocking._excitation.records.readers.columns import read_rotations
     from rocking._excitation.records.readers.lines import TextFile
     from rocking._excitation.records.record import TIME_STEP as ENDS
 
     step = None if time_step is None else number("time_step", time_step, *ENDS, unit="s")
-    try:
-        file = TextFile(Path(path).name, Path(path).read_bytes())
+    with file_errors():
+        file = TextFile(Path(path).name, read_bytes(path, "path"))
         time, rotation = read_rotations(file, MAX_SAMPLES, degrees or None, step)
-    except OSError as error:
-        reason = UnreadableFileError("path", path, error).reason
-        raise typer.BadParameter(f"{path}: {reason}", param_hint="FILE") from None
-    except RecordFileError as error:
-        raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
     try:
         return identify_free_rocking(time, rotation, edges=edges, confidence=confidence)
     except InvalidArgumentError as error:

@@ -126,6 +126,12 @@ class HistoryOptions(ProblemOptions):
 class WindowOptions(ShapeOptions):
     """A block under pulses of all periods of a window."""
 
+    frequency_ratio_min: Annotated[
+        float | None, said("Lower end of omega_g/p; by default 0.5, of boundaries 0.2.", "-")
+    ] = None
+    frequency_ratio_max: Annotated[
+        float | None, said("Upper end of omega_g/p; by default 12, of boundaries 15.", "-")
+    ] = None
     period_min: Annotated[str | None, option(q.PERIOD, text="Shortest T_p", panel=_UNITS)] = None
     period_max: Annotated[str | None, option(q.PERIOD, text="Longest T_p", panel=_UNITS)] = None
 
@@ -138,31 +144,35 @@ class SpectrumOptions(WindowOptions):
     peak_acceleration: Annotated[str | None, option(q.PEAK_ACCELERATION, panel=_UNITS)] = None
 
 
-Component = Annotated[
-    str | None,
-    said(
-        "Column or trace to read from a file with several; rows: one series along the rows of several columns.", "NAME"
-    ),
-]
-Skip = Annotated[int | None, said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER")]
 BaselineOrder = Annotated[
     int | None, said("Remove a baseline of this degree, 0 to 6; by default only the offset of K-NET counts.", "NUMBER")
 ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class FileOptions:
-    """What the file of a record does not state: arguments of `read_record`."""
+class SeriesOptions:
+    """What files of records do not state: arguments of `read_record`."""
 
     unit: Annotated[
         str | None, said("Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", "UNIT")
     ] = None
     time_step: Annotated[str | None, option(q.TIME_STEP, text="Time step if the file states none")] = None
-    component: Component = None
+    component: Annotated[
+        str | None,
+        said("Column or trace of a file with several; rows: one series along the rows of several columns.", "NAME"),
+    ] = None
+    skip: Annotated[
+        int | None, said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER")
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FileOptions(SeriesOptions):
+    """The same, and the vertical component."""
+
     vertical: Annotated[
         str | None, said("File of the vertical component, upwards, or its column or trace in the file.", "FILE|NAME")
     ] = None
-    skip: Skip = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,10 +206,8 @@ class PictureOptions:
     ] = None
 
 
-GROUPS = (BodyOptions, FileOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
+GROUPS = (BodyOptions, SeriesOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
 
-FrequencyRatioMin = Annotated[float, said("Lower end of omega_g/p.", "-")]
-FrequencyRatioMax = Annotated[float, said("Upper end of omega_g/p.", "-")]
 Duration = Annotated[
     str | None, said("Length: a number tau = p t, or a time such as 3s for a block with units.", "-|s")
 ]

@@ -15,8 +15,6 @@ import typer
 from rocking._cli.fragility import Configuration
 from rocking._cli.options import (
     Duration,
-    FrequencyRatioMax,
-    FrequencyRatioMin,
     PictureOptions,
     ProblemOptions,
     RecordOptions,
@@ -68,7 +66,12 @@ def picture(name: str | None = None) -> Callable[[Callable[..., Panels]], None]:
 
 
 def _draw(panels: Panels, path: str | None) -> None:
-    pictures, output = _pictures()
+    try:
+        import rocking.plot as pictures
+        from rocking.plot import output
+    except ModuleNotFoundError as error:
+        typer.echo(f"rocking plot: {error}", err=True)
+        raise typer.Exit(1) from error
     with output.style():
         with progress("drawing"):
             figure = output.new_figure(path, SIZE)
@@ -105,7 +108,7 @@ def history(block: ProblemOptions, duration: Duration = None) -> Panels:
         if problem is not None and not problem.is_block:
             data = history_of(problem, duration=length)
         else:
-            data = time_history(params.pulse, **params.groups, duration=length)  # type: ignore[arg-type]
+            data = time_history(params.pulse, **params.groups, duration=length)
             data = data if problem is None else in_si_units(data, problem)
         _draw_history(pictures, figure, data)
 
@@ -134,16 +137,11 @@ def record(
 
 
 @picture()
-def spectrum(
-    context: typer.Context,
-    block: SpectrumOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.5,
-    frequency_ratio_max: FrequencyRatioMax = 12.0,
-) -> Panels:
+def spectrum(block: SpectrumOptions) -> Panels:
     """Peak rotation against the frequency ratio, or against the period."""
     from rocking._cli import arguments
 
-    params, window = arguments.read_spectrum(block, frequency_ratio_min, frequency_ratio_max, context)
+    params, window = arguments.read_spectrum(block, (0.5, 12.0))
 
     def panel(pictures: Any, figure: Any) -> None:
         ax = pictures.spectrum(_spectrum(params, window), figure.add_subplot(), label="survives")
@@ -153,30 +151,20 @@ def spectrum(
 
 
 @picture()
-def boundary(
-    context: typer.Context,
-    block: WindowOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.2,
-    frequency_ratio_max: FrequencyRatioMax = 15.0,
-) -> Panels:
+def boundary(block: WindowOptions) -> Panels:
     """Boundaries of overturning: amplitude against the frequency ratio, or against the period."""
     from rocking._cli import arguments, printing
 
-    given = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+    given = arguments.read_boundary(block, (0.2, 15.0))
     return lambda pictures, figure: pictures.boundary(printing.boundary_curves(*given), figure.add_subplot()).legend()
 
 
 @picture("map")
-def control_map(
-    context: typer.Context,
-    block: WindowOptions,
-    frequency_ratio_min: FrequencyRatioMin = 0.5,
-    frequency_ratio_max: FrequencyRatioMax = 12.0,
-) -> Panels:
+def control_map(block: WindowOptions) -> Panels:
     """Peak rotation and outcome over amplitude and frequency ratio, or over peak acceleration and period."""
     from rocking._cli import arguments
 
-    given = arguments.read_boundary(block, frequency_ratio_min, frequency_ratio_max, context)
+    given = arguments.read_boundary(block, (0.5, 12.0))
     return lambda pictures, figure: pictures.control_map(_map(*given), figure.add_subplot())
 
 
@@ -257,17 +245,6 @@ def fragility(configuration: Configuration) -> Panels:
     return panels
 
 
-def _pictures() -> tuple[Any, Any]:
-    """The modules `rocking.plot` and `rocking.plot.output`."""
-    try:
-        import rocking.plot as pictures
-        from rocking.plot import output
-    except ModuleNotFoundError as error:
-        typer.echo(f"rocking plot: {error}", err=True)
-        raise typer.Exit(1) from error
-    return pictures, output
-
-
 def _draw_history(pictures: Any, figure: Any, data: xr.Dataset) -> None:
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.6, 1.0))
     pictures.history(data, upper).set_xlabel("")
@@ -280,7 +257,7 @@ def _found(params: Params) -> Any:
 
     if params.problem is not None:
         return respond(params.problem)
-    return peak_response(params.pulse, **params.groups)  # type: ignore[arg-type]
+    return peak_response(params.pulse, **params.groups)
 
 
 def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
@@ -292,7 +269,8 @@ def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
 
     if params.problem is None:
         groups = params.groups | {"frequency_ratio": np.linspace(*window, POINTS)}
-        return peak_response(params.pulse, **groups).to_xarray()  # type: ignore[arg-type]
+        solved: xr.Dataset = peak_response(params.pulse, **groups).to_xarray()
+        return solved
     unit = unit_period(params.problem.body)
     return spectrum_of(params.problem, np.geomspace(unit / window[1], unit / window[0], POINTS))
 
@@ -306,13 +284,8 @@ def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:
     block = None if params.problem is None else params.problem.block
     amplitude = np.geomspace(*AMPLITUDE, ROWS)
     omega = np.linspace(*window, POINTS) if params.problem is None else np.geomspace(*window, POINTS)[::-1]
-    found = peak_response(
-        params.pulse,
-        slenderness=1.0 / amplitude[:, None],
-        frequency_ratio=omega,
-        restitution=params.restitution,
-        alpha=params.alpha,
-    ).to_xarray()
+    groups = params.groups | {"slenderness": 1.0 / amplitude[:, None], "frequency_ratio": omega}
+    found: xr.Dataset = peak_response(params.pulse, **groups).to_xarray()
     if block is None:
         return found
     return found.assign_coords(

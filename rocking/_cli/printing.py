@@ -11,6 +11,7 @@ import numpy as np
 import typer
 
 from rocking._base.errors import finite, in_range, reject_given
+from rocking._base.quantities import RESTITUTION
 from rocking._base.units import UNITS
 from rocking._cli.arguments import Params, given_units, unit_period
 from rocking._cli.options import HistoryOptions, OutputOptions
@@ -25,7 +26,6 @@ from rocking._solver.bounded_response import BoundedResponse, solve_with_bound
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking._dimensional.problem import Problem
     from rocking._dimensional.response import BodyResponse
     from rocking._dimensional.table import BlockTable
 
@@ -114,14 +114,14 @@ def _response(params: Params) -> tuple[dict[str, Any], str]:
 
         result = _groups(params) | body_columns(respond(params.problem))
         return result, result["meaning"]
-    found = _solve(params, params.frequency_ratio)
+    found = solve_with_bound(params.pulse, **params.groups)
     result = _groups(params) | {name: column[0] for name, column in _columns(found).items()}
-    if params.alpha is None:
+    if params.groups["alpha"] is None:
         return result, Outcome[result["outcome"]].sentence
     from rocking._history.contact import contact_extremes
     from rocking._history.motion import build_motion
 
-    contact = contact_extremes(build_motion(params.pulse, **params.groups))  # type: ignore[arg-type]
+    contact = contact_extremes(build_motion(params.pulse, **params.groups))
     about = {
         "friction_demand": finite(contact.largest_friction_demand),
         "lifts_off": contact.lifts_off,
@@ -222,21 +222,23 @@ def _csv_cell(value: Any) -> Any:
 
 
 def history(params: Params, duration: float | None, samples: int, contact: bool, form: Form) -> None:
-    """Print the motion of one block, with `contact` also the reactions of the ground and the friction demand."""
+    """Print the motion of one block, with `contact` also the reactions of the ground and the friction demand.
+
+    Of a body with other edges also the edge in contact: 1 right, -1 left, 0 both.
+    """
+    from rocking._dimensional.curves import history as history_of
+    from rocking._dimensional.curves import in_si_units
     from rocking._history.contact import ATTRIBUTES, COLUMNS
     from rocking._history.time_history import time_history
 
+    options: dict[str, Any] = {"duration": duration, "samples": samples, "contact": contact}
     if params.problem is not None and not params.problem.is_block:
-        _body_history(params.problem, duration, samples, contact, form)
+        with progress("solving the body"):
+            motion = history_of(params.problem, **options)
+        _print_motion(motion, form)
         return
     with progress("solving the block"):
-        motion = time_history(
-            params.pulse,
-            **params.groups,  # type: ignore[arg-type]
-            duration=duration,
-            samples=samples,
-            contact=contact,
-        )
+        motion = time_history(params.pulse, **params.groups, **options)
     names = ["tau", "rotation", "angular_velocity", "ground_acceleration", *(COLUMNS if contact else ())]
     columns = {name: [finite(value) for value in motion[name].values.tolist()] for name in names}
     about = _groups(params) | {
@@ -250,8 +252,6 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
         about |= {"lifts_off": bool(motion.attrs["lifts_off"]), "warnings": motion.attrs["warnings"] or None}
     shown = columns
     if params.problem is not None:
-        from rocking._dimensional.curves import in_si_units
-
         moved = in_si_units(motion, params.problem)
         si = _si_columns(moved)
         shown = si | {name: columns[name] for name in columns if name in COLUMNS}
@@ -260,17 +260,9 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     _print_curve(about, columns, shown, form)
 
 
-def _body_history(problem: Problem, duration: float | None, samples: int, contact: bool, form: Form) -> None:
-    """Print the motion of a body under a pulse, as `history`; with the edge in contact: 1 right, -1 left, 0 both."""
-    from rocking._dimensional.curves import history as history_of
-
-    with progress("solving the body"):
-        _print_motion(history_of(problem, duration=duration, samples=samples, contact=contact), form)
-
-
 def released(options: HistoryOptions, duration: str | None, samples: int, contact: bool, form: Form) -> None:
     """Print the motion of a body that is released, as `history` of a body."""
-    from rocking._cli.arguments import read_body, read_eta
+    from rocking._cli.arguments import read_body
 
     stated = {name: getattr(options, name) for name in ("slenderness", "frequency_ratio", "alpha")}
     reject_given("a release", **stated)
@@ -279,7 +271,7 @@ def released(options: HistoryOptions, duration: str | None, samples: int, contac
         start=options.start,
         peak_acceleration=options.peak_acceleration,
         period=options.period,
-        restitution="momentum" if options.restitution is None else read_eta(options.restitution),
+        restitution="momentum" if options.restitution is None else RESTITUTION.read(options.restitution),
         duration=duration,
         samples=samples,
         contact=contact,
@@ -332,7 +324,7 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
     shown: tuple[str, ...] = ("frequency_ratio", "peak_rotation", "outcome", "impacts")
     with progress(f"solving {points} blocks"):
         if problem is None or problem.is_block:
-            columns |= _columns(_solve(params, frequency_ratio))
+            columns |= _columns(solve_with_bound(params.pulse, **params.groups | {"frequency_ratio": frequency_ratio}))
         if problem is not None:
             period = unit_period(problem.body) / frequency_ratio
             curve = spectrum_of(problem, period)
@@ -369,20 +361,15 @@ def boundary_curves(params: Params, window: tuple[float, float]) -> xr.Dataset:
     if params.problem is None:
         from rocking._boundary.tracing import overturning_boundary
 
-        eta = params.restitution
-        return overturning_boundary(params.pulse, restitution=eta, alpha=params.alpha, frequency_ratio=window)
+        shape = {name: params.groups[name] for name in ("restitution", "alpha")}
+        return overturning_boundary(params.pulse, **shape, frequency_ratio=window)
     from rocking._dimensional.curves import boundary as boundary_of
 
     return boundary_of(params.problem, window=window)
 
 
-def _solve(params: Params, frequency_ratio: Any) -> BoundedResponse:
-    return solve_with_bound(params.pulse, **(params.groups | {"frequency_ratio": frequency_ratio}))
-
-
 def _groups(params: Params) -> dict[str, Any]:
-    known = params.problem is None or params.problem.is_block
-    return {"pulse": params.pulse.name, **(params.groups if known else {})}
+    return {"pulse": params.pulse.name, **params.groups}
 
 
 def _columns(found: BoundedResponse | xr.Dataset) -> dict[str, list[Any]]:

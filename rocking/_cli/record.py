@@ -132,10 +132,11 @@ def with_options_named(message: str) -> str:
 
 def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingBody, float | str]:
     """The record in a file, the body, and its restitution."""
-    from rocking._cli.arguments import read_body, read_eta
+    from rocking._base.quantities import RESTITUTION
+    from rocking._cli.arguments import read_body
     from rocking._excitation.records.readers.read_record import read_record
 
-    body, eta = read_body(options), read_eta(options.restitution)
+    body, eta = read_body(options), RESTITUTION.read(options.restitution)
     motion = read_record(file, **{one.name: getattr(options, one.name) for one in fields(FileOptions)})
     return motion.baseline_corrected(order=options.baseline_order), body, eta
 

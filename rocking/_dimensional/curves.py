@@ -56,7 +56,7 @@ def history(
 
 def in_si_units(found: xr.Dataset, problem: Problem) -> xr.Dataset:
     """A time history of `rocking.time_history` for the groups of a problem, as `history` returns it."""
-    about = _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
+    about = _description(problem)
     if isinstance(problem.motion, Record):
         return _in_radians(found, problem.block).assign_attrs(about | {"scale": problem.scale})
     p = problem.block.frequency_parameter
@@ -143,21 +143,15 @@ def _history_of(moving: BodyMotion, body: AbstractBody, grid: Array, contact: bo
     p, alpha, g = float(body.right.frequency_parameter), float(body.right.alpha), float(body.gravity)
     record, tau, rotation, velocity, impacts = moving.history(grid)
     side = np.where(rotation != 0.0, np.sign(rotation), np.sign(velocity))
+    ground = g * math.tan(alpha) * moving.ground_acceleration(tau)
+    moved = float(body.top_height) * np.sin(alpha * rotation)
     columns = {
         "rotation": (alpha * rotation, "rad", "rotation theta, positive about the right edge"),
         "angular_velocity": (alpha * p * velocity, "rad s-1", "velocity theta'"),
         "edge": (side.astype(np.int8), "1", "edge in contact: 1 right, -1 left, 0 both"),
-        "ground_acceleration": (
-            g * math.tan(alpha) * moving.ground_acceleration(tau),
-            "m s-2",
-            "horizontal ground acceleration",
-        ),
+        "ground_acceleration": (ground, "m s-2", "horizontal ground acceleration"),
         "vertical_acceleration": (g * moving.vertical_acceleration(tau), "m s-2", "vertical ground acceleration"),
-        "top_displacement": (
-            float(body.top_height) * np.sin(alpha * rotation),
-            "m",
-            "horizontal displacement of the top",
-        ),
+        "top_displacement": (moved, "m", "horizontal displacement of the top"),
     }
     attributes: dict[str, Any] = {
         "body": body.description,
@@ -213,9 +207,7 @@ def spectrum(problem: Problem, period: Array, stop: StopFlag | None = None) -> x
         "period": variable("period", period, "s", "period of the pulse"),
         "frequency_ratio": variable("period", ratio, "1", "frequency ratio omega_g/p"),
     }
-    return xr.Dataset(
-        variables, coordinates, _description(problem.block, problem.peak_acceleration, problem.groups["restitution"])
-    )
+    return xr.Dataset(variables, coordinates, _description(problem))
 
 
 def over_axis(found: BodyResponse, axis: str, along: Array) -> xr.Dataset:
@@ -279,13 +271,7 @@ def _with_si_axes(curves: xr.Dataset, uplift_acceleration: float, unit_period: f
     )
 
 
-def _description(block: AbstractBlock, peak_acceleration: float, restitution: float) -> dict[str, float]:
-    """Attributes that name the problem, in SI units."""
-    return {
-        "width": block.width,
-        "height": block.height,
-        "alpha": block.alpha,
-        "gravity": block.gravity,
-        "peak_acceleration": peak_acceleration,
-        "restitution": restitution,
-    }
+def _description(problem: Problem) -> dict[str, float]:
+    """Attributes that name the problem of a block, in SI units."""
+    size = {name: getattr(problem.block, name) for name in ("width", "height", "alpha", "gravity")}
+    return size | {"peak_acceleration": problem.peak_acceleration, "restitution": problem.groups["restitution"]}

@@ -11,6 +11,7 @@ from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.threshold import Threshold
+from rocking._model.fields import ResponseField
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:
@@ -21,31 +22,32 @@ SEARCH_FACTOR = 10.0
 """Ratio of the largest period searched to that of the pulse, and its inverse [-]; sizes go with its square."""
 
 
-UNITS = {
-    "nearest_acceleration": "m s-2",
-    "acceleration_factor": "1",
-    "nearest_period": "s",
-    "period_factor": "1",
-    "smallest_surviving_half_diagonal": "m",
-    "surviving_from_half_diagonal": "m",
-}
-"""Numbers of `Margins`, and their units as CF writes them."""
+MARGINS = (
+    ResponseField("nearest_acceleration", "f8", "m s-2", "2.2", "nearest peak acceleration, by ratio, at which the "
+                  "outcome changes", "none was found"),
+    ResponseField("acceleration_factor", "f8", "1", "2.2", "that over the peak acceleration", "none was found"),
+    ResponseField("nearest_period", "f8", "s", "2.2", "nearest period, by ratio, at which the outcome changes",
+                  "none was found"),
+    ResponseField("period_factor", "f8", "1", "2.2", "that over the period", "none was found"),
+    ResponseField("smallest_surviving_half_diagonal", "f8", "m", "2.2", "smallest R of this shape searched that "
+                  "survives; a larger one may overturn", "none does"),
+    ResponseField("surviving_from_half_diagonal", "f8", "m", "2.2", "R from which every larger size searched survives",
+                  "the largest overturns"),
+)  # fmt: skip
+"""Numbers of `Margins`."""
 
 
 @dataclass(frozen=True, repr=False)
 class Margins:
-    """Distances of a block from another outcome."""
+    """Distances of a block from another outcome; the numbers are those of `MARGINS`, None where there is none."""
 
-    # peak acceleration nearest in its logarithm at which the outcome changes [m/s2]; None if none was found
     nearest_acceleration: float | None
-    acceleration_factor: float | None  # nearest_acceleration over the peak acceleration of the problem [-]
-    nearest_period: float | None  # the same for the period [s]
-    period_factor: float | None  # the same for the period [-]
+    acceleration_factor: float | None
+    nearest_period: float | None
+    period_factor: float | None
     periods: tuple[Threshold, ...]  # all periods at which the outcome changes, ascending [s]
     periods_searched: tuple[float, float]  # smallest and largest [s]
-    # smallest R of this shape searched that survives this pulse [m]; a larger one may overturn
     smallest_surviving_half_diagonal: float | None
-    # R from which every larger size searched survives [m]; None if the largest overturns
     surviving_from_half_diagonal: float | None
     sizes: tuple[Threshold, ...]  # all half-diagonals of this shape at which the outcome changes, ascending [m]
     sizes_searched: tuple[float, float]  # smallest and largest half-diagonal [m]
@@ -65,8 +67,8 @@ class Margins:
         import xarray as xr  # noqa: PLC0415  # takes longer to load than the solver
 
         variables: dict[str, Any] = {
-            name: ((), math.nan if (value := getattr(self, name)) is None else value, {"units": unit})
-            for name, unit in UNITS.items()
+            one.name: one.variable((), math.nan if (value := getattr(self, one.name)) is None else value)
+            for one in MARGINS
         }
         for name, unit in (("periods", "s"), ("sizes", "m")):
             changes = getattr(self, name)
@@ -78,7 +80,7 @@ class Margins:
         """The numbers as a series; units are those of `to_xarray`."""
         import pandas as pd  # noqa: PLC0415  # takes longer to load than the solver
 
-        return pd.Series({name: getattr(self, name) for name in UNITS}, dtype=float)
+        return pd.Series({one.name: getattr(self, one.name) for one in MARGINS}, dtype=float)
 
 
 def margins_of(
@@ -91,17 +93,10 @@ def margins_of(
 
     `served`: frequency ratios beyond which periods are not searched [-].
     """
-    groups, block = problem.groups, problem.block
-    omega = groups["frequency_ratio"]
+    groups, block = dict(problem.groups), problem.block
+    omega = groups.pop("frequency_ratio")
     low, high = max(omega / SEARCH_FACTOR, served[0]), min(omega * SEARCH_FACTOR, served[1])
-    found = critical_frequency_ratio(
-        problem.pulse,
-        slenderness=groups["slenderness"],
-        restitution=groups["restitution"],
-        alpha=groups["alpha"],
-        window=(low, high),
-        stop=stop,
-    )
+    found = critical_frequency_ratio(problem.pulse, **groups, window=(low, high), stop=stop)
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))
 
     def period(ratio: float) -> float:

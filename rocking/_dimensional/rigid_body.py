@@ -17,7 +17,6 @@ from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number, positive
 from rocking._base.units import Scalar, Values
-from rocking._dimensional.block import Block
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rebound_of, rigid_edge
 from rocking._model.checks import check_quantities
@@ -362,24 +361,3 @@ class RigidBody(RespondingBody):
         for remark in remarks:
             warnings.warn(f"{Path(path).name} {remark}", UserWarning, 2)
         return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)
-
-
-def body_of_size(
-    width: Scalar,
-    height: Scalar,
-    offset: Scalar = 0.0,
-    mass_height: Scalar | None = None,
-    gravity: Scalar = STANDARD_GRAVITY,
-    gyration: Scalar | None = None,
-) -> Block | RigidBody:
-    """The block of this size, or the body if its centre of mass or gyration differs; that is at most at its height.
-
-    Arguments and errors are those of `RigidBody.from_size`.
-    """
-    if mass_height is not None:
-        mass_height = number("mass_height", mass_height, 0.0, q.HEIGHT.number(height), closed="right", unit="m")
-    elif gyration is None and not q.OFFSET.number(offset):
-        return Block(width, height, gravity)
-    return RigidBody.from_size(
-        width, height, offset=offset, mass_height=mass_height, gyration=gyration, gravity=gravity
-    )

@@ -2,32 +2,40 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import compress
 from os import PathLike
 from typing import Any
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, finite
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import HEIGHT, NAME, NUMBER, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
 from rocking._base.quantity import Quantity
 from rocking._dimensional.block import Block
 from rocking._dimensional.body_kinds import WITHOUT_FILES, columns_beside, described
+from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import respond, shown
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import Table, read_csv, read_file
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.fields import ERROR_BOUND, EXCEEDED_ALPHA, IMPACTS, OUTCOME, OVERTURNED, PEAK_ROTATION
+from rocking._model.fields import OUTCOME
 from rocking._model.outcome import Outcome
-from rocking._numba.cancellation import StopFlag
+from rocking._numba.cancellation import StopFlag, check_stop
 from rocking._solver.bounded_response import solve_with_bound
 
 COLUMNS = (NAME, WIDTH, HEIGHT, PEAK_ACCELERATION, PERIOD, RESTITUTION)
 """Columns of a table of blocks. Those of other bodies follow; further columns are passed through."""
+
+RESPONSES = tuple(
+    one
+    for one in FIELDS
+    if one.kinds >= {"pulse", "block"} and one.name not in ("half_diagonal", "frequency_parameter")
+)
+"""What the columns of responses hold."""
 
 _SIZES = (("width", "diameter", "left", "vertices", "body"), ("height", "mass_height", "vertices", "body"))
 
@@ -121,67 +129,39 @@ def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, 
     `stop` cancels the work, which then raises `StoppedError`. Blocks are solved together, other bodies one by one:
     `body` then says what each is, and what only a block has is None.
     """
-    rows: list[dict[str, Any]] = [{} for _ in table.problems]
-    blocks = [k for k, one in enumerate(table.problems) if type(one.body) is Block and one.is_block]
-    others = sorted({*range(len(rows))} - {*blocks})
-    solved = _respond_blocks([table.problems[k] for k in blocks], stop)
-    for k, values in zip(blocks, zip(*solved.values(), strict=True), strict=True):
-        rows[k] = dict(zip(solved, values, strict=True))
-    for k in others:
-        if stop is not None:
-            stop.check()
-        rows[k] = _respond_other(table.problems[k], stop)
+    together = [type(one.body) is Block and one.is_block for one in table.problems]
+    solved = iter(_respond_blocks([*compress(table.problems, together)], stop))
+    pairs = zip(table.problems, together, strict=True)
+    rows = [next(solved) if known else _respond_other(one, stop) for one, known in pairs]
     columns: dict[str, list[Any]] = {"name": table.names} if table.names else {}
-    if others:
+    if not all(together):
         columns["body"] = [one.body.description for one in table.problems]
-    return columns | {name: [row.get(name) for row in rows] for name in solved}
+    return columns | {one.label: [row.get(one.label) for row in rows] for one in RESPONSES}
 
 
 def _respond_other(problem: Problem, stop: StopFlag | None) -> dict[str, Any]:
+    check_stop(stop)
     found, body = respond(problem, stop=stop), problem.body
     size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
     return size | shown(found.fields, [getattr(found, one.name) for one in found.fields])
 
 
-def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> dict[str, list[Any]]:
-    """The columns of blocks."""
-    groups = [problem.groups for problem in problems]
-    columns: dict[str, list[Any]] = {
-        "width": [problem.block.width for problem in problems],
-        "height": [problem.block.height for problem in problems],
-        "peak_acceleration": [problem.peak_acceleration for problem in problems],
-        "period": [problem.period for problem in problems],
-        "uplift_acceleration": [problem.block.uplift_acceleration for problem in problems],
-        "alpha_deg": [math.degrees(problem.block.alpha) for problem in problems],
-        "slenderness": [one["slenderness"] for one in groups],
-        "frequency_ratio": [one["frequency_ratio"] for one in groups],
-        "restitution": [one["restitution"] for one in groups],
-    }
-    pulse = problems[0].pulse if problems else "sine"
-    found = solve_with_bound(
-        pulse,
-        slenderness=np.array(columns["slenderness"]),
-        frequency_ratio=np.array(columns["frequency_ratio"]),
-        restitution=np.array(columns["restitution"]),
-        alpha=np.array([one["alpha"] for one in groups]),
-        stop=stop,
-        body=Block(np.array(columns["width"]), np.array(columns["height"])),
-    )
-    peaks = [finite(peak) for peak in found.peak_rotation.tolist()]
-    rotations = [
-        None if peak is None else peak * problem.block.alpha for peak, problem in zip(peaks, problems, strict=True)
-    ]
-    return columns | {
-        "peak_rotation_deg": [None if rotation is None else math.degrees(rotation) for rotation in rotations],
-        "top_displacement": [
-            None if rotation is None else problem.block.top_displacement(rotation)
-            for rotation, problem in zip(rotations, problems, strict=True)
-        ],
-        PEAK_ROTATION.name: peaks,
-        OVERTURNED.name: found.overturned.tolist(),
-        OUTCOME.name: [Outcome(code).name for code in found.outcome.tolist()],
-        IMPACTS.name: found.impacts.tolist(),
-        EXCEEDED_ALPHA.name: found.exceeded_alpha.tolist(),
-        **{name: [*map(finite, found.derived[name].tolist())] for name in found.derived},
-        ERROR_BOUND.name: [finite(bound) for bound in found.error_bound.tolist()],
-    }
+def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> list[dict[str, Any]]:
+    """The rows of blocks."""
+    if not problems:
+        return []
+    columns: dict[str, Any] = {name: np.array([one.groups[name] for one in problems]) for name in problems[0].groups}
+    sizes = (np.array([getattr(one.block, name) for one in problems]) for name in ("width", "height"))
+    found = solve_with_bound(problems[0].pulse, **columns, stop=stop, body=Block(*sizes))
+    solved = {one.name: getattr(found, one.name).tolist() for one in RESPONSES if hasattr(found, one.name)}
+    rows = []
+    for problem, *values in zip(problems, *solved.values(), strict=True):
+        known = dict(zip(solved, values, strict=True))
+        known[OUTCOME.name] = Outcome(known[OUTCOME.name])
+        given = problem.groups | {name: getattr(problem, name) for name in ("peak_acceleration", "period")}
+        derived = (
+            known[one.name] if one.name in known else one.derive(known, given, problem.motion, problem.body)  # type: ignore[misc]
+            for one in RESPONSES
+        )
+        rows.append(shown(RESPONSES, derived))
+    return rows

@@ -68,7 +68,7 @@ class Schema(Generic[Item]):
 
     argument: str  # what errors call the table
     columns: tuple[Quantity, ...]  # the columns that are read; others are passed through
-    required: tuple[tuple[str, ...], ...]  # quantitys that the header has; one of each group
+    required: tuple[tuple[str, ...], ...]  # quantities that the header has; one of each group
     # the item of a row, from its number, the values of the cells that are not empty: texts as they stand,
     # numbers in SI units; and the cells of all other columns, texts that are read included, by their headers.
     # It raises `InvalidArgumentError`, with the name of a column
@@ -83,17 +83,11 @@ class HeaderLine:
     """A line that may be the header."""
 
     number: int  # from 0
-    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
-    # under the names that were given to them
-    cells: list[str]
-    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
-    # under the names that were given to them
-    labels: list[str]
-    # its cells; completed by the line above, with their number where one is empty or not the first; completed,
-    # under the names that were given to them
-    texts: list[str]
+    cells: list[str]  # its cells as they stand
+    labels: list[str]  # completed by the line above, with their number where one is empty or not the first
+    texts: list[str]  # completed, under the names that were given to them
     columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units
-    grouped: set[int]  # quantitys in a group of lengths that are not read
+    grouped: set[int]  # columns in a group of lengths that are not read
     complete: bool  # whether it has all columns that a header needs
     error: InvalidArgumentError | None  # its first unit that is not understood
 
@@ -106,8 +100,8 @@ class Header:
     labels: list[str]  # its cells as they stand, with their number where one is empty or not the first
     texts: list[str]  # its cells, under the names that were given to them
     columns: dict[int, tuple[Quantity, str]]  # quantities that are read, with their units, "" in the cells
-    units: dict[int, int]  # quantity with the units of a column, by the place of that
-    lengths: dict[int, bool]  # quantitys that are not read and may hold a length; whether it says so by its unit
+    units: dict[int, int]  # column with the units of another one, by the place of that
+    lengths: dict[int, bool]  # columns that are not read and may hold a length; whether it says so by its unit
 
 
 def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator[HeaderLine]:
@@ -298,7 +292,7 @@ def _with_units(
 
 
 def _beside(line: HeaderLine, columns: Mapping[int, tuple[Quantity, str]], units: Mapping[int, int]) -> set[int]:
-    """Quantitys that are not read and may be a length without a unit: between those of lengths, anywhere beside headers
+    """Columns that are not read and may be a length without a unit: between those of lengths, anywhere beside headers
     without units.
     """
     measured = [place for place, (one, _) in columns.items() if one.unit == "m"]
@@ -308,13 +302,10 @@ def _beside(line: HeaderLine, columns: Mapping[int, tuple[Quantity, str]], units
     found = set()
     for place, text in enumerate(line.texts[: last + 1]):
         name = plain_name(name_and_unit(text)[0])
-        if (
-            place >= first
-            and place not in columns
-            and place not in units.values()
-            and (text.strip() or 0 < place < last)
-        ):
-            found |= {place} if not name.startswith(_UNUSED) and not NO_LENGTH.search(name) else set()
+        is_read = place in columns or place in units.values()
+        says_no = name.startswith(_UNUSED) or NO_LENGTH.search(name)
+        if place >= first and not is_read and not says_no and (text.strip() or 0 < place < last):
+            found.add(place)
     return found
 
 

@@ -18,10 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range
 from rocking._model.labelled import Index
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,15 +5,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, plain_number
 from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
 from rocking._base.quantity import Quantity
 from rocking._base.units import Scalar, WithUnit
 from rocking._model.labelled import Index, broadcast_by_name, in_unit, index_of, is_labelled
-
-Array = NDArray[np.float64]
 
 _GROUPS = {parameter.name: parameter for parameter in (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION)}
 

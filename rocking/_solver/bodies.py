@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._excitation.records.record import Record
 from rocking._excitation.shapes import AbstractPulse
 from rocking._numba.cancellation import StopFlag
@@ -14,8 +15,6 @@ from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, NO_FLIGHTS, solv
 from rocking._solver.records.record_response import solve_bodies, solve_bodies_under_pulse
 from rocking._solver.records.samples import motion_samples
 from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
-
-Array = NDArray[np.float64]
 
 
 def solve_motion(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array, Flags
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
@@ -35,9 +36,6 @@ if TYPE_CHECKING:
 
 SOLVER_ERROR = 1e-12
 """Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

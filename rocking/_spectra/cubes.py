@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import one_of
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._datasets.cube import DIMENSIONS, IMPACTS_BEFORE_REST, OPTIONAL_VARIABLES, build_spectrum_dataset
@@ -28,8 +29,6 @@ from rocking._solver.peak_response import peak_response
 from rocking._solver.rules import IMPACT_LIMIT
 from rocking._spectra.layer import CELL_CENTRE, DIRECT, UNKNOWN, Cells, GridLayer, largest_in_neighbourhood
 from rocking._spectra.level_interval import LevelInterval
-
-Array = NDArray[np.float64]
 
 PROBES = (CELL_CENTRE, (0.15, 0.35), (0.35, 0.85), (0.85, 0.65), (0.65, 0.15))
 """Where in a cell interpolation is compared with the solver, as fractions along rows and columns [-]. No two share a

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array, Flags
 from rocking._interpolation.stencils import (
     NO_STENCIL,
     OVERTURNS,
@@ -28,8 +29,6 @@ from rocking._model.outcome_code import SURVIVES, outcome_codes
 from rocking._model.response import Outcome, Response
 from rocking._numba.compilation import contiguous_array
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Cells = tuple[NDArray[np.intp], ...]
 
 CELL_CENTRE = (0.5, 0.5)

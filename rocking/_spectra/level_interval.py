@@ -12,11 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._interpolation.slices import slice_window
 from rocking._interpolation.stencils import SQUARED, lagrange_weight
 from rocking._spectra.layer import UNKNOWN, Cells, GridLayer, peak_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

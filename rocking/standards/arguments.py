@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import broadcast, in_range, number
-
-Array = NDArray[np.float64]
 
 RANGES: dict[str, tuple[float, float, str, str]] = {
     "half_width": (0.0, math.inf, "neither", "m"),

@@ -22,14 +22,13 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import Scalar
 from rocking.standards.arguments import checked, checked_body, checked_number
-
-Array = NDArray[np.float64]
 
 ANGLES = 400  # angles between 1e-4 alpha and alpha at which spectrum and capacity are compared, in equal ratios [-]
 

@@ -19,10 +19,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking.standards.arguments import checked
 from rocking.standards.static import west_acceleration
-
-Array = NDArray[np.float64]
 
 CAPACITY = 0.4  # d_u over d_0, and d_s over d_u [-]
 

@@ -28,23 +28,16 @@ def line_variables(lines: Iterable[tuple[int, float, Lines]]) -> dict[str, xr.Va
     """Lines with the index of their pulse and their angle [rad] as variables of plotted data over `vertex`."""
     pulses, angles, found = zip(*lines, strict=True)
     sizes = [one.amplitude.size for one in found]
-    comment = {"comment": "missing between two lines"}
+    gaps = {"comment": "missing between two lines"}
+    texts: dict[str, tuple[str, dict[str, str]]] = {
+        "amplitude": ("amplitude a_g/(g tan alpha) at which the outcome changes", gaps),
+        "frequency_ratio": ("frequency ratio omega_g/p there", gaps),
+        "impacts": ("impacts before overturning, -1: not counted", {}),
+    }
     return {
-        "boundary_amplitude": plotted(
-            "vertex",
-            np.concatenate([one.amplitude for one in found]),
-            "amplitude a_g/(g tan alpha) at which the outcome changes",
-            **comment,
-        ),
-        "boundary_frequency_ratio": plotted(
-            "vertex",
-            np.concatenate([one.frequency_ratio for one in found]),
-            "frequency ratio omega_g/p there",
-            **comment,
-        ),
-        "boundary_impacts": plotted(
-            "vertex", np.concatenate([one.impacts for one in found]), "impacts before overturning, -1: not counted"
-        ),
+        f"boundary_{name}": plotted("vertex", np.concatenate([getattr(one, name) for one in found]), text, **comment)
+        for name, (text, comment) in texts.items()
+    } | {
         "boundary_pulse": plotted("vertex", np.repeat(np.array(pulses, dtype=np.int8), sizes), "index of the pulse"),
         "boundary_alpha": plotted(
             "vertex", np.repeat(np.array(angles), sizes), "slenderness angle, 0: slender", units="rad"

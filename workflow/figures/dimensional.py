@@ -13,14 +13,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from rocking._base.arrays import Array
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
-
-Array = NDArray[np.float64]
 
 AT_REST = 1e-9  # angular velocity in units of p alpha below which free rocking is considered to have ended [-]
 MAX_DURATION = 60.0  # time p t after the pulse within which a block that overturns reaches the ground [-]

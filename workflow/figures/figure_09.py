@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._boundary.amplitude import thresholds
 from rocking._datasets.cube import read_dataset
 from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
@@ -20,8 +21,6 @@ from rocking.plot.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 from workflow.figures.boundary_lines import line_variables, lines_of, lines_of_files
 from workflow.figures.dimensional import DimensionalProblem
 from workflow.figures.style import frame_detail, panel_letters, plotted
-
-Floats = NDArray[np.float64]
 
 HIGHEST = 12.0  # largest amplitude a shown [-], as in figure 4
 WIDEST = {"sine": 7.2, "cosine": 6.0}  # largest frequency ratio shown, beyond the tip of the overturning region [-]
@@ -106,15 +105,13 @@ def data(
     )
 
 
-def upper_surviving_region(
-    pulse: str, frequency_ratio: Floats, restitution: float, alpha: float
-) -> tuple[Floats, Floats]:
+def upper_surviving_region(pulse: str, frequency_ratio: Array, restitution: float, alpha: float) -> tuple[Array, Array]:
     """The largest range of amplitudes, up to `HIGHEST`, in which a block passes alpha and survives, for each omega.
 
     Returns `lower`, `upper`: amplitudes a [-], bisected between nodes; nan where no node is inside.
     """
 
-    def recovers(amplitude: Floats) -> NDArray[np.bool_]:
+    def recovers(amplitude: Array) -> NDArray[np.bool_]:
         found = peak_response(
             pulse, slenderness=1 / amplitude, frequency_ratio=frequency_ratio, restitution=restitution, alpha=alpha
         )

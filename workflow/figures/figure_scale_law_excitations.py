@@ -10,8 +10,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._excitation.records.readers.read_record import read_record
 from rocking._solver.peak_response import peak_response
@@ -20,8 +20,6 @@ from rocking.paper.scale_law import largest_deviation, restitution_exponent
 from rocking.plot.style import WIDTH
 from workflow.claims.area import node_areas, share_of_area
 from workflow.figures.style import panel_letters, plotted
-
-Floats = NDArray[np.float64]
 
 MOTIONS = Path(__file__).parents[1] / "motions"
 LAW = 0.10  # error up to which the law is said to hold [-]
@@ -107,8 +105,8 @@ def data(
 
 
 def _judged(
-    found: Sequence[Floats], eta: Floats, reference: float, areas: Floats
-) -> Iterator[tuple[Floats, Floats, tuple[float, float]]]:
+    found: Sequence[Array], eta: Array, reference: float, areas: Array
+) -> Iterator[tuple[Array, Array, tuple[float, float]]]:
     """Errors and exponents (slenderness, across) of each excitation; its share and its median exponent."""
     for peak in found:
         survives = np.isfinite(peak).all(axis=0) & (peak > 0).all(axis=0)

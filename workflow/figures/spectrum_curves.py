@@ -10,14 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._boundary.search import RESOLUTION
 from rocking._solver.peak_response import peak_response
 from workflow.figures.style import plotted
-
-Floats = NDArray[np.float64]
 
 STRAIGHT = 5e-4  # largest distance between a curve and the straight line between two of its points, in theta/alpha [-]
 FIRST_POINTS = 200  # points per decade of omega from which the sampling starts [-]
@@ -36,12 +34,12 @@ class SpectrumBlock(NamedTuple):
 class Branch(NamedTuple):
     """One connected part of a spectrum."""
 
-    frequency_ratio: Floats  # omega, ascending [-]
-    peak: Floats  # max |theta|/alpha [-]
+    frequency_ratio: Array  # omega, ascending [-]
+    peak: Array  # max |theta|/alpha [-]
     overturns_beyond: tuple[bool, bool]  # whether the block overturns beyond its lower and its upper end
 
 
-def peaks(block: SpectrumBlock, frequency_ratio: Floats) -> Floats:
+def peaks(block: SpectrumBlock, frequency_ratio: Array) -> Array:
     """max |theta|/alpha [-] of a block at several omega, nan where it overturns."""
     return peak_response(
         block.pulse,

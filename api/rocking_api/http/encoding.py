@@ -34,6 +34,9 @@ MEDIA_TYPES: dict[Form, str] = {
     "nrml": "application/xml",
 }
 
+TABLE_FORMS: tuple[Form, ...] = ("json", "csv")
+"""Formats of a table in a body, and of its response."""
+
 CONTENT: dict[int | str, dict[str, Any]] = {200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}}}
 """For the OpenAPI description: the other formats of a response."""
 

@@ -38,37 +38,21 @@ class AssessParams(Params):
         *STRENGTHS, f"{PGA.meaning} [m/s2], required without records", default=None, examples=[3.0]
     )
     pgv: float | None = between(
-        *STRENGTHS,
-        "peak ground velocity [m/s], which sets the period of each pulse; either this or periods",
-        default=None,
-        examples=[0.3],
+        *STRENGTHS, "PGV [m/s], sets the period of each pulse; either this or periods", default=None, examples=[0.3]
     )
     period_min: float | None = between(*LENGTH, "shortest period of the pulses, with `period_max` [s]", default=None)
     period_max: float | None = between(*LENGTH, "longest period of the pulses, with `period_min` [s]", default=None)
-    shapes: str | None = said(
-        "pulses, separated by commas; absent: all that leave the ground at rest", None, examples=["sine,ricker"]
-    )
+    shapes: str | None = said("pulses, with commas; absent: all that end at rest", None, examples=["sine,ricker"])
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
     floor_periods: str | None = said("periods of the building [s], for objects on a floor, separated by commas", None)
     floor_damping: str = said("damping ratios of these modes [-], one for all or one for each", "0.05")
-    floor_participation: str = said(
-        "participation factors times mode shapes at the floor [-], one for all or one for each", "1"
-    )
+    floor_participation: str = said("participation factors times mode shapes at the floor [-], likewise", "1")
     baseline_order: BaselineOrder = None
-    samples: int = between(
-        0,
-        MAX_SAMPLES,
-        "number of variants of each object to try, within its tolerance and 0.05 of the restitution [-]",
-        default=0,
-    )
+    samples: int = between(0, MAX_SAMPLES, "variants of each object in its tolerance and 0.05 of eta [-]", default=0)
     seed: int = between(0, 2**53, "seed of these variants [-]", default=0)
-    resolution: float = between(
-        *RESOLUTIONS, "largest relative distance between the factors tried on a record [-]", default=RESOLUTION
-    )
+    resolution: float = between(*RESOLUTIONS, "largest relative step of factors on a record [-]", default=RESOLUTION)
     sensitivity: bool = said("find the factors of changed objects, and the sizes that survive", True)
-    standards: str = said(
-        "checks by standards to state beside the outcome, separated by commas, or all", "", examples=["static,asce43"]
-    )
+    standards: str = said("checks by standards, with commas between, or all", "", examples=["static,asce43"])
     format: TableFormat = None
 
     @field_validator("standards", "shapes", "floor_periods", "floor_damping", "floor_participation")
@@ -123,9 +107,7 @@ class SuiteRecordBody(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     acceleration: Samples = said("horizontal acceleration at uniform steps, in `unit`")
-    second: Samples | None = said(
-        "other horizontal component; the pair is assessed at all angles and counts as one record", None
-    )
+    second: Samples | None = said("other horizontal component; the pair counts as one record at all angles", None)
     vertical: Samples | None = said("vertical acceleration, upwards", None)
     time_step: float = said("time between samples [s]")
     unit: str = said("unit of the samples", "m/s2")
@@ -156,9 +138,7 @@ class AssessBody(AssessParams):
 
     takes_lists: ClassVar = True
 
-    objects: list[dict[str, Any]] = said(
-        "one object for each row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS
-    )
+    objects: list[dict[str, Any]] = said("one a row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS)
     records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS)
     hazard: HazardBody | None = said("hazard curve of the site, with records", None)
 

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel
 
-from rocking._dimensional.fields import FIELDS
+from rocking._dimensional.margins import MARGINS
+from rocking._dimensional.table import RESPONSES
 from rocking_api.models import quantity as q
 from rocking_api.models.answer import BY_SOLVER, Echoed, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
@@ -32,9 +33,7 @@ class BlocksParams(Params):
     """Values that many blocks of a body share."""
 
     pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
-    restitution: q.BodyRestitution = q.said(
-        "eta [-] of the blocks that state none, momentum or kalliontzis(k=0.8)", "momentum"
-    )
+    restitution: q.BodyRestitution = q.said("eta [-] where a block has none; momentum, kalliontzis(k=0.8)", "momentum")
     format: q.TableFormat = None
 
 
@@ -61,8 +60,7 @@ _OF_TABLE = [
     one
     if one.missing or one.kinds >= {"edges"}
     else replace(one, missing="the edges of the body differ from those of a block")
-    for one in FIELDS
-    if {"pulse", "block"} <= one.kinds and one.name not in ("half_diagonal", "frequency_parameter")
+    for one in RESPONSES
 ]
 """Columns of `respond_table`."""
 
@@ -98,13 +96,13 @@ class Threshold(_Change):
 class PeriodThreshold(_Change):
     """A period at which the outcome changes, at this amplitude."""
 
-    period: float = q.said("T_p [s]")
+    period: float = q.said("T_p [s]", validation_alias="value")
 
 
 class SizeThreshold(_Change):
     """A size at which the outcome of blocks of this shape changes under this pulse."""
 
-    half_diagonal: float = q.said("R [m]")
+    half_diagonal: float = q.said("R [m]", validation_alias="value")
 
 
 class ScaleThreshold(_Change):
@@ -114,25 +112,12 @@ class ScaleThreshold(_Change):
     peak_acceleration: float = q.said("PGA of the scaled record [m/s2]")
 
 
+@declared(MARGINS)
 class Margins(BaseModel):
     """Distances of the block from another outcome, by the rigid equation."""
 
-    nearest_acceleration: float | None = q.said(
-        "nearest amplitude, by ratio, at which the outcome changes [m/s2]; null: none found"
-    )
-    acceleration_factor: float | None = q.said("nearest amplitude over the peak acceleration of the request [-]")
-    nearest_period: float | None = q.said(
-        "nearest period, by ratio, at which the outcome changes at this amplitude [s]; null: none found"
-    )
-    period_factor: float | None = q.said("nearest period over the period of the request [-]")
     periods: list[PeriodThreshold] = q.said("all periods at which the outcome changes, ascending")
     periods_searched: tuple[float, float] = q.said("smallest and largest period searched [s]")
-    smallest_surviving_half_diagonal: float | None = q.said(
-        "smallest R of this shape searched that survives this pulse [m]; a larger one may overturn"
-    )
-    surviving_from_half_diagonal: float | None = q.said(
-        "R above which every size searched survives [m]; null: the largest overturns"
-    )
     sizes: list[SizeThreshold] = q.said("all sizes of this shape at which the outcome changes, ascending")
     sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched [m]")
 

@@ -123,9 +123,7 @@ class HistoryParams(BlockInGroups):
     """The motion of one block."""
 
     slenderness: q.Slenderness
-    duration: float | None = q.said(
-        "length tau = p t [-]; absent: the pulse and some free rocking", None, gt=0, le=MAX_DURATION
-    )
+    duration: float | None = q.said("length p t [-]; absent: the pulse and free rocking", None, gt=0, le=MAX_DURATION)
     samples: int = q.between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)
     contact: q.Contact = False
     format: q.Format = None

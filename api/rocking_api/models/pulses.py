@@ -36,9 +36,7 @@ class PulseSamples(BaseModel):
 
     acceleration: Samples = said("ground acceleration at the samples, in any unit")
     time: Samples | None = said("their times, ascending, in any unit; absent: equidistant", None)
-    period: float | None = said(
-        "period T_p in the unit of the times; absent: the time from the first sample to the last", None
-    )
+    period: float | None = said("T_p in the unit of the times; absent: the time from first to last sample", None)
     name: str = said("name that the response repeats", "sampled", min_length=1, max_length=200)
 
 
@@ -46,13 +44,9 @@ def _made(samples: PulseSamples) -> SampledPulse:
     return SampledPulse(**dict(samples))
 
 
-def _tag(value: Any) -> str:
-    return "name" if isinstance(value, str) else "samples"
-
-
 GivenPulse = Annotated[
     Annotated[PulseName, Tag("name")] | Annotated[PulseSamples, AfterValidator(_made), Tag("samples")],
-    Discriminator(_tag),
+    Discriminator(lambda value: "name" if isinstance(value, str) else "samples"),
     PlainSerializer(lambda pulse: pulse if isinstance(pulse, str) else pulse.name, return_type=str),
     said("a pulse by its name, or by samples"),
 ]

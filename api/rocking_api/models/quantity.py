@@ -181,11 +181,7 @@ Skip = Annotated[
 ]
 BaselineOrder = Annotated[
     int | None,
-    between(
-        0,
-        MAX_BASELINE_ORDER,
-        "degree of the baseline to remove from the acceleration [-]; absent: only the mean of K-NET counts",
-    ),
+    between(0, MAX_BASELINE_ORDER, "degree of the baseline to remove [-]; absent: only the mean of K-NET counts"),
 ]
 Contact = Annotated[bool, Field(description="add the reactions of the ground and the friction that they need")]
 

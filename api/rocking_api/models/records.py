@@ -24,6 +24,7 @@ from rocking_api.models.quantity import (
     said,
 )
 from rocking_api.models.responses import OF_SOLVER, ContactResponse, Motion, declared, with_fields
+from rocking_api.models.suites import SuiteRecord
 
 MAX_SCALES = 2000  # most factors of a curve over the scale [-]
 MAX_DRAWN = 100_000  # most samples of a drawing [-]
@@ -41,9 +42,7 @@ class RecordFileParams(BodyParams):
     unit: Unit = None
     time_step: TimeStep = None
     component: str | None = said("column or trace of a file with several", None, max_length=200)
-    vertical: str | None = said(
-        "column or trace of the vertical component, upwards, in the same file", None, max_length=200
-    )
+    vertical: str | None = said("column or trace of its vertical component, upwards", None, max_length=200)
     skip: Skip = None
     baseline_order: BaselineOrder = None
 
@@ -64,9 +63,7 @@ class RecordResponseParams(RecordParams):
 class RecordHistoryParams(RecordParams):
     """The same, and which samples are wanted."""
 
-    samples: int | None = between(
-        2, math.inf, "uniform samples [-]; absent: those of the record; the events are added", default=None
-    )
+    samples: int | None = between(2, math.inf, "uniform samples [-]; absent: those of the record", default=None)
     contact: Contact = False
     format: Format = None
 
@@ -102,25 +99,17 @@ def with_record(kind: type[RecordFileParams]) -> type[RecordBody]:
     return model
 
 
-class RecordDescription(BaseModel):
+class RecordDescription(SuiteRecord):
     """The record, as read; SI units."""
 
-    name: str = said("name of the file, without its ending, and the component")
     source: str = said("file, format, and what was done to the record")
     remarks: list[str] = said("warnings of the reader of the file")
     samples: int = said("number of samples [-]")
-    time_step: float = said("time step [s]")
-    peak_acceleration: float = said("PGA [m/s2]")
-    peak_vertical_acceleration: float | None = said(
-        "largest absolute vertical acceleration [m/s2]; null: the record has no vertical component"
-    )
-    peak_velocity: float = said("PGV [m/s]")
+    peak_vertical_acceleration: float | None = said("largest vertical acceleration [m/s2]; null: there is none")
     peak_displacement: float = said("PGD [m]")
     arias_intensity: float = said("Arias intensity [m/s]")
     significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
-    mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
     final_velocity: float = said("velocity at the last sample [m/s]; large if the acceleration has an offset")
-    digest: str = said("sha256 of the time step and the samples of all components")
 
 
 class RecordAnswer(InUnits[Q]):
@@ -173,9 +162,7 @@ class RecordHistoryResponse(Motion, RecordAnswer[RecordHistoryParams]):
 
     time: list[float] = said("from the first sample [s]")
     impact_time: list[float] = said("times of the impacts [s]")
-    vertical_acceleration: list[float] | None = said(
-        "of the ground over g, upwards [-]; null: the record has no vertical component", None
-    )
+    vertical_acceleration: list[float] | None = said("of the ground over g, upwards [-]; null: there is none", None)
 
 
 @declared(OF_SOLVER[1:-1])

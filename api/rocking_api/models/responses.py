@@ -51,9 +51,7 @@ _DETAILS = {
     own.EXCEEDED_ALPHA.name: "the ground can bring a block back from there",
 }
 
-_DATA = said(
-    "sha256 of the data set that answered, of several the one next below the restitution; null: the solver answered"
-)
+_DATA = said("sha256 of the data set that answered, of several that next below the restitution; null: the solver did")
 
 
 def declared(fields: Iterable[ResponseField], *, many: bool = False) -> Callable[[type[Model]], type[Model]]:
@@ -139,9 +137,7 @@ class ContactResponse(BaseModel):
     largest_friction_demand: float | None = said("largest |H|/N, also between the samples [-]; null if it lifts off")
     largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]", None)
     smallest_normal_reaction: float = said("smallest N/(m g), also between the samples [-]; 0 and below: it lifts off")
-    impulse_ratio: float | None = said(
-        "horizontal over vertical impulse at its impacts [-]; 0 without impacts; null: infinite"
-    )
+    impulse_ratio: float | None = said("horizontal over vertical impulse at impacts [-]; 0 without; null: infinite")
     lifts_off: bool = said("whether the block leaves the ground")
     warnings: str = said("where the assumption of pure rocking is doubtful, in words")
 
@@ -178,9 +174,7 @@ class DatasetSummary(BaseModel):
     title: str = said("title")
     pulse: str | None = said("pulse, see /v1/pulses; null: several or none")
     restitution: float | None = said("coefficient of restitution eta [-]; null: several or none")
-    extent: dict[str, tuple[float, float]] = said(
-        "smallest and largest alpha [rad], slenderness [-] and frequency_ratio [-]"
-    )
+    extent: dict[str, tuple[float, float]] = said("ends of alpha [rad], slenderness [-] and frequency_ratio [-]")
     size: int = said("size of the netCDF file [byte]")
     sha256: str = said("sha256 of the netCDF file")
     metadata: str = said("path of its description")

@@ -6,10 +6,11 @@ from typing import Literal
 
 from pydantic import BaseModel
 
+from rocking._dimensional.fields import FIELDS
 from rocking_api.models.answer import InUnits, ListAnswer
 from rocking_api.models.params import ListParams, Params
 from rocking_api.models.quantity import said, with_intervals
-from rocking_api.models.responses import Link
+from rocking_api.models.responses import Link, declared
 
 _NAME = said("name of the suite")
 _TITLE = said("title of its fragility")
@@ -25,9 +26,7 @@ class SuiteParams(Params):
     format: Literal["json", "csv", "nrml"] | None = said(
         "format of the response; absent: by the Accept header, else JSON (nrml: of OpenQuake)", None
     )
-    curves: Literal["discrete", "lognormal"] = said(
-        "what NRML holds: fractions at the levels, or curves fitted to them", "discrete"
-    )
+    curves: Literal["discrete", "lognormal"] = said("NRML holds fractions at the levels, or fitted curves", "discrete")
 
 
 class SuiteSummary(BaseModel):
@@ -50,14 +49,14 @@ class SuiteCatalogue(ListAnswer[ListParams]):
 
 
 class SuiteRecord(BaseModel):
-    """A record of a suite, as recorded."""
+    """A record, as recorded."""
 
-    name: str = said("name of the record")
+    name: str = said("name of the record, of a file without its ending, and of the component")
     peak_acceleration: float = said("peak ground acceleration [m/s2]")
     peak_velocity: float = said("peak ground velocity [m/s]")
-    mean_period: float | None = said("mean period [s]; null if it has none")
+    mean_period: float | None = said("mean period [s]; null if no frequency lies between 0.25 and 20 Hz")
     time_step: float = said("time between samples [s]")
-    digest: str = said("sha256 of the time step and the samples in m/s2")
+    digest: str = said("sha256 of the time step and the samples of all components in m/s2")
 
 
 @with_intervals(
@@ -70,9 +69,7 @@ class FragilityCurve(BaseModel):
     model: str = said("lognormal or logistic (log-logistic)")
     fit_status: str = said("FITTED, or why the outcomes determine no curve")
     fit_meaning: str = said("the status in words")
-    annual_rate: float | None = said(
-        "annual rate of reaching the limit state [1/year]; null without a hazard curve", None
-    )
+    annual_rate: float | None = said("annual rate of reaching it [1/year]; null without a hazard curve", None)
     fitted: list[float | None] = said("probability at each level [-]")
 
 
@@ -83,13 +80,9 @@ class LimitState(BaseModel):
     demand: str = said("overturning, alpha (passed at some time), or a threshold of |theta|/alpha")
     exceedances: list[int] = said("number k of the N records that reach it, at each level [-]")
     first_exceedances: list[int] = said("number of records that reach it at this or a milder level [-]; for comparison")
-    first_median_intensity: float | None = said(
-        "lognormal median of these counts [unit of the measure]; for comparison: it is on the low side"
-    )
+    first_median_intensity: float | None = said("lognormal median of these counts, too low [unit of the measure]")
     curves: list[FragilityCurve] = said("fitted curves")
-    records_surviving_above_first: list[str] = said(
-        "records that do not reach it at a level above the first at which they do"
-    )
+    records_surviving_above_first: list[str] = said("records that do not reach it at a level above their first")
 
 
 class RecordMargin(BaseModel):
@@ -108,9 +101,7 @@ class RotationQuantile(BaseModel):
     """The peak rotation that a share of the records does not exceed."""
 
     quantile: float = said("share of the records [-]")
-    peak_rotation: list[float | None] = said(
-        "peak |theta|/alpha at each level [-]; null where too many records overturn the block"
-    )
+    peak_rotation: list[float | None] = said("peak |theta|/alpha at each level [-]; null where too many overturn")
 
 
 class RecordSensitivity(BaseModel):
@@ -119,14 +110,10 @@ class RecordSensitivity(BaseModel):
     record: str = said("name of the record")
     overturned: bool = said("whether the block overturns")
     peak_rotation: float | None = said("peak |theta|/alpha [-]; null if the block overturns")
-    friction_demand: float | None = said(
-        "largest friction demand |H|/N [-], impacts excluded; null if the block lifts off the ground"
-    )
+    friction_demand: float | None = said("largest friction demand |H|/N, impacts excluded [-]; null: it lifts off")
     overturned_low_restitution: bool = said("whether it overturns with the smaller restitution")
     overturned_high_restitution: bool = said("whether it overturns with the larger restitution")
-    overturned_resampled: bool = said(
-        "whether it overturns under the record interpolated band-limited at half its step"
-    )
+    overturned_resampled: bool = said("whether it overturns with the record interpolated band-limited at half its step")
 
 
 @with_intervals(fraction=(float, "share of the records that overturn it, with its Clopper-Pearson interval", "-"))
@@ -141,36 +128,25 @@ class Sensitivity(BaseModel):
     restitution_high: float = said("larger coefficient of restitution [-]")
     fraction_high_restitution: float = said("share that overturns it with the larger restitution [-]")
     changed_high_restitution: int = said("number of records whose outcome is then another one [-]")
-    fraction_resampled: float = said(
-        "share that overturns it with the records interpolated band-limited at half their step [-]"
-    )
+    fraction_resampled: float = said("share that overturns it with the records interpolated so [-]")
     changed_resampled: int = said("number of records whose outcome is then another one [-]")
     records_changed_by_sampling: list[str] = said("names of these records")
-    friction_demand_median: float | None = said(
-        "largest friction demand |H|/N that half of the records do not exceed [-]; null if infinite"
-    )
-    friction_demand_largest: float | None = said(
-        "largest friction demand |H|/N under all records [-]; null if the block lifts off"
-    )
+    friction_demand_median: float | None = said("|H|/N that half of the records do not exceed [-]; null if infinite")
+    friction_demand_largest: float | None = said("largest |H|/N under all records [-]; null if the block lifts off")
     records: list[RecordSensitivity] = said("each record")
 
 
+_OF_BLOCK = {"width", "height", "half_diagonal", "alpha", "frequency_parameter", "uplift_acceleration", "restitution"}
+
+
+@declared([one for one in FIELDS if one.name in _OF_BLOCK])
 class SuiteBlock(BaseModel):
     """A block under the records of a suite."""
 
-    width: float = said("width 2b [m]")
-    height: float = said("height 2h [m]")
-    half_diagonal: float = said("half diagonal R [m]")
-    alpha_deg: float = said("slenderness angle [deg]")
-    frequency_parameter: float = said("frequency parameter p [rad/s]")
-    uplift_acceleration: float = said("peak ground acceleration of uplift, g tan(alpha) [m/s2]")
-    restitution: float = said("coefficient of restitution eta [-]")
     limit_states: list[LimitState] = said("counts, intervals and curves of each limit state")
     margins: list[RecordMargin] = said("margin of each record")
     rotation_quantiles: list[RotationQuantile] = said("quantiles of the peak rotation")
-    sensitivity: list[Sensitivity] = said(
-        "friction demand, and the effect of restitution and sampling, at the levels that the suite asks for"
-    )
+    sensitivity: list[Sensitivity] = said("friction, restitution and sampling at the levels that the suite asks for")
 
 
 class SuiteResponse(InUnits[SuiteParams]):

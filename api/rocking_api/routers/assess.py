@@ -12,7 +12,7 @@ from rocking._assessment.tables import ObjectTable, objects_of_text
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, Form, json_response, negotiated_form, text_response
+from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, Form, json_response, negotiated_form, text_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.assess import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
@@ -23,8 +23,6 @@ router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
 MAX_BODY = 8 * 1024 * 1024  # largest table with records [bytes]
 MAX_PAIRS = 500_000  # most objects times motions, a pair of components being twelve [-]
-
-_FORMS: tuple[Form, ...] = ("json", "csv")
 
 _ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}
 
@@ -54,10 +52,10 @@ async def post_assess(request: Request, service: ServiceDep) -> Response:
     that list, records of the site and a hazard curve. The response has the format of the body, or that of `format` or
     `Accept`; CSV ends with the rows that were not read.
     """
-    given = body_form(request, _FORMS)
+    given = body_form(request, TABLE_FORMS)
     params, body = await service.read(request, AssessParams, given, AssessBody, MAX_BODY)
     table, site = await service.run_parser(lambda stop: _read(body, given, params, stop), request, large=True)
-    form = negotiated_form(request, params.format, _FORMS, default=given)
+    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
     return await service.run_heavy(lambda stop: _assess(params, request, site, table, form, stop), request)
 
 

@@ -11,7 +11,6 @@ from fastapi import APIRouter, Query, Request, Response
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import GROUPS
-from rocking._dimensional.margins import Margins as FoundMargins
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import BodyResponse as Found
 from rocking._dimensional.response import respond
@@ -20,7 +19,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
 from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, csv_response, json_response, negotiated_form
 from rocking_api.http.errors import TooLargeError
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import blocks as m
@@ -33,7 +32,6 @@ from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
 
 MAX_BODY = 4 * 1024 * 1024  # largest body with blocks [bytes]
-_FORMS: tuple[Form, ...] = ("json", "csv")  # formats of a table of blocks, and of its response
 
 _EXAMPLE = {
     "blocks": [
@@ -77,9 +75,9 @@ async def post_blocks(request: Request, service: ServiceDep) -> Response:
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
     optionally name and restitution; or the parameters of another kind of body. Others are not used.
     """
-    given = body_form(request, _FORMS)
+    given = body_form(request, TABLE_FORMS)
     params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
-    form = negotiated_form(request, params.format, _FORMS, default=given)
+    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
     table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
     return await service.run_heavy(lambda stop: _blocks(service, params, request, table, form, stop), request)
 
@@ -137,8 +135,8 @@ def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockRe
     found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
     about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
     about["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *about["notes"]]
-    margins = None if found.margins is None else _margins(found.margins)
-    return m.BlockResponse(query=params, response=point, margins=margins, data_version=point.data_version, **about)
+    about["margins"] = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
+    return m.BlockResponse(query=params, response=point, data_version=point.data_version, **about)
 
 
 def _point(
@@ -148,15 +146,8 @@ def _point(
     groups = problem.groups
     for one in (SLENDERNESS, FREQUENCY_RATIO):
         one.convert(groups[one.name])
-    dimensionless = ResponseParams.model_construct(
-        pulse=params.pulse,
-        method=params.method,
-        absolute_tolerance=params.absolute_tolerance,
-        alpha_deg=math.degrees(groups["alpha"]),
-        slenderness=groups["slenderness"],
-        frequency_ratio=groups["frequency_ratio"],
-        restitution=groups["restitution"],
-    )
+    given: dict[str, Any] = groups | {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
+    dimensionless = ResponseParams.model_construct(**given, alpha_deg=math.degrees(given.pop("alpha")))
     points = np.array([groups[one.name] for one in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:
@@ -165,9 +156,3 @@ def _point(
     service.metrics.points(SOURCES[found.from_cube.item()], 1)
     answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
     return answer, found.reshape(())
-
-
-def _margins(found: FoundMargins) -> m.Margins:
-    periods = [m.PeriodThreshold(period=one.value, overturns_above=one.overturns_above) for one in found.periods]
-    sizes = [m.SizeThreshold(half_diagonal=one.value, overturns_above=one.overturns_above) for one in found.sizes]
-    return m.Margins.model_validate(vars(found) | {"periods": periods, "sizes": sizes})

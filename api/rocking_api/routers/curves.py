@@ -168,9 +168,7 @@ class AmplitudeResponse(Echoed[AmplitudeParams], Solved[AmplitudeParams]):
     """All amplitudes at which the outcome changes."""
 
     thresholds: list[AmplitudeThreshold] = said("ascending in amplitude")
-    largest_surviving_amplitude: float | None = said(
-        "amplitude below which the block does not overturn [-]; null: no overturning was found"
-    )
+    largest_surviving_amplitude: float | None = said("amplitude below which it does not overturn [-]; null: none found")
 
 
 @pair(

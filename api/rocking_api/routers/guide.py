@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from http import HTTPStatus
 from pathlib import Path
+from typing import ClassVar
 
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import Scope
 
-from rocking_api.routers.pages import PageFiles
+from rocking_api.routers.pages import NO_CACHE, PageFiles
 
 # the pages of the theme set colours by scripts and styles inside of them
 _POLICY = (
@@ -21,6 +21,8 @@ _POLICY = (
 
 class GuideFiles(PageFiles):
     """The files of a folder, which need not exist when the service starts."""
+
+    headers: ClassVar = {**NO_CACHE, "Content-Security-Policy": _POLICY}
 
     def __init__(self, directory: Path) -> None:
         super().__init__(directory=directory, html=True, check_dir=False)
@@ -36,10 +38,3 @@ class GuideFiles(PageFiles):
                 f"the folder of one, which is `{self.directory}` here; its text is the folder `docs` of the sources",
             )
         return await super().get_response(path, scope)
-
-    def file_response(
-        self, full_path: str | os.PathLike[str], stat_result: os.stat_result, scope: Scope, status_code: int = 200
-    ) -> Response:
-        response = super().file_response(full_path, stat_result, scope, status_code)
-        response.headers["Content-Security-Policy"] = _POLICY
-        return response

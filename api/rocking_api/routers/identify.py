@@ -15,7 +15,7 @@ from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
 from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, Form, csv_response, json_response, negotiated_form
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import InGroups
 from rocking_api.models.bodies import body_of, json_content, text_content
@@ -76,8 +76,6 @@ EDGE_COLUMNS = [name for name in IdentifyResponse.model_fields if name.startswit
 
 MAX_BODY = 1024 * 1024  # largest trace [bytes]
 
-_FORMS: tuple[Form, ...] = ("json", "csv")
-
 
 def _example() -> dict[str, list[float]]:
     """Six flights of a slender block, alpha = 0.2 rad, p = 2.5 rad/s, eta = 0.9, released at alpha/2, each 0.02 s."""
@@ -120,9 +118,9 @@ async def post_identify(request: Request, service: ServiceDep) -> Response:
     The body is JSON, or CSV with a column of times and one of rotations, in the units of its header or in s and rad.
     The response has the same format, or that of `format` or `Accept`. CSV has a row for each edge.
     """
-    given = body_form(request, _FORMS)
+    given = body_form(request, TABLE_FORMS)
     params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
-    form = negotiated_form(request, params.format, _FORMS, default=given)
+    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
     time, rotation = await service.run_parser(lambda stop: _read(params, body, stop), request, large=True)
     return await service.run_heavy(lambda stop: _identified(params, request, time, rotation, form, stop), request)
 

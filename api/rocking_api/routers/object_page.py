@@ -146,14 +146,8 @@ def quantity_of(given: dict[str, str], name: str) -> str:
 
 
 def _restitution(given: dict[str, str]) -> Scalar:
-    text = given["restitution"].strip().replace(",", ".")
-    if text == "momentum":
-        return text
-    try:
-        number = float(text)
-    except ValueError:
-        raise InvalidArgumentError("restitution", text, "momentum, or a number from 0 to 1") from None
-    return RESTITUTION.number(number)
+    found: Scalar = RESTITUTION.read(given["restitution"].strip().replace(",", "."))
+    return found
 
 
 def _object(given: dict[str, str]) -> Object:

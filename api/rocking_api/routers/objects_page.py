@@ -75,9 +75,7 @@ async def post_objects_page(request: Request, service: ServiceDep) -> Response:
 @router.post("/report")
 async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
-    given = await _form(request, service)
-    table = await _read(given, request, service)
-    found = await _assessed(table, given, request, service)
+    given, table, found = await _answer(request, service)
     words = ["rocking", "assess", "TABLE"]
     for name in ("pga", "pgv"):
         words += [f"--{name}", quantity_of(given, name).replace(" ", "")]
@@ -94,14 +92,19 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
 @router.post("/assessment.xlsx")
 async def post_file(request: Request, service: ServiceDep) -> Response:
     """The assessment as CSV or as a workbook, as its address ends."""
-    given = await _form(request, service)
-    table = await _read(given, request, service)
-    found = await _assessed(table, given, request, service)
+    _, table, found = await _answer(request, service)
     if request.url.path.endswith(".csv"):
         return text_response(await service.run_io(lambda: found.to_csv(bad_rows=table.bad_rows)), "assessment")
     headers = {"Content-Disposition": 'attachment; filename="assessment.xlsx"'}
     raw = await service.run_io(lambda: found.to_xlsx(bad_rows=table.bad_rows))
     return Response(raw, headers=headers, media_type=WORKBOOK)
+
+
+async def _answer(request: Request, service: Service) -> tuple[dict[str, str], ObjectTable, Assessment]:
+    """The fields of the form, its table and its assessment."""
+    given = await _form(request, service)
+    table = await _read(given, request, service)
+    return given, table, await _assessed(table, given, request, service)
 
 
 @router.post("/text")

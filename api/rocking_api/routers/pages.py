@@ -7,7 +7,7 @@ import os
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from fastapi import APIRouter, FastAPI, Request, Response
 from fastapi.responses import HTMLResponse
@@ -52,7 +52,7 @@ _SWAGGER_POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
-_REVALIDATE = {"Cache-Control": "no-cache"}  # revalidated by ETag: no page mixes two versions
+NO_CACHE = {"Cache-Control": "no-cache"}  # revalidated by ETag: no page mixes two versions
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def settings_of(request: Request) -> Settings:
 
 def _add(page: Page) -> None:
     async def get_page(request: Request) -> Response:
-        headers = {"Content-Security-Policy": page.policy, **_REVALIDATE}
+        headers = {"Content-Security-Policy": page.policy, **NO_CACHE}
         return revalidated(
             request, HTMLResponse(html(page.template, page.title, page.path, settings_of(request)), headers=headers)
         )
@@ -110,7 +110,7 @@ def _add(page: Page) -> None:
 async def get_problems(request: Request) -> Response:
     """The kinds of errors, which their `type` refers to."""
     kinds = sorted((*KINDS.values(), *OTHERS), key=lambda kind: (kind.status, kind.name))
-    headers = {"Content-Security-Policy": POLICY, **_REVALIDATE}
+    headers = {"Content-Security-Policy": POLICY, **NO_CACHE}
     text = html("problems.html", "Kinds of errors", settings=settings_of(request), kinds=kinds)
     return revalidated(request, HTMLResponse(text, headers=headers))
 
@@ -143,6 +143,8 @@ def _with_page(handler: Callable[..., Any]) -> Callable[[Request, Exception], Aw
 class PageFiles(StaticFiles):
     """Scripts, styles and libraries of the pages, without ranges."""
 
+    headers: ClassVar = NO_CACHE
+
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         await super().__call__(without_range(scope), receive, send)
 
@@ -150,5 +152,5 @@ class PageFiles(StaticFiles):
         self, full_path: str | os.PathLike[str], stat_result: os.stat_result, scope: Scope, status_code: int = 200
     ) -> Response:
         response = super().file_response(full_path, stat_result, scope, status_code)
-        response.headers.update(_REVALIDATE)
+        response.headers.update(self.headers)
         return response

@@ -50,9 +50,16 @@ def offset_mass(
     gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
 ) -> "Block | RigidBody":
     """A body from its outer dimensions, the place of its centre of mass and its radius of gyration."""
-    from rocking._dimensional.rigid_body import body_of_size  # noqa: PLC0415
+    from rocking._base.errors import number  # noqa: PLC0415
+    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
 
-    return body_of_size(width, height, offset, mass_height, gravity, gyration)
+    if mass_height is not None:
+        mass_height = number("mass_height", mass_height, 0.0, q.HEIGHT.number(height), closed="right", unit="m")
+    elif gyration is None and not q.OFFSET.number(offset):
+        return rectangle(width, height, gravity)
+    return RigidBody.from_size(
+        width, height, offset=offset, mass_height=mass_height, gyration=gyration, gravity=gravity
+    )
 
 
 def two_edges(

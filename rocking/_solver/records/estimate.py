@@ -25,6 +25,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.arrays import Array
 from rocking._numba.cancellation import StopFlag, is_stopped
 from rocking._numba.compilation import FloatArray, Record, entry, kernel
 from rocking._numba.simd import (
@@ -43,8 +44,6 @@ from rocking._solver.bodies import outcome_margin_of
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.samples import BLOCK, BLOCKS, BLOCKS_LOW, LATER, LATER_LOW, SHAPE, VERTICAL
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD
-
-Array = NDArray[np.float64]
 
 FAR = 1e9
 """Reach of a body without a peak."""

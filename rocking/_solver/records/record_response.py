@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer
 from rocking._base.quantities import FREQUENCY_PARAMETER
 from rocking._excitation.records.record import Record
@@ -24,8 +25,6 @@ from rocking._solver.records.batch import solve_by_steps, solve_slender
 from rocking._solver.records.samples import TIME, motion_samples, pulse_samples
 from rocking._solver.records.state import body_states, step_state, taylor_orders
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
-
-Array = NDArray[np.float64]
 
 MAX_INTERVAL = 50.0
 """Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
