@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from docutils import nodes
-from rocking_api.app import create_app
-from rocking_api.settings import Settings
+from reference_tables import openapi_document
 
 FIGURES = "figures"
 """Name of the page with the captions."""
@@ -70,8 +69,7 @@ def write_lists(app: Any, exception: Exception | None) -> None:
             lines.append(f"- [{app.env.titles[page].astext()}]({app.builder.get_target_uri(page)}): {first}")
     folder = Path(app.outdir)
     (folder / "llms.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    document = create_app(Settings()).openapi()
-    (folder / "openapi.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    (folder / "openapi.json").write_text(json.dumps(openapi_document(), indent=1) + "\n", encoding="utf-8")
 
 
 def setup(app: Any) -> dict[str, bool]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import Any, ClassVar
 
 import typer
@@ -15,6 +16,12 @@ from typer.cli import get_docs_for_click
 
 from rocking._cli.app import app as command_line
 from rocking._datasets.cube import AXES, VARIABLES
+
+
+@cache
+def openapi_document() -> dict[str, Any]:
+    """The description of the service, which takes a second to make."""
+    return create_app(Settings()).openapi()
 
 
 class Generated(Directive):
@@ -48,7 +55,7 @@ class Routes(Generated):
 
     def lines(self) -> list[str]:
         """The text."""
-        document = create_app(Settings()).openapi()
+        document = openapi_document()
         models = document["components"]["schemas"]
         text: list[str] = []
         used: list[str] = []

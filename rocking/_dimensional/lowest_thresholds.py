@@ -249,8 +249,9 @@ def _certain_survival(pulse: AbstractPulse, cells: NDArray[np.void]) -> Array:
     Let v be the velocity that the body would have at theta = 0. Between impacts v' <= p_s^2 (a_g/g) |f|, impacts do not
     raise v, and to pass the equilibrium on the edge s takes v = 2 p_s sin(alpha_s/2).
     """
-    alpha = np.stack([cells["alpha"], cells["alpha"] * cells["ratio"]])
-    p = np.stack([np.ones(cells.size), np.sqrt(cells["stiffness"])])  # over that of the right edge
+    ones = np.ones(cells.size)
+    alpha = cells["alpha"] * np.stack([ones, cells["ratio"]])
+    p = np.sqrt(np.stack([ones, cells["stiffness"]]))  # over that of the right edge
     needed = (2.0 * p * np.sin(0.5 * alpha)).min(axis=0)
     gained = (p * p).max(axis=0) * np.tan(alpha.min(axis=0)) * impulse_of(pulse).total / cells["rate"]
     return np.asarray(needed / gained)

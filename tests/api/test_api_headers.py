@@ -177,16 +177,6 @@ def test_answers_may_be_stored_and_are_revalidated(client, control):
         assert "etag" not in client.get(path).headers
 
 
-@pytest.mark.parametrize(
-    "path",
-    [*("/", "/docs", "/openapi.json", "/health", "/ready", "/metrics", "/v1/datasets", "/v1/response?pulse=sine"),
-     *(f"{DATASET}.nc", f"{DATASET}.zarr/.zmetadata", "/nowhere", *STORED["max-age=600"])],
-)  # fmt: skip
-def test_every_response_has_nosniff(client, path):
-    for result in (client.get(path), client.head(path), client.get(path, headers={"if-none-match": "*"})):
-        assert result.headers.get_list("x-content-type-options") == ["nosniff"]
-
-
 def test_only_text_is_compressed(client):
     accept = {"accept-encoding": "gzip"}
     assert client.get(SPECTRUM, headers=accept).headers["content-encoding"] == "gzip"

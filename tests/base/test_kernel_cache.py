@@ -5,7 +5,6 @@ import platform
 import shutil
 import subprocess
 import sys
-import warnings
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,6 @@ import rocking
 from rocking import precompile
 from rocking._base.source_tree import SourceTree, imported_names
 from rocking._numba import kernel_cache
-from rocking._numba.compilation import entry
 from rocking._numba.way import INTERNALS
 from tests.sampling import but_long
 
@@ -335,21 +333,12 @@ def test_the_cache_is_beside_the_package_or_in_a_writable_folder(folder, package
     assert Path(folder()).parent == tmp_path / "given"
 
 
-def test_kernels_without_a_cache_folder_give_one_warning(folder, package, tmp_path, monkeypatch):
+def test_no_cache_folder_is_one_warning(folder, package, tmp_path):
     closed(package / "__pycache__")
     closed(tmp_path / "user")
     with pytest.warns(RuntimeWarning, match="NUMBA_CACHE_DIR") as said:
         assert folder() is None
     assert len(said) == 1
-    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: None)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-
-        @entry
-        def twice(x):
-            return 2.0 * x
-
-        assert twice(1.5) == 3.0
 
 
 def test_a_process_without_a_cache_folder_gives_results_after_one_warning(run):

@@ -50,7 +50,7 @@ def test_agrees_with_the_independent_reference_to_every_printed_digit(index: int
 
 @pytest.mark.slow
 def test_agrees_with_all_of_the_independent_reference() -> None:
-    for row in sample(ROWS, 12):
+    for row in sample(ROWS, 6):
         _assert_equals_reference(row)
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.cost.first_call import README_COMMAND
 from benchmarks.installation import PACKAGES
-from tests.sampling import ALL
+from tests.sampling import ALL, but_long, number
 from tests.wheel_fixtures import Installation
 
 ROOT = Path(__file__).parents[2]
@@ -31,17 +31,20 @@ sys.addaudithook(seen)
 """
 """Counts what each process of the installation opens and lists."""
 
-FIRST_ANSWER = "import rocking; rocking.peak_response('sine', slenderness=0.4, frequency_ratio=5.0, restitution=0.85)"
-
+PYTHON = ["-c", "import rocking; rocking.peak_response('sine', slenderness=0.4, frequency_ratio=5.0, restitution=0.85)"]
+COMMAND = ["-m", "rocking._cli", *README_COMMAND]
 
 LIMITS = {"source files of other packages": 10, "files": 1600, "folders": 450}
 """Measured, at most: 1, 1,362 and 326; where imports of other packages were followed 4,050, 5,100 and 553,000."""
 
-INSIDE = (
-    ("tests/cli/test_cli.py", "tests/api/test_guide.py", "tests/api/test_api_state.py")
-    if not ALL
-    else ("tests/cli", "tests/api", "--ignore=tests/api/explorer")
+SAMPLE = (
+    "tests/cli/test_cli.py::test_response_in_three_formats",
+    "tests/cli/test_cli.py::test_options_name_their_units_and_shells_complete_names",
+    "tests/cli/test_cli.py::test_help_and_version_import_nothing_heavy",
+    "tests/api/test_guide.py",
+    "tests/api/test_api_state.py::test_an_installation_serves_an_example_where_no_data_are",
 )
+INSIDE = number(SAMPLE, ("tests/cli", "tests/api", "--ignore=tests/api/explorer"))
 """Tests of the command line and of the service that run in the installation."""
 
 NOT_INSIDE = {"api", "rocking", "build", "results", "atlas", "atlas-small", ".git", ".venv"}
@@ -66,9 +69,7 @@ def assert_few_files(environment: dict[str, str], packages: Path) -> None:
         assert all(found[name] <= limit for name, limit in LIMITS.items()), found
 
 
-@pytest.mark.parametrize(
-    "first", [["-c", FIRST_ANSWER], ["-m", "rocking._cli", *README_COMMAND]], ids=["python", "command"]
-)
+@pytest.mark.parametrize("first", but_long([PYTHON, COMMAND], COMMAND), ids=["python", "command"])
 def test_a_first_answer_reads_few_files(
     installed: Installation, counted: dict[str, str], tmp_path: Path, first: list[str]
 ) -> None:
@@ -87,20 +88,8 @@ def test_the_tests_of_command_line_and_service_pass_in_the_installation(
     environment = installed.environment(NUMBA_CACHE_DIR=str(kernels), **made)
     where = "import rocking, rocking_api; print(rocking.__file__, rocking_api.__file__)"
     program = f"{where}; import sys, pytest; sys.exit(pytest.main(sys.argv[1:]))"
-    command = [
-        installed.python,
-        "-P",
-        "-c",
-        program,
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "-n",
-        "0",
-        "-m",
-        "not alone",
-        *INSIDE,
-    ]
+    options = ["-q", "-p", "no:cacheprovider", "-n", "0", "-m", "not alone"]
+    command = [installed.python, "-P", "-c", program, *options, *INSIDE]
     done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert all(path.startswith(str(installed.packages)) for path in done.stdout.splitlines()[0].split())

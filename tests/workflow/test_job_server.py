@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.sampling import but_long
 from tests.workflow_fixtures import PROJECT
 from workflow.job_server import PLACE
 
@@ -43,7 +44,7 @@ pathlib.Path(snakemake.output[0]).touch()
 """
 
 
-@pytest.fixture(scope="module", params=[True, False], ids=["forks", "processes"])
+@pytest.fixture(scope="module", params=but_long([True, False], True), ids=["forks", "processes"])
 def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, bool]:
     """Folder and messages of a run of five jobs, one after the other, and whether they are forks."""
     if request.param and sys.platform != "linux":

@@ -13,6 +13,9 @@ from tests.api.conftest import NAPA
 
 HEADER = "time_s,acceleration_g\n"
 
+STRONG = slice(800, 1800)
+"""Samples of a record that decide what it does to a block: fast to upload, to solve and to fit."""
+
 PHONE = {"has_touch": True, "width": 390, "height": 844}
 
 
@@ -83,9 +86,9 @@ class Touch:
 
 
 def short_record():
-    """The strong part of a record: fast to upload, to solve and to fit."""
+    """The strong part of a record."""
     motion = rocking.read_record(NAPA)
-    part = motion.acceleration[800:2400] / STANDARD_GRAVITY
+    part = motion.acceleration[STRONG] / STANDARD_GRAVITY
     rows = (f"{k * motion.time_step:.3f},{value!r}" for k, value in enumerate(part.tolist()))
     return (HEADER + "\n".join(rows)).encode()
 

@@ -11,7 +11,7 @@ import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import parse_record
 from tests.api.conftest import NAPA
-from tests.api.explorer.hands import HEADER, Keyboard, Touch, choose_record, short_record
+from tests.api.explorer.hands import HEADER, STRONG, Keyboard, Touch, choose_record, short_record
 from tests.api.explorer.reading import set_time, stated_rotation
 from tests.sampling import but_long
 
@@ -150,7 +150,7 @@ def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, cont
 def components():
     """Two horizontal components and an upward one, which is a third of the second: names, values [g], step [s]."""
     east, north = (rocking.read_record(NAPA.with_name(f"napa_HN{end}.csv")) for end in "EN")
-    first, second = (one.acceleration[800:2400] / STANDARD_GRAVITY for one in (east, north))
+    first, second = (one.acceleration[STRONG] / STANDARD_GRAVITY for one in (east, north))
     return {"NAPA_090": first, "NAPA_000": second, "NAPA_UP": second / 3.0}, east.time_step
 
 
