@@ -101,8 +101,13 @@ def split_number(cell: str) -> tuple[str, str] | None:
 def plain_name(text: str) -> str:
     """A name in small letters, without accents, signs and doubled blanks; the sign of a diameter is its word."""
     text = _ROUND.sub(" diameter ", text).replace("\u00df", "ss")
-    bare = "".join(one for one in unicodedata.normalize("NFKD", text.lower()) if not unicodedata.combining(one))
-    return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff\u3040-\u30ff\u4e00-\u9fff]+", " ", bare).split())
+    bare = re.sub(r"[^0-9a-z\u0370-\u03ff\u3040-\u30ff\u4e00-\u9fff]+", " ", without_accents(text.lower()))
+    return " ".join(bare.split())
+
+
+def without_accents(text: str) -> str:
+    """A text without the marks above and below its letters."""
+    return "".join(one for one in unicodedata.normalize("NFKD", text) if not unicodedata.combining(one))
 
 
 def name_and_unit(text: str) -> tuple[str, str]:
