@@ -203,11 +203,14 @@ ODD = {
     ),
     "times with an exponent": File(rounded("{:.3E}", 0.00244), samples=values(400), step=0.00244),
     "times of three digits": File(rounded("{:.3e}", 0.0078125), samples=values(400), step=0.0078125),
+    "times since an epoch": File(
+        "time,a [g]\n" + "".join(f"{1549195200 + k * STEP:.3f},{v:.6f}\n" for k, v in enumerate(values()))
+    ),
     "few rounded times and a step": File("dt = 0.0078125 s\n" + pairs(step=0.0078125), step=0.0078125),
     **{
         f"one column with {line}": File(single(f"{line}\n"), {"unit": "g"})
         for line in (
-            *("Tasa de muestreo: 100 Hz", "Frecuencia de muestreo: 100 Hz", "Período de muestreo: 0,01 s"),
+            *("Tasa de muestreo: 100 Hz", "Frecuencia de muestreo: 100 muestras/s", "Período de muestreo: 0,01 s"),
             *("Frequenza di campionamento: 100 Hz", "Passo di campionamento [s]: 0.01", "Taxa de amostragem: 100 Hz"),
             *("Fréquence d'échantillonnage : 100 Hz", "PAS D'ECHANTILLONNAGE: 10 ms", "Pas de temps = 0.01 s"),
             *("Abtastrate: 100 Hz", "Zeitschritt dt: 0.01 s", "Örnekleme aralığı: 0.01 s"),

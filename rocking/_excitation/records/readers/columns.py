@@ -463,7 +463,7 @@ def _uniform_step(layout: Layout, times: Array, place: float, known: float | str
     rounding = 1.001 * place if place <= LARGEST_ROUNDING * step else 0.0
     largest = max(off.max(), -off.min())
     if step > 0.0 and largest <= max(STEP_TOLERANCE * step, rounding):
-        if largest > 1e-6 * step and place > 1e-3 * step * (times.size - 1):
+        if largest > 0.01 * place and place > 1e-3 * step * (times.size - 1):
             if known is None:
                 allowed = "times with more decimals, a step in the header, or the argument `time_step`"
                 raise file.error(first, f"times rounded to {place:g} s, about {step:.3g} s apart", allowed)

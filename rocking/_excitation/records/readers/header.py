@@ -56,6 +56,7 @@ SENTENCES = tuple(
 MAX_STATEMENT = 400  # characters at the start of a line in which settings are searched
 
 _RATES = {"": 1.0, "hz": 1.0, "sps": 1.0, "fps": 1.0, "1/s": 1.0, "samples/s": 1.0, "samples/sec": 1.0, "khz": 1000.0}
+_RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "amostras/s"), 1.0)
 
 _DECIMAL_COMMA = re.compile(r"[+-]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))", re.ASCII)
 """A number with a decimal comma that is no separator of thousands."""
