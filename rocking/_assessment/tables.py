@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from rocking._assessment.columns import INPUTS, REQUIRED, SHAPES, STAND_INS
 from rocking._assessment.objects import Object, RowDetails
+from rocking._base.cells import name_and_unit, plain_name
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import FREQUENCY_PARAMETER
+from rocking._base.units import unit_name
 from rocking._dimensional.body_kinds import WITHOUT_FILES, described
 from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import BadRow, Table, TooManyRowsError, read_bytes, read_csv, read_file, text_of
@@ -48,7 +51,7 @@ class ObjectTable:
     def reading(self) -> str:
         """How each column was read, and which columns and rows were not, in words."""
         read = ", ".join(f"{header} as {name}" for header, name in self.columns.items())
-        skipped = [*self.skipped, *(f"{row} (no object)" for row in self.totals)]
+        skipped = [*map(_shown, self.skipped), *(f"{row} (no object)" for row in self.totals)]
         unread = f"; not read: {', '.join(skipped)}" if skipped else ""
         return f"columns read: {read}{unread}" if read else ""
 
@@ -56,6 +59,13 @@ class ObjectTable:
         """The number of objects that were read, and of rows and columns that were not."""
         reading = f"; {self.reading}" if self.reading else ""
         return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{reading}>"
+
+
+def _shown(label: str) -> str:
+    """The header of a column that is not read; a frequency parameter has the letter of a depth in Italian."""
+    name, unit = name_and_unit(label)
+    is_frequency = plain_name(name) == FREQUENCY_PARAMETER.symbol and unit_name(unit, FREQUENCY_PARAMETER.unit)
+    return f"{label} ({FREQUENCY_PARAMETER.meaning}, no depth)" if is_frequency else label
 
 
 def read_objects(source: str | PathLike[str], *, columns: Mapping[str, str] | None = None) -> ObjectTable:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantity import Quantity
-from rocking._base.units import MAX_LENGTH, UNITS, USUAL, unit_name
+from rocking._base.units import MAX_LENGTH, UNITS, USUAL, quantities_of, unit_name
 
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$|[,/:]\s*([^\s,/:]{1,8})\s*$|\bin\s+([^\s,/]{1,12})\s*$")
 _LAST = re.compile(r"[\s_]+([^\s_()\[\]]{1,12})\s*$")
@@ -20,6 +20,11 @@ _NUMBER = re.compile(
     r"\s*([+-]?[0-9][0-9.,'\u2019 \u00a0\u202f]*|[+-]?[.,][0-9]+)((?:(?<=[0-9.,])e[+-]?[0-9]+)?)\s*(.*?)\s*",
     re.DOTALL | re.IGNORECASE,
 )
+_WIDE = {0x3000: " "} | {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)}
+_HALVES = re.compile("[\u00bc-\u00be\u2150-\u215e]")
+_FEET = re.compile(r"(\d+)\s*(?:['\u2032\u2019]|ft\.?|feet|foot)[\s,-]*(\d.*)", re.ASCII | re.IGNORECASE)
+_INCHES = re.compile(r"(\d\d?(?:\.\d+)?)\s*(\D+)", re.ASCII)
+_FRACTION = re.compile(r"(?:(\d+)[\s-]+)?(\d+)/(\d+)\s*(\D*)", re.ASCII)
 _THOUSANDS = re.compile(rf"[+-]?\d{{1,3}}(?:{_GAP}\d{{3}})+(?:[.,]\d*)?")
 _GROUPS = re.compile(r"[+-]?\d{1,3}(?:[.,]\d{3})+")
 
@@ -41,12 +46,14 @@ def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
     if not one.unit:
         return cell
     text = cell.strip().removeprefix("'")  # of a spreadsheet's text
+    decimal = "" if text != cell.strip() else decimal
+    text = _without_fraction(text, unit)
     if text.lower().partition("(")[0].rstrip() in one.words:
         return text.lower()
     found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if not found:
         raise InvalidArgumentError(one.name, text[:MAX_LENGTH], "a number, with its unit or with one in the header")
-    number = _number(one.name, found[1].strip(), found[2], text, "" if cell.strip() != text else decimal)
+    number = _number(one.name, found[1].strip(), found[2], text, decimal)
     written = unit_name(found[3], one.unit) if found[3] else unit or one.assumed
     if written is None:
         raise InvalidArgumentError(one.name, text, f"a unit such as {', '.join(UNITS[one.unit])}")
@@ -65,7 +72,8 @@ def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
 def _number(name: str, written: str, exponent: str, text: str, decimal: str) -> float:
     """The number of digits with signs, and of an exponent."""
     if re.search(_GAP, written) and not _THOUSANDS.fullmatch(written):
-        raise InvalidArgumentError(name, text, "one number, with blanks between thousands only")
+        allowed = "one number, with blanks between thousands only, or with its unit, as 31 1/2 in"
+        raise InvalidArgumentError(name, text, allowed)
     digits = re.sub(_GAP, "", written)
     own = decimal_sign(digits) or ""
     if own.startswith("?") and not decimal:
@@ -92,21 +100,67 @@ def decimal_sign(digits: str) -> str:
     return f"?{last}" if len(after) == 3 and re.fullmatch(r"[+-]?[1-9]\d{0,2}", before) else last
 
 
-def split_number(cell: str) -> tuple[str, str] | None:
-    """The digits of a cell that starts with a number, without blanks, and what follows; None for other cells."""
-    found = _NUMBER.fullmatch(cell) if len(cell) <= MAX_LENGTH else None
+def split_number(cell: str, unit: str = "") -> tuple[str, str] | None:
+    """The digits of a cell that starts with a number, without blanks, and what follows; None for other cells.
+
+    `unit`: that a fraction without one has.
+    """
+    found = _NUMBER.fullmatch(_without_fraction(cell, unit)) if len(cell) <= MAX_LENGTH else None
     return (re.sub(_GAP, "", found[1]), found[3]) if found else None
+
+
+def half_width(text: str) -> str:
+    """A text with the letters, digits and signs of ASCII in place of the wide ones of East Asian scripts."""
+    return text.translate(_WIDE)
+
+
+def _without_fraction(text: str, unit: str = "") -> str:
+    """A text in half width, feet with inches and fractions of inches as decimal inches; `unit`: of its header.
+
+    A sign such as \u00bd is a fraction of any unit, and 30/40 is none.
+    """
+    text = half_width(text)
+    plain = _HALVES.sub(lambda one: f" {unicodedata.normalize('NFKC', one[0])}", text).replace("\u2044", "/").strip()
+    feet = _FEET.fullmatch(plain)
+    rest = feet[2] if feet else plain
+    if found := _FRACTION.fullmatch(rest):
+        whole, upper, lower, written = int(found[1] or 0), int(found[2]), int(found[3]), found[4]
+        of_inches = upper % 2 == 1 and lower in (2, 4, 8, 16, 32, 64) and unit_name(written or unit, "m") == "in"
+        if not upper < lower or not (of_inches or _HALVES.search(text)):
+            return text
+        number = whole + upper / lower
+    elif feet and (found := _INCHES.fullmatch(rest)):
+        number, written = float(found[1]), found[2]
+    else:
+        return text
+    if feet and not (number < 12.0 and unit_name(written, "m") == "in"):
+        return text
+    return f"{number + 12 * int(feet[1] if feet else 0):.10f} {written}"
+
+
+def is_symbol(text: str) -> bool:
+    """Whether a header is a letter with a unit of another quantity than a length, such as "p (1/s)"."""
+    name, unit = name_and_unit(text)
+    return len(plain_name(name)) == 1 and unit != "min" and bool(quantities_of(unit) - {"m"})
 
 
 def plain_name(text: str) -> str:
     """A name in small letters, without accents, signs and doubled blanks; the sign of a diameter is its word."""
-    text = _ROUND.sub(" diameter ", text).replace("\u00df", "ss")
-    bare = "".join(one for one in unicodedata.normalize("NFKD", text.lower()) if not unicodedata.combining(one))
-    return " ".join(re.sub(r"[^0-9a-z\u0370-\u03ff\u3040-\u30ff\u4e00-\u9fff]+", " ", bare).split())
+    text = _ROUND.sub(" diameter ", re.sub("ma\u00dfe?", "abmessungen", text, flags=re.IGNORECASE)).replace(
+        "\u00df", "ss"
+    )
+    bare = re.sub(r"[^0-9a-z\u0370-\u03ff\u3040-\u30ff\u4e00-\u9fff]+", " ", without_accents(text.lower()))
+    return " ".join(bare.split())
+
+
+def without_accents(text: str) -> str:
+    """A text without the marks above and below its letters."""
+    return "".join(one for one in unicodedata.normalize("NFKD", text) if not unicodedata.combining(one))
 
 
 def name_and_unit(text: str) -> tuple[str, str]:
     """The parts of a header; "" without a unit."""
+    text = half_width(text)
     found = _UNIT.search(text)
     return (text[: found.start()], next(filter(None, found.groups()), "").strip()) if found else (text, "")
 
@@ -114,6 +168,7 @@ def name_and_unit(text: str) -> tuple[str, str]:
 def _splits(text: str) -> Iterator[tuple[str, str, bool]]:
     """Ways to divide a header into name and unit, and whether what follows the name must be a unit."""
     name, written = name_and_unit(text)
+    text = half_width(text)
     if written or name != text:
         yield name, written, True
     if last := _LAST.search(text):
@@ -123,7 +178,7 @@ def _splits(text: str) -> Iterator[tuple[str, str, bool]]:
 
 def named(text: str, names: Mapping[str, Quantity]) -> Quantity | None:
     """The column of a name, which may be there twice: "Breite / width", "Height (H)"."""
-    plain = plain_name(text)
+    plain = plain_name(text).removeprefix("dimensions ")
     if plain in names:
         return names[plain]
     first, _, last = plain.rpartition(" ")
@@ -154,6 +209,8 @@ def read_header(text: str, names: Mapping[str, Quantity], argument: str) -> tupl
             known = ""
         if known is not None:
             return one, known
+        if is_symbol(text):
+            return None
         if must:
             raise InvalidArgumentError(f"{argument}, header", text, f"a unit such as {', '.join(UNITS[one.unit])}")
     return None

@@ -69,7 +69,8 @@ NAME = Quantity("name", "", "name of the object",
 
 NUMBER = Quantity("number", "", "inventory number, the name of an object without another one",
     aliases="inventory number, inventory no, inv number, inv no, inv nr, inventarnummer, inventario, object number, "
-    "object id, accession number, accession no, catalogue number, catalog number, numero di inventario, "
+    "object id, objectnumber, objectid, identifier, object identifier, idno, accession number, accession no, "
+    "catalogue number, catalog number, numero di inventario, "
     "numero d inventaire, numero de inventario, id, no, nr, #", stands_for=("name",))
 """Read where a table has no names."""
 

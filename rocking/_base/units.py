@@ -116,6 +116,8 @@ def _forms(name: str) -> tuple[str, ...]:
     length, _, time = name.partition("/")
     if time == "s2":
         return (name, f"{length}/s/s", f"{length}s-2", f"{length}/s-2", f"{length}s2")
+    if name == "rad/s":
+        return (name, "rads-1", "1/s", "s-1")
     return (name, f"{length}s-1") if time == "s" else (name, *_OTHER_NAMES.get(name, ()))
 
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeVar
 
-from rocking._base.cells import name_and_unit, named, plain_name, rank, read_header, stated_unit
+from rocking._base.cells import is_symbol, name_and_unit, named, plain_name, rank, read_header, stated_unit
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
@@ -169,10 +169,13 @@ def _without_header(lines: Sequence[HeaderLine], schema: Schema[Any]) -> Invalid
     names = {one.name for one, _ in columns.values()}
     needed = {" or ".join(group): names.isdisjoint(group) for group in schema.required}
     missing = ", ".join(group for group, lacks in needed.items() if lacks)
-    rest = (text for place, text in enumerate(texts) if place not in columns and is_used(text))
+    rest = [text for place, text in enumerate(texts) if place not in columns and is_used(text)]
     near = [text for text in rest if stated_unit(text, "m") or LENGTH_WORD.search(plain_name(text))]
     allowed = f"columns {', '.join(needed)}, of at most {MAX_COLUMNS}; missing: {missing}"
-    allowed += f"; if that is {near[0][:MAX_NAME]!r}, name the column so" if near and columns else ""
+    if any(is_sizes(name_and_unit(text)[0]) for text in rest):
+        allowed += '; where a column has several dimensions, its header says the order: "W x D x H (cm)"'
+    elif near and columns:
+        allowed += f"; if that is {near[0][:MAX_NAME]!r}, name the column so"
     return InvalidArgumentError(f"{schema.argument}, header", "; ".join(texts)[:MAX_NAME] or "nothing", allowed)
 
 
@@ -237,9 +240,13 @@ def _group_unit(text: str, known: Mapping[str, Quantity]) -> str:
     if is_unit(text):
         return text.strip("[]() ")
     name, unit = name_and_unit(text)
+    return unit if plain_name(name) in known or is_sizes(name) else ""
+
+
+def is_sizes(name: str) -> bool:
+    """Whether a name is a word for all lengths, such as "Overall dimensions"."""
     words = set(plain_name(name).split())
-    is_group = plain_name(name) in known or (bool(words & SIZE_NAMES) and words <= SIZE_NAMES | _WITH_SIZES)
-    return unit if is_group else ""
+    return bool(words & SIZE_NAMES) and words <= SIZE_NAMES | _WITH_SIZES
 
 
 def is_unit(text: str) -> bool:
@@ -280,12 +287,13 @@ def _with_units(
                 )
             columns[place] = one, unit
         lengths |= {place: True for place in others if place < len(below) and unit_name(below[place], "m")}
-    names = {place: plain_name(name_and_unit(line.texts[place])[0]) for place in others}
+    named = (place for place in others if not is_symbol(line.texts[place]))
+    names = {place: plain_name(name_and_unit(line.texts[place])[0]) for place in named}
     weak = set()
     for place, name in names.items():
         found = LENGTH_WORD.search(name)
         exempt = NO_LENGTH.search(name) and (found is None or found[0] in ("base", "side", "size"))  # "base price"
-        if (found or LAST_UNIT.search(line.texts[place])) and not exempt:
+        if is_sizes(name) or ((found or LAST_UNIT.search(line.texts[place])) and not exempt):
             weak.add(place)
     weak |= line.grouped & set(others)
     return columns, dict.fromkeys(sorted(weak), False) | lengths, last
@@ -302,7 +310,7 @@ def _beside(line: HeaderLine, columns: Mapping[int, tuple[Quantity, str]], units
     found = set()
     for place, text in enumerate(line.texts[: last + 1]):
         name = plain_name(name_and_unit(text)[0])
-        is_read = place in columns or place in units.values()
+        is_read = place in columns or place in units.values() or is_symbol(text)
         says_no = name.startswith(_UNUSED) or NO_LENGTH.search(name)
         if place >= first and not is_read and not says_no and (text.strip() or 0 < place < last):
             found.add(place)

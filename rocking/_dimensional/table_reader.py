@@ -19,7 +19,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from rocking._base.cells import decimal_sign, name_and_unit, plain_name, read_cell, split_number
+from rocking._base.cells import decimal_sign, half_width, name_and_unit, plain_name, read_cell, split_number
 from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 from rocking._base.quantity import Quantity
 from rocking._base.units import UNITS, unit_name
@@ -33,9 +33,11 @@ from rocking._dimensional.table_header import (
     Schema,
     find_header,
     header_lines,
+    is_sizes,
     is_unit,
     is_used,
 )
+from rocking._dimensional.table_sizes import with_sizes
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag  # numba takes longer to load than a table
@@ -163,11 +165,18 @@ def delimiter_of(text: str, schema: Schema[Any]) -> str:
     """The sign between the columns of a text; the errors of `read_csv`."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(schema.argument, f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
-    sizes = {one: max(map(_fit, header_lines(_start(text, one, schema), schema)), default=(0, 0)) for one in DELIMITERS}
+    sizes = {
+        one: max(map(_fit, _header_lines(_start(text, one, schema), schema)), default=(0, 0)) for one in DELIMITERS
+    }
     delimiter = max(DELIMITERS, key=sizes.__getitem__)
     if not sizes[delimiter][0]:
         list(islice(_rows(_open(text), delimiter, schema), HEADER_ROWS))  # says which line is not CSV
     return delimiter
+
+
+def _header_lines(rows: list[list[str]], schema: Schema[Any]) -> Iterator[HeaderLine]:
+    several, schema = with_sizes(rows, schema)
+    return header_lines([*several.spread(rows)] if several else rows, schema)
 
 
 def _fit(line: HeaderLine) -> tuple[bool, int]:
@@ -283,6 +292,10 @@ def read_rows(
     """
     rest = iter(rows)
     top = list(islice(rest, HEADER_ROWS + 1))  # with a line of units
+    several, schema = with_sizes(top, schema)
+    if several is not None:
+        rest = several.spread(chain(top, rest))
+        top = list(islice(rest, HEADER_ROWS + 1))
     header = find_header(top, schema)
     body: list[tuple[int, Sequence[str]]] = []
     totals: list[str] = []
@@ -407,10 +420,12 @@ def _check_lengths(row: Sequence[str], header: Header) -> None:
             continue
         if text.strip() and not is_used(text):
             continue
-        number = split_number(cell)
+        number = split_number(cell, "in")
         is_length = bool(number and unit_name(number[1], "m"))  # in its cell
         if place in header.lengths:
-            is_length |= bool(AMOUNT.match(cell) if header.lengths[place] else number and not number[1])
+            bare = number and not any(map(str.isalpha, number[1]))  # such as 12, 12-15
+            is_length |= bool(AMOUNT.match(cell) if header.lengths[place] else bare)
+            is_length |= is_sizes(name_and_unit(text)[0]) and re.search(r"\d", cell) is not None
         if is_length and not (number and not number[0].strip("+-0.,")):
             allowed = 'a column named "width", "depth", "diameter" or "height", or whose name begins with "unused"'
             raise InvalidArgumentError(header.labels[place].strip(), cell, allowed)
@@ -436,6 +451,7 @@ def _decimal_sign(cells: Iterable[str], usual: str) -> str:
     for cell in cells:
         found = None if isinstance(cell, _Exact) else split_number(cell)
         own = decimal_sign(found[0]) if found and found[0].strip("+-0.,") else ""  # 0.0 is written by machines
-        if own and (not own.startswith("?") or own[1] == usual):
+        written = own[-1:] in half_width(cell)  # which a fraction such as 1 1/2 has not
+        if own and written and (not own.startswith("?") or own[1] == usual):
             signs.add(own[-1])
     return signs.pop() if len(signs) == 1 else ""

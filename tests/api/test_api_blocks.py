@@ -126,7 +126,9 @@ def test_many_blocks_as_json_and_csv(client):
     assert columns["overturned"] == ("true", "false", "true")
     assert float(columns["peak_rotation"][1]) == pytest.approx(found["peak_rotation"][1], rel=1e-9)
     both = client.post(url + "&format=json", content=TABLE, headers={"content-type": "text/csv"}).json()
-    assert both["outcome"] == found["outcome"]
+    assert (both["outcome"], both["totals"]) == (found["outcome"], found["totals"])
+    counted = client.post(url + "&format=json", content=TABLE + "Total,1,1,1,1\n", headers={"content-type": "text/csv"})
+    assert (counted.json()["outcome"], counted.json()["totals"]) == (found["outcome"], ["row 5: Total"])
 
 
 def test_a_text_may_state_another_unit(client):

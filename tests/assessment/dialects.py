@@ -83,6 +83,7 @@ class Writer:
         self.delimiter = pick(",;\t|")
         self.point = pick(".,")
         self.mixed = self.dice.random() < 0.2
+        self.fractions, self.wide = self.dice.random() < 0.5, self.dice.random() < 0.1
         self.grouping = pick(["", " ", "'", "" if self.mixed else "," if self.point == "." else "."])  # of thousands
         if self.delimiter == "," and self.grouping == "." and not typed:
             self.grouping = ""  # between commas, one point is a decimal sign
@@ -184,6 +185,11 @@ class Writer:
         if len(whole) > 3 and self.grouping != point:
             whole = f"{whole[:-3]}{self.grouping}{whole[-3:]}"
         text = f"{whole}{point}{rest}" if rest else whole
+        if unit == "in" and self.fractions:
+            value = Decimal(int(value)) + (part := self.dice.choice([Decimal("0.5"), Decimal("0.375")]))
+            text = f"{int(value)}{self.dice.choice([' 1/2', '-1/2', '½'] if part == Decimal('0.5') else [' 3/8', '⅜'])}"
+        if self.wide:
+            text = text.translate({code: code + 0xFEE0 for code in range(ord("!"), ord("~"))})
         return text, value * FACTORS[unit]
 
     def _object(self, k: int) -> tuple[str, dict[str, Any], dict[str, Any]]:

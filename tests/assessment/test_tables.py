@@ -179,6 +179,71 @@ def test_units_stand_where_people_write_them(rows: list[str]) -> None:
     assert (one.width, one.height, one.mass) == pytest.approx((0.4, 1.6, 45.359237))
 
 
+INCH = 0.0254
+
+
+@pytest.mark.parametrize(
+    ("rows", "sizes"),
+    [
+        (["w;h;d", """31 1/2 ";15¾ in;2' 7 1/2\""""], (31.5, 15.75, 31.5)),
+        (["w;h;d", "2 ft 7.5 in.;5′ 2½″;1’ 3”"], (31.5, 62.5, 15.0)),
+        (["w (in);h (in);d (in)", "31-1/2;1/2;2' 6\""], (31.5, 0.5, 30.0)),
+        (["L x W x H (in)", "23 5/8 x 15 3/4 x 59"], (15.75, 59.0, 23.625)),
+    ],
+)
+def test_feet_and_fractions_of_inches(rows: list[str], sizes: tuple[float, float, float]) -> None:
+    (one,) = objects_of_csv("\n".join(rows)).objects
+    assert sorted((one.width, one.depth)) == pytest.approx(sorted(INCH * size for size in (sizes[0], sizes[2])))
+    assert one.height == pytest.approx(INCH * sizes[1])
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["name;W x D x H (cm)", "a;60 x 40 x 150"],
+        ["name,WxDxH,mass", "a,60×40×150 cm,7"],
+        ["Objekt;Maße (H × B × T) in cm", "a;150 x 60 x 40"],
+        ["name;Breite x Höhe x Tiefe [mm]", "a;600 x 1500 by 400"],
+        ["name;WxDxH;mass", ";cm;kg", "a;60 cm x 40 x 150;7"],
+        ["Inv.-Nr.;Overall dimensions (WxDxH);unit", "a;60*40*150;cm"],
+        ["idno;Dimensions height;Dimensions width;Dimensions depth", "7;150 cm;60 cm;40 cm"],
+        ["名称;幅（cm）;奥行（cm）;高さ（cm）", "a;６０;４０．０;１５０"],
+        ["name;w [m];d [m];h [m];p (1/s)", "a;0.6;0.4;1.5;2.9"],
+    ],
+)
+def test_several_dimensions_wide_digits_and_other_symbols(rows: list[str]) -> None:
+    (one,) = objects_of_csv("\n".join(rows)).objects
+    assert (one.width, one.depth, one.height) == pytest.approx((0.6, 0.4, 1.5))
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (["name;W x D x H (cm)", "a;60 x 150"], "60 x 150 (2 of 3 dimensions"),
+        (["name;W x D x H (cm)", "a;60"], "60 (1 of 3 dimensions"),
+        (["name;w [cm];h [cm];Dimensions", "a;60;150;60 x 40 x 150 cm"], "Dimensions"),
+        (["name;w [cm];h [cm];Maße", "a;60;150;T 40"], "Maße"),
+        (["name;w [in];h [in]", "a;30/40;60"], "30/40"),
+        (["name;w;h", "a;31 1/2;60 in"], "with its unit, as 31 1/2 in"),
+        (["name;w;h", "a;2' 7;60 in"], "2' 7"),
+    ],
+)
+def test_sizes_without_an_order_or_a_unit_are_refused_with_what_to_write(rows: list[str], said: str) -> None:
+    (bad,) = objects_of_csv("\n".join(rows)).bad_rows
+    assert said in str(bad)
+
+
+@pytest.mark.parametrize("header", ["Dimensions", "Maße", "Misure (cm)", "Dimensiones"])
+def test_a_column_of_sizes_says_their_order(header: str) -> None:
+    with pytest.raises(InvalidArgumentError, match='its header says the order: "W x D x H'):
+        objects_of_csv(f"name;{header}\na;60 x 40 x 150\n")
+
+
+def test_a_frequency_parameter_is_no_depth_and_is_named() -> None:
+    reading = objects_of_csv("name;w [m];h [m];p (1/s)\na;0.6;1.5;2.9\n").reading
+    assert reading.endswith("not read: p (1/s) (frequency parameter, no depth)")
+
+
 def test_every_layout_has_its_expected_objects() -> None:
     assert EXPECTED.keys() == {path.name for path in TABLES.iterdir()}
 

@@ -48,7 +48,8 @@ STEPS = [
     "# fs = {hz:g}", "Abtastrate: {hz:g} Hz", "sample_rate_hz: {hz:g}", "DT={s:g}, station = X1",
     "frequency range: 1-2 Hz, dt = {s:g}",
     "time_step_ms = {ms:g}", "NO. OF POINTS: {n}  EQUALLY SPACED INTERVALS OF: {s:g} SEC",
-    "{n} points at equal spacing of {s:g} sec",
+    "{n} points at equal spacing of {s:g} sec", "Tasa de muestreo: {hz:g} Hz", "Passo di campionamento [ms] = {ms:g}",
+    "Fréquence d'échantillonnage : {hz:g} Hz", "Zeitschritt: {s:g} s", "Taxa de amostragem = {hz:g}",
 ]  # fmt: skip
 UNIT_LINES = [
     "unit: {u}", "Units = {u}", "UNCORRECTED ACCELERATION   UNIT: {u}", "The units are ({u})", "Acceleration in {u}",
@@ -105,6 +106,11 @@ def make(dice: random.Random) -> Case:
     time_unit = dice.choice(["s", "s", "s", "" if trace else "ms", ""])
     scale = 1000.0 if time_unit == "ms" else 1.0
     times = [f"{scale * step * j:.{2 if scale > 1 else 7}f}" for j in k]
+    if time_unit == "s" and dice.random() < 0.2:  # of day, from before midnight on
+        date, zone = dice.choice(["", "2019-02-03T"]), dice.choice(["", "Z"])
+        ends = [divmod(round(86399.5 + step * j, 7), 60.0) for j in k]
+        times = [f"{date}{int(m) // 60 % 24:02d}:{int(m) % 60:02d}:{second:010.7f}{zone}" for m, second in ends]
+        time_unit = ""
     start = dice.choice([0, 1])
     name = dice.choice(ROTATIONS if trace else SAMPLES)
     own = name, unit, written

@@ -94,6 +94,25 @@ def replaced(text: str, old: str, new: str) -> str:
 
 THREE = "time_s,NS_g,EW_g\n" + "".join(f"{k * STEP:.2f},{v:.6f},{-2 * v:.6f}\n" for k, v in enumerate(values()))
 
+
+def clock(form: str = "{:06.3f}", header: str = "Time,a [g]\n", before: str = "", start: float = 43200.0) -> str:
+    times = (divmod(round(start + k * STEP, 6), 60.0) for k in range(COUNT))
+    texts = (f"{before}{int(m) // 60 % 24:02d}:{int(m) % 60:02d}:{form.format(s)}" for m, s in times)
+    return header + "".join(f"{text},{v:.6f}\n" for text, v in zip(texts, values(), strict=True))
+
+
+TRACE = "TIMESERIES XX_ABC__HNE_D, 24 samples, 100 sps, 2019-02-03T12:00:00.000000"
+
+
+def tspair(unit: str = "M/S**2", count: int = 24) -> str:
+    header = f"{TRACE}, TSPAIR, FLOAT, {unit}\n".replace("24", str(count))
+    return clock("{:09.6f}", header, "2019-02-03T").replace(",0.", "  0.").replace(",-", "  -")
+
+
+def rounded(form: str, step: float, count: int = 400) -> str:
+    return "t [s],a [g]\n" + "".join(f"{form.format(k * step)},{v:.6f}\n" for k, v in enumerate(values(count)))
+
+
 GOOD = {
     "at2": File(at2()),
     "at2 of cm/s/s": File(at2(units="CM/S/S"), unit="cm/s2"),
@@ -168,6 +187,35 @@ ODD = {
     "csv with whole numbers without a name": File(
         "Record\n0,1\n1,-2\n", {"unit": "g", "time_step": 0.5}, samples=np.array([1.0, -2.0]), step=0.5
     ),
+    "esm of AFAD, with a blank line below its header": File(esm(body="\n" + rows(1)), unit="cm/s2"),
+    "csv with a column named time-history": File(pairs(header="Time [s],Acceleration Time-history [g]\n")),
+    "one column named time-history": File(single("Time-history (g)\n"), {"time_step": 0.01}),
+    "tspair": File(tspair(), unit="m/s2"),
+    "tspair without a unit": File(tspair(""), {"unit": "gal"}, unit="gal"),
+    "slist": File(f"{TRACE}, SLIST, FLOAT, M/S**2\n" + rows(6, "{:.6f}\t"), unit="m/s2"),
+    "times of day": File(clock()),
+    "times of day after midnight": File(clock(start=86399.9)),
+    "times of day beside a counter": File(clock(header="no,UTC,a [g]\n", before="1,")),
+    "times of day without names": File(clock(header="").replace(",", " "), {"unit": "g"}),
+    "times of day with dates": File(clock("{:05.2f}Z", "timestamp,a [g]\n", "2019-02-03T")),
+    "times of day with decimal commas": File(
+        clock("{:07.4f}", "Datum Zeit,a [g]\n", "2019/02/03 ").replace(",", ";").replace(".", ",")
+    ),
+    "times with an exponent": File(rounded("{:.3E}", 0.00244), samples=values(400), step=0.00244),
+    "times of three digits": File(rounded("{:.3e}", 0.0078125), samples=values(400), step=0.0078125),
+    "times since an epoch": File(
+        "time,a [g]\n" + "".join(f"{1549195200 + k * STEP:.3f},{v:.6f}\n" for k, v in enumerate(values()))
+    ),
+    "few rounded times and a step": File("dt = 0.0078125 s\n" + pairs(step=0.0078125), step=0.0078125),
+    **{
+        f"one column with {line}": File(single(f"{line}\n"), {"unit": "g"})
+        for line in (
+            *("Tasa de muestreo: 100 Hz", "Frecuencia de muestreo: 100 muestras/s", "Período de muestreo: 0,01 s"),
+            *("Frequenza di campionamento: 100 Hz", "Passo di campionamento [s]: 0.01", "Taxa de amostragem: 100 Hz"),
+            *("Fréquence d'échantillonnage : 100 Hz", "PAS D'ECHANTILLONNAGE: 10 ms", "Pas de temps = 0.01 s"),
+            *("Abtastrate: 100 Hz", "Zeitschritt dt: 0.01 s", "Örnekleme aralığı: 0.01 s"),
+        )
+    },
     "csv named like AT2 values": File(pairs(header="time (sec),acceleration (G)\n")),
 }
 
@@ -247,6 +295,16 @@ DAMAGED = {
         replaced(pairs(), "0.010,", "# gap\n0.010,"), error="line 3: found the comment # gap; .* above the first row"
     ),
     "UTF-16 cut in a character": File(pairs().encode("utf-16")[:-1], error="UTF-16 with truncated data"),
+    "csv with few rounded times": File(
+        pairs(step=0.0078125), error="line 2: found times rounded to 0.001 s, about 0.00783 s apart; .*`time_step`"
+    ),
+    "tspair of velocity": File(tspair("M/S"), {"unit": "g"}, error="line 1: found M/S; expected a trace of acc"),
+    "tspair with a gap": File(tspair() + tspair(), error="line 26: found TIMESERIES .* each without gaps"),
+    "tspair with one of 25 values missing": File(tspair(count=25), error="24 values, and 25 stated in line 1"),
+    "times of day in whole seconds": File(clock("{:02.0f}"), error="times that increase"),
+    "times of day with a missing row": File(
+        "".join(clock().splitlines(keepends=True)[k] for k in range(25) if k != 9), error="uniform steps"
+    ),
     "csv with a repeated row": File(pairs() + pairs(header="").splitlines()[-1] + "\n", error="uniform steps"),
     "csv with falling times": File("t,a_g\n2,1\n1,2\n0,1\n", error="times that increase"),
     "csv with an empty field": File(replaced(pairs(), "0.122560", ""), error="line 3"),

@@ -71,6 +71,7 @@ class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
 
     name: list[str] | None = q.said("labels; null without any", None)
     body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
+    totals: list[str] = q.said("rows of totals of the table, which are no blocks, with their first cells", [])
     source: str = BY_SOLVER
 
 

@@ -117,7 +117,7 @@ def _blocks(
     service.metrics.points("solver", len(table.problems))
     if form == "csv":
         return csv_response(columns, "blocks")
-    return json_response(m.BlocksResponse.model_construct(query=params, **columns), request)
+    return json_response(m.BlocksResponse.model_construct(query=params, totals=table.read.totals, **columns), request)
 
 
 def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:

@@ -8,6 +8,7 @@ as an argument.
 import re
 from array import array
 from dataclasses import replace
+from decimal import Decimal
 from itertools import chain
 
 import numpy as np
@@ -27,6 +28,7 @@ from rocking._excitation.records.readers.layout import (
     plain_name,
 )
 from rocking._excitation.records.readers.lines import (
+    MAX_LINE,
     MAX_SAMPLES,
     NUMBER,
     TextFile,
@@ -41,7 +43,7 @@ from rocking._excitation.records.record import Record
 STEP_TOLERANCE = 0.02
 """Largest deviation of a time from the uniform grid, in steps [-]: times are often rounded to a few digits."""
 
-LARGEST_ROUNDING = 0.25  # largest last place of times, in steps [-]: a missing row is off by more
+LARGEST_ROUNDING = 0.3  # largest last place of times, in steps [-]: a missing row is off by more
 
 MAX_TIME = 1e12  # largest time in a column of times [s]; times are often counted from an epoch
 WRAPPED = "rows"  # the component that stands for the values of all columns, row by row
@@ -83,8 +85,9 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     if before:
         found_times, values = _table(layout, [before[-1], chosen])
         in_seconds = _time_factor(layout, layout.columns[before[-1]])
-        measured = _uniform_step(layout, found_times * in_seconds, _last_place(layout, before[-1]) * in_seconds)
         known = time_step or header.step(time_step).value
+        place = _last_place(layout, before[-1]) * in_seconds
+        measured = _uniform_step(layout, found_times * in_seconds, place, known)
         if layout.columns[before[-1]].unit("s") is None:  # the step may say which one it is
             units = (
                 scale for scale in (1.0, 1e-3, 1e-6) if known and abs(scale * measured / float(known) - 1.0) < 1e-3
@@ -181,6 +184,8 @@ def _unnamed_times(layout: Layout) -> list[int]:
 
     Whole numbers and long steps may also be a counter, or times in another unit: the column is marked as a counter.
     """
+    if times := layout.of_kind("time"):  # of day
+        return times
     cells = [cells_of(layout, row)[0] for row in layout.file.head[layout.first :] if row.strip()]
     if len(cells) > 2 and all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells[1:])])):
         return []  # perhaps one series, whose last row is shorter
@@ -425,16 +430,25 @@ def _no_unit(layout: Layout, column: Column, quantity: str) -> RecordFileError:
 
 
 def _last_place(layout: Layout, column: int) -> float:
-    """The unit of the last decimal that the first rows of a column have; 0 with exponents."""
-    rows = (cells_of(layout, row) for row in layout.file.head[layout.first :] if row.strip())
-    forms = [_form(row[column])[0] for row in rows if len(row) > column]
-    return 0.0 if any(exponent for _, exponent in forms) else 10.0 ** -max(decimals for decimals, _ in forms)
+    """The unit of the last decimal of a column: in its first or its last rows, where numbers of as many digits are
+    rounded more.
+    """
+    last = decoded(layout.file.content[-MAX_LINE:]).splitlines()[1:][-20:]
+    found = []
+    for lines in (layout.file.head[layout.first :], last):
+        rows = (cells_of(layout, line) for line in lines)
+        texts = [row[column].upper().replace("D", "E") for row in rows if len(row) == layout.width]
+        found.append(
+            min((int(Decimal(text).as_tuple().exponent) for text in texts if NUMBER.fullmatch(text)), default=-20)
+        )
+    return 10.0 ** max(found)
 
 
-def _uniform_step(layout: Layout, times: Array, place: float) -> float:
+def _uniform_step(layout: Layout, times: Array, place: float, known: float | str | None) -> float:
     """The step of times that are uniform, as far as their last place says; the error names the first line that is not.
 
-    Each time is off by half of the last place, and so are the two that give the step.
+    Each time is off by half of the last place, and so are the two that give the step; `known` is more exact where few
+    times do not settle it.
     """
     file, first = layout.file, layout.first
     if times.size < 2:
@@ -447,7 +461,14 @@ def _uniform_step(layout: Layout, times: Array, place: float) -> float:
         raise file.error(first + 1, f"times {times[0]:g} and {times[1]:g}", "times that increase")
     off = times[0] + step * np.arange(times.size) - times
     rounding = 1.001 * place if place <= LARGEST_ROUNDING * step else 0.0
-    if step > 0.0 and max(off.max(), -off.min()) <= max(STEP_TOLERANCE * step, rounding):
+    largest = max(off.max(), -off.min())
+    if step > 0.0 and largest <= max(STEP_TOLERANCE * step, rounding):
+        if largest > 0.01 * place and place > 1e-3 * step * (times.size - 1):
+            if known is None:
+                allowed = "times with more decimals, a step in the header, or the argument `time_step`"
+                raise file.error(first, f"times rounded to {place:g} s, about {step:.3g} s apart", allowed)
+            if abs(float(known) - step) * (times.size - 1) <= place:
+                return float(known)
         return float(f"{step:.12g}")  # removes the rounding of the difference
     wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
     more = "; or the argument `skip`" if wrong == 0 and not layout.skipped else ""

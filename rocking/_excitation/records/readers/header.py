@@ -12,28 +12,32 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
 
+from rocking._base.cells import without_accents
 from rocking._base.units import UNITS, unit_name
 from rocking._excitation.records.readers.lines import NUMBER, TextFile
 
+_SAMPLING = "muestreo|campionamento|amostragem|echantillonnage"
+
 KEYS = {
     "unit": r"(the )?((data|accel\w*?|acc|amplitude|y|sample|record|signal|rotation|angle) ?)?"
-    r"(units?|einheit(en)?|unités?|unites?|unità|unita|unidad(es)?|eenheid)"
+    r"(units?|einheit(en)?|unites?|unita|unidad(e|es)?|eenheid|birim)"
     r"( (of|de|der|des|di) (the )?(accel\w*|beschleunigung\w*|data|samples|record|rotations?))?",
     "quantity": r"acc|accel|accelerations?|beschleunigung|rotations?",
     "step": r"dt|δt|d t|delta|delta t|step|"
     r"(time|sampling|sample|digiti[sz]ation) ?(step|interval|increment|spacing|period)s?|"
     r"(time )?interval between (samples|points)|equal(ly)? spac(ed|ing)( intervals?)?( of| at)?|equal intervals of|"
-    r"(zeit|abtast)(schritt|intervall|schrittweite)|pas de temps|intervalle d échantillonnage|passo temporale|"
-    r"(intervallo|passo) di campionamento|paso de tiempo|intervalo de (muestreo|tiempo)",
+    r"(zeit|abtast)(schritt|intervall|schrittweite|periode)|passo temporale|ornekleme aral[iı]g[iı]|"
+    rf"(pas|passo|paso|intervall?[eo]|period[eo]) (d |de |di )?(temps|tempo|tiempo|{_SAMPLING})",
     "rate": r"(sampling|samples?|frame|scan|acquisition|digiti[sz]ing|recording) ?(rate|freq|frequency)|fs|fps|sps|"
-    r"(samples|frames|points) (per|/) ?(s|sec|second)|abtast(rate|frequenz)|bildrate|fréquence d échantillonnage|"
-    r"frequenza di campionamento|frecuencia de muestreo",
-    "count": r"npts|npt|ndata|np|n|(number|num|no|nr|nº|n°) ?(of|de|di)? ?(the )?"
+    r"(samples|frames|points) (per|/) ?(s|sec|second)|abtast(rate|frequenz)|bildrate|"
+    r"ornekleme (frekans[iı]|h[iı]z[iı])|"
+    rf"(fre[cq]uen[cz](e|a|ia)|tasa|taxa|taux|tasso|cadence|velocidad) (d |de |di )?({_SAMPLING})",
+    "count": r"npts|npt|ndata|np|n|(number|num|no|nr|n°) ?(of|de|di)? ?(the )?"
     r"(points|samples|data( points)?|values|puntos|punti|muestras|campioni)|points|samples|"
-    r"anzahl( der)? (werte|punkte|messwerte|abtastwerte)|nombre de (points|valeurs)|número de (puntos|muestras)",
+    r"anzahl( der)? (werte|punkte|messwerte|abtastwerte)|nombre de (points|valeurs)|numero de (puntos|muestras)",
     "factor": r"((scale|scaling|calibration|conversion|multiplication) ?)?factor|scale|skalierungsfaktor|facteur",
 }
-"""Full names of settings, in lower case, without signs and a unit in brackets."""
+"""Full names of settings, in lower case, without accents, signs, a unit in brackets and a symbol behind the words."""
 
 _UNIT_TEXT = r"(?P<unit>[^\s,;:]+(?: ?/ ?[^\s,;:]+)*(?: ?[(\[][^()\[\]]*[)\]])?)"
 
@@ -52,6 +56,7 @@ SENTENCES = tuple(
 MAX_STATEMENT = 400  # characters at the start of a line in which settings are searched
 
 _RATES = {"": 1.0, "hz": 1.0, "sps": 1.0, "fps": 1.0, "1/s": 1.0, "samples/s": 1.0, "samples/sec": 1.0, "khz": 1000.0}
+_RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "amostras/s"), 1.0)
 
 _DECIMAL_COMMA = re.compile(r"[+-]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))", re.ASCII)
 """A number with a decimal comma that is no separator of thousands."""
@@ -126,7 +131,8 @@ def _statements(line: str, quantity: str) -> Iterator[tuple[str, str, float | st
     """Name, text and value of what a line states."""
     for key, text in _pairs(line):
         key_unit = re.search(r"[(\[]([^()\[\]]*)[)\]]$", key)
-        plain = " ".join(re.findall(r"[^\W_]+|[/#°º]", (key[: key_unit.start()] if key_unit else key).lower()))
+        bare = without_accents((key[: key_unit.start()] if key_unit else key).lower())
+        plain = re.sub(r"(?<=\w) (dt|fs)$", "", " ".join(re.findall(r"[^\W_]+|[/#°]", bare)))
         words, _, last = plain.rpartition(" ")
         for name, names in KEYS.items():
             in_key = key_unit[1] if key_unit else ""

@@ -5,10 +5,11 @@
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 from rocking._base.units import UNITS, quantities_of, unit_name
+from rocking._excitation.records.readers.clock import CLOCK, in_seconds
 from rocking._excitation.records.readers.header import Header, read_header, units_in
 from rocking._excitation.records.readers.lines import NUMBER, TOUCHING, TextFile, to_float
 
@@ -33,8 +34,8 @@ _BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[](?:[^()\[\]]++|\([^()\[\]]*+\))*+[
 
 KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
-    r"(time|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)( (since|from|after|seit|depuis|desde)\b.*| \w+)?|"
-    r"timestamps?|seconds?|sekunden",
+    r"(time(?! (history|series))|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)"
+    r"( (since|from|after|seit|depuis|desde)\b.*| \w+)?|timestamps?|seconds?|sekunden",
     "counter": r"(frame|frames|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|step|bild|punkt|"
     r"messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|count|counter|zähler|lfd)"
     r"( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)",
@@ -48,7 +49,8 @@ SAMPLES = (
     r"(a|ag|üg|acc|accel|acceler\w*|accn|beschl\w*|aceler\w*|accélér\w*|ivme)( ?(time )?(history|series|values?|data))?"
     r"( ?(x|y|z|ns|ew|ud|n s|e w|u d|n|e|u|v|h\d?|\d+))?|"
     r"ns|ew|ud|n s|e w|u d|n|s|e|w|u|z|x|y|v|h\d?|[bh][hnl][enz123]|long|longitudinal|trans|transverse|vert\w*|up|"
-    r"north|south|east|west|(chan|channel|ch|col|column) ?\d+|rotations?|angle|theta|θ|phi|winkel|rotación|rotazione"
+    r"north|south|east|west|(chan|channel|ch|col|column) ?\d+|rotations?|angle|theta|θ|phi|winkel|rotación|rotazione|"
+    r"time (history|series)"
 )
 """Names of columns of samples, as `KINDS`: a line of them alone names columns."""
 
@@ -101,11 +103,14 @@ class Layout:
         return [k for k, one in enumerate(self.columns) if one.kind in kinds]
 
 
-RECORDS = "the header of a known format (AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC), or rows of numbers"
+RECORDS = "the header of a known format (AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC, TSPAIR), or rows of numbers"
 
 
 def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expected: str = RECORDS) -> Layout:
     """Decide how a file holds its numbers; `skip` rows of them are passed over, None: it may have to be asked for."""
+    timed = next((k for k, line in enumerate(file.head) if CLOCK.search(line) and len(_of_times(line)) > 1), None)
+    clocks = file.head[timed] if timed is not None else ""
+    file = file if timed is None else in_seconds(file, timed)
     rows = [k for k, line in enumerate(file.head) if is_row(line)]
     if not rows:
         shown = next((line.strip() for line in file.head if line.strip()), "blank lines")
@@ -131,12 +136,20 @@ def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expect
     separator, comma = _separator(file.head[first])
     width = len(fields_of(file.head[first], separator))
     line, columns = _columns(file, first, separator, width, quantity)
+    for k in (k for k, field in enumerate(fields_of(CLOCK.sub(":", clocks), separator)) if field == ":"):
+        columns[k] = replace(columns[k], unit_text="s", kind="time")
     if separator == "," and (line is None or "," not in file.head[line]):
         _check_commas(file, first)
     if line is None:
         _check_unnamed(file, first, width)
     header = read_header(file, file.head[:first], quantity)
     return Layout(file, first, separator, comma, line, columns, header, counted, skip is not None)
+
+
+def _of_times(line: str) -> list[str]:
+    """The texts of the numbers of a row with times of day; none of any other line."""
+    plain = CLOCK.sub("0", line)
+    return split_row(plain) if is_row(plain) else []
 
 
 def names_below(file: TextFile, line: int) -> bool:
@@ -275,7 +288,7 @@ def _is_name(text: str) -> bool:
         0 < len(text) <= MAX_NAME
         and not NUMBER.fullmatch(text)
         and re.search(r"[^\W\d_]|[#№]", plain) is not None
-        and not re.search(r"[:=]", text)
+        and not re.search(r"[:=]", plain)
         and not re.search(r"(?<![\w.])(\d*\.\d+|\d{4,})(?![\w.])|\b(peak|pga|max\w*|scaled|factor)\b", plain, re.I)
     )
 

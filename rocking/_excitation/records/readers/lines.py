@@ -87,7 +87,7 @@ class TextFile:
         Several blank lines may be passed on as one.
         """
         blank = None
-        for k, lines in self._chunks(first, self._begin + sum(map(len, self._raw_head[:first]))):
+        for k, lines in self._chunks(first, self.start_of(first)):
             found = [*map(bytes.strip, lines)]
             while found and not found[-1]:
                 found.pop()
@@ -98,6 +98,10 @@ class TextFile:
                 yield k, found
             if blank is None and len(found) < len(lines):
                 blank = k + len(found)
+
+    def start_of(self, line: int) -> int:
+        """Index of the first byte of a line of the head."""
+        return self._begin + sum(map(len, self._raw_head[:line]))
 
     def _chunks(self, index: int, start: int) -> Iterator[tuple[int, list[bytes]]]:
         """Lines with their ends from a byte on, which starts the line of this index."""

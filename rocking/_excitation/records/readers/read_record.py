@@ -37,9 +37,9 @@ def read_record(
 ) -> Record:
     """A record of ground acceleration from a file, or from two files if the vertical component has its own.
 
-    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, COSMOS, CSMIP, GeoNet, SMC, columns of times
-    and accelerations or of accelerations alone (docs/records.md), SAC and miniSEED with the package obspy. Nothing is
-    corrected or resampled, but for the offset of K-NET counts: their mean is removed.
+    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, COSMOS, CSMIP, GeoNet, SMC, TSPAIR, columns of
+    times and accelerations or of accelerations alone (docs/records.md), SAC and miniSEED with the package obspy.
+    Nothing is corrected or resampled, but for the offset of K-NET counts: their mean is removed.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""Files of agencies with several blocks of numbers: COSMOS, CSMIP Volumes 1 and 2, GeoNet V1A and V2A, SMC.
+"""Files with several blocks of numbers: COSMOS, CSMIP Volumes 1 and 2, GeoNet V1A and V2A, SMC, TSPAIR, SLIST.
 
 Each channel has a header of text and numbers of fixed width, and a block of accelerations; Volume 2 also has velocities
 and displacements. Sources: COSMOS Strong Motion Data Format v1.20 (COSMOS 2001); Shakal, Huang (1985), Standard tape
 format for CSMIP strong-motion data tapes, OSMS 85-03; GeoNet strong-motion data file formats; SMC format of the U.S.
-Geological Survey. Other files of this kind are refused by their name.
+Geological Survey; `timeseries` service of IRIS, for TSPAIR and SLIST. Other files of this kind are refused by name.
 """
 
 import re
@@ -14,6 +14,7 @@ from itertools import islice
 import numpy as np
 
 from rocking._base.arrays import Array
+from rocking._base.units import quantities_of
 from rocking._excitation.records.readers.header import units_in
 from rocking._excitation.records.readers.lines import (
     MAX_SAMPLES,
@@ -45,6 +46,13 @@ BLOCK = re.compile(
 )
 """The line above a block of COSMOS and CSMIP."""
 
+TRACE = re.compile(
+    r"TIMESERIES (?P<name>\S+), (?P<count>\d+) samples, (?P<rate>\S+) sps, \S+, (?P<form>TSPAIR|SLIST)\w*"
+    r"(?:, (?:INTEGER|FLOAT|DOUBLE))?(?:, *(?P<unit>[^,]*))?",
+    re.I,
+)
+"""The line above a trace of TSPAIR and SLIST."""
+
 MILLIMETRE = "mm/s2"
 
 
@@ -72,6 +80,8 @@ def format_of(file: TextFile) -> str | None:
         re.match(r"[0-9] [A-Z]+", file.head[0]) and sum(line.startswith("*") for line in file.head[1:11]) > 2
     ):
         return "SMC"
+    if TRACE.match(file.head[0]):
+        return "TIMESERIES"
     for pattern, name in REFUSED.items():
         if any(re.search(pattern, line, re.I) for line in file.head[:12]):
             raise file.error(0, name, "AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet or SMC, or columns of numbers")
@@ -85,7 +95,7 @@ def format_of(file: TextFile) -> str | None:
 def read(file: TextFile, kind: str, unit: str | None, time_step: float | None, component: str | None) -> Record:
     """Read a channel; arguments and errors as for `read_record`."""
     lines = ((k, line) for first, rows in file.rows(0) for k, line in enumerate(rows, first))
-    channels = [*{"GeoNet": _geonet, "SMC": _smc}.get(kind, _blocks)(file, lines)]
+    channels = [*{"GeoNet": _geonet, "SMC": _smc, "TIMESERIES": _traces}.get(kind, _blocks)(file, lines)]
     one = _chosen(file, channels, component)
     if one.unit is None and (unit is None or re.search(r"count|volt", one.unit_text, re.I)):
         raise file.error(one.line, one.unit_text or "no unit", "a unit of acceleration, such as cm/sec2")
@@ -192,6 +202,27 @@ def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
     if not 0.0 < rate < 1e6 or ints[16] < 2:
         raise file.error(k, f"{ints[16]:g} values at {rate:g} samples a second", "uniform samples and their number")
     yield Channel(f"{ints[13]:g}", _numbers(file, k, lines, int(ints[16]), None), k, 1.0 / rate, "cm/s2", "cm/s2")
+
+
+def _traces(file: TextFile, lines: Lines) -> Iterator[Channel]:
+    """The traces of TSPAIR, a time and a value in each line, and of SLIST, several values."""
+    names = set()
+    for k, raw in lines:
+        line = decoded(raw)
+        found = TRACE.match(line)
+        if not raw:
+            continue
+        if found is None or found["name"] in names:
+            raise file.error(k, line, "the line TIMESERIES of another trace, each without gaps")
+        names.add(found["name"])
+        unit = (found["unit"] or "").strip()
+        if quantities_of(unit) and not units_in(unit):
+            raise file.error(k, unit, "a trace of accelerations")
+        rate = file.positive(k, found["rate"], "samples in a second")
+        rows = ((j, row.split(None, 1)[-1] if row else row) for j, row in lines)
+        of_values = rows if found["form"].upper() == "TSPAIR" else lines
+        values = _numbers(file, k, of_values, int(found["count"]), None)
+        yield Channel(found["name"], values, k, 1.0 / rate, units_in(unit), unit)
 
 
 def _numbers(file: TextFile, line: int, lines: Lines, count: int, width: int | None) -> Array:
