@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from rocking._base.cells import decimal_sign, half_width, name_and_unit, plain_name, read_cell, split_number
 from rocking._base.errors import InvalidArgumentError, UnreadableFileError
 from rocking._base.quantity import Quantity
-from rocking._base.units import UNITS, unit_name
+from rocking._base.units import MAX_LENGTH, UNITS, unit_name
 from rocking._dimensional.table_header import (
     AMOUNT,
     EMPTY,
@@ -37,7 +37,7 @@ from rocking._dimensional.table_header import (
     is_unit,
     is_used,
 )
-from rocking._dimensional.table_sizes import with_sizes
+from rocking._dimensional.table_sizes import BETWEEN, with_sizes
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag  # numba takes longer to load than a table
@@ -413,7 +413,17 @@ def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
 
 
 def _check_lengths(row: Sequence[str], header: Header) -> None:
-    """Refuse a row with a length in a column that is not read."""
+    """Refuse a row with a length in a column that is not read.
+
+    A text such as "394 x 419 x 120 mm" beside all three dimensions, or beside as many as it has, says them twice.
+    """
+    given = {
+        one.name
+        for place, (one, _) in header.columns.items()
+        if place < len(row) and row[place].strip().lower() not in EMPTY
+    }
+    # a diameter stands for two
+    dimensions = len(given & {"width", "depth", "length", "height", "diameter"}) + ("diameter" in given)
     for place, text in enumerate(header.texts[: len(row)]):
         cell = row[place].strip()
         if place in header.columns or place in header.units.values() or cell.lower() in EMPTY:
@@ -425,7 +435,8 @@ def _check_lengths(row: Sequence[str], header: Header) -> None:
         if place in header.lengths:
             bare = number and not any(map(str.isalpha, number[1]))  # such as 12, 12-15
             is_length |= bool(AMOUNT.match(cell) if header.lengths[place] else bare)
-            is_length |= is_sizes(name_and_unit(text)[0]) and re.search(r"\d", cell) is not None
+            several = is_sizes(name_and_unit(text)[0]) and re.search(r"\d", cell) is not None
+            is_length |= several and dimensions < 3 and len(BETWEEN.split(cell[:MAX_LENGTH])) != dimensions
         if is_length and not (number and not number[0].strip("+-0.,")):
             allowed = 'a column named "width", "depth", "diameter" or "height", or whose name begins with "unused"'
             raise InvalidArgumentError(header.labels[place].strip(), cell, allowed)

@@ -11,16 +11,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rocking._base.cells import half_width, name_and_unit, named, plain_name, split_number
-from rocking._base.units import unit_name
+from rocking._base.units import MAX_LENGTH, unit_name
 from rocking._dimensional.table_header import EMPTY, HEADER_ROWS, Schema, is_sizes, is_unit
 
 _WORD = r"[^\W\d_]+\.?"
 _ORDER = re.compile(
     rf"(?<!\w)[^\W\d_](?:[x\u00d7][^\W\d_])+(?!\w)|{_WORD}(?:\s*[\u00d7*]\s*{_WORD}|\s+(?:x|by)\s+{_WORD})+", re.I
 )
-_BETWEEN = re.compile(r"\s*(?:[x\u00d7*]|\bby\b)\s*", re.IGNORECASE)
-
-
+BETWEEN = re.compile(r"\s*(?:[x\u00d7*]|\bby\b)\s*", re.IGNORECASE)
 _AROUND = " ,;:()[]"  # signs around a unit
 
 
@@ -52,7 +50,7 @@ class Sizes:
 
     def _parts(self, cell: str, rest: list[str]) -> list[str]:
         """The dimensions of a cell, with the unit of the last one; those of another number make no number."""
-        parts = _BETWEEN.split(half_width(cell.strip()))
+        parts = BETWEEN.split(half_width(cell.strip())) if len(cell) <= MAX_LENGTH else []
         if cell.strip().lower() in EMPTY or len(parts) != len(self.names):
             if is_unit(cell):
                 return [cell] * len(self.names)
@@ -68,8 +66,8 @@ def with_sizes(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> tuple[Size
     known = {plain_name(name): one for one in schema.columns for name in one.names if one.unit == "m"}
     for line, row in enumerate(rows[:HEADER_ROWS]):
         for place, text in enumerate(row):
-            found = _ORDER.search(half_width(text))
-            names = _BETWEEN.split(found[0]) if found and text.strip() not in schema.renamed else []
+            found = _ORDER.search(half_width(text)) if len(text) <= MAX_LENGTH else None
+            names = BETWEEN.split(found[0]) if found and text.strip() not in schema.renamed else []
             if found is None or not names or not all(named(name, known) for name in names):
                 continue
             rest = re.sub(r"[\[(]\s*[\])]", "", half_width(text).replace(found[0], "")).strip()

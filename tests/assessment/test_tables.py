@@ -233,6 +233,16 @@ def test_sizes_without_an_order_or_a_unit_are_refused_with_what_to_write(rows: l
     assert said in str(bad)
 
 
+@pytest.mark.parametrize(
+    "row",
+    ["a;394;120;419;;object: 394 x 120 x 419 mm", "a;311;;213;;support: 311 x 213 mm", 'a;;;318;152;12 1/2 x 6"'],
+)
+def test_sizes_that_the_other_columns_hold_as_well_refuse_no_row(row: str) -> None:
+    found = objects_of_csv(f"name;width [mm];depth [mm];height [mm];diameter [mm];Dimensions\n{row}")
+    assert len(found.objects) == 1
+    assert "Dimensions" in found.skipped
+
+
 @pytest.mark.parametrize("header", ["Dimensions", "Maße", "Misure (cm)", "Dimensiones"])
 def test_a_column_of_sizes_says_their_order(header: str) -> None:
     with pytest.raises(InvalidArgumentError, match='its header says the order: "W x D x H'):
