@@ -132,7 +132,7 @@ def _blocks(file: TextFile, lines: Lines) -> Iterator[Channel]:
     name, reals = "", np.zeros(0)
     for k, raw in lines:
         line = decoded(raw)
-        if found := re.match(r"(?:sta )?chan +(\S+?) *: *(.*?)(?: {2,}|\(|$)", line, re.I):
+        if found := re.match(r"(?:sta )?chan?:? +(\S+?) *: *(.*?)(?: {2,}|\(|$)", line, re.I):
             name = f"Chan {found[1]}: {found[2]}".strip()
         elif found := re.match(r"(\d+) +real-header values", line, re.I):
             reals = _numbers(file, k, lines, int(found[1]), _width(line))
@@ -200,7 +200,8 @@ def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
     *_, (k, _) = [(k, None), *islice(lines, int(max(0.0, ints[15])))]
     rate = reals[1]
     if not 0.0 < rate < 1e6 or ints[16] < 2:
-        raise file.error(k, f"{ints[16]:g} values at {rate:g} samples a second", "uniform samples and their number")
+        rates = f"{rate:g} samples a second" if 0.0 < rate < 1e6 else "uneven intervals"
+        raise file.error(k, f"{ints[16]:g} values at {rates}", "uniform samples and their number")
     yield Channel(f"{ints[13]:g}", _numbers(file, k, lines, int(ints[16]), None), k, 1.0 / rate, "cm/s2", "cm/s2")
 
 
