@@ -24,6 +24,7 @@ from rocking._datasets.cube import write_dataset
 from rocking._spectra.cubes import spectrum
 from tests.api.extreme_numbers import BLOCK, RECORD, ordinary_arguments
 from tests.lookup_grid import GRID
+from tests.sampling import sample
 
 PROBLEM = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "alpha": 0.2}
 UPWARDS = rocking.Record(RECORD.acceleration, RECORD.time_step, "m/s2", vertical=0.1 * RECORD.acceleration)
@@ -188,7 +189,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("name", "number", "argument"), ASKED)
+@pytest.mark.parametrize(("name", "number", "argument"), sample(ASKED, 60))
 def test_what_is_no_number_is_refused_by_its_name(name, number, argument):
     function, given = resolved(name), CALLS[name][number]
     for kind, wrong in WRONG.items():
@@ -238,7 +239,7 @@ def range_of(name: str, argument: str) -> Quantity:
     return POSITIVE if closed_form else DECLARED[argument]
 
 
-@pytest.mark.parametrize(("name", "number", "argument"), RANGED)
+@pytest.mark.parametrize(("name", "number", "argument"), sample(RANGED, 60))
 def test_a_number_out_of_its_range_is_refused_by_its_name(name, number, argument):
     function, given = resolved(name), calls(name)[number]
     for value in outside(range_of(name, argument)):
