@@ -9,7 +9,7 @@ is wide beside the reach at one of its ends, by two limits one after the other (
 of the resolution. A flight that just touches the ground makes the response jump, and ranges lie close to such a
 strength while both ends are calm: an interval is halved too where the sum of squares of all peaks changes otherwise
 than by its derivative at the ends (`JUMP`), down to a 128th of the resolution. All this as long as the body has had
-fewer than `BUDGET` responses in a `WINDOW`. Close below the lowest that overturns the intervals are as narrow as an 8th
+fewer than `BUDGET` responses in a `WINDOW`. Close below the lowest that overturns the intervals are as narrow as a 4th
 of their distance from it. All of these are estimates: at the end of each window the solver confirms the lowest, there
 or close by, or else the next ones, and the change of outcome below the lowest is bisected with it. A narrower range can
 be missed.
@@ -49,7 +49,7 @@ RESOLUTIONS = 1e-4, 0.1
 PARTS = 4096
 """Parts of the resolution, a power of two, into which it is divided where the body may overturn."""
 
-CLOSE, CLOSE_RATIO = PARTS, 8
+CLOSE, CLOSE_RATIO = PARTS, 4
 """Parts below the lowest that overturns in which no interval is wider than its distance over the ratio."""
 
 MULTIPLES, WIDER = (1.0, 8.0), 64.0
@@ -294,7 +294,7 @@ class _Search:
 
     def refined(self, intervals: Intervals, multiple: float) -> Intervals:
         """The intervals, and those into which they are divided as long as one is to be halved."""
-        done = [intervals.take(np.empty(0, dtype=np.intp))]
+        done: list[Intervals] = []
         while True:
             gap = intervals.high - intervals.low
             used = np.where(self.tried[intervals.line] < self.budget, multiple, 0.0)
@@ -302,9 +302,9 @@ class _Search:
             close = (below < CLOSE) & (CLOSE_RATIO * gap > below)
             searched = (below > 0.0) & ~self.settled()[intervals.line]
             halved = (gap > 1) & (intervals.wanted(used) | close) & searched
-            done.append(intervals.take(~halved))
             if not halved.any():
-                return done[0].with_others(*done[1:])
+                return intervals.with_others(*done) if done else intervals
+            done.append(intervals.take(~halved))
             whole = intervals.take(halved)
             middle = (whole.low + whole.high) // 2
             ends = self.ends(whole.line, middle)
