@@ -21,7 +21,7 @@ _NUMBER = re.compile(
     re.DOTALL | re.IGNORECASE,
 )
 _WIDE = {0x3000: " "} | {code: code - 0xFEE0 for code in range(0xFF01, 0xFF5F)}
-_HALVES = re.compile("[\u00bc-\u00be\u2150-\u215e]")
+_FRACTION_SIGN = re.compile("[\u00bc-\u00be\u2150-\u215e]")
 _FEET = re.compile(r"(\d+)\s*(?:['\u2032\u2019]|ft\.?|feet|foot)[\s,-]*(\d.*)", re.ASCII | re.IGNORECASE)
 _INCHES = re.compile(r"(\d\d?(?:\.\d+)?)\s*(\D+)", re.ASCII)
 _FRACTION = re.compile(r"(?:(\d+)[\s-]+)?(\d+)/(\d+)\s*(\D*)", re.ASCII)
@@ -103,7 +103,7 @@ def decimal_sign(digits: str) -> str:
 def split_number(cell: str, unit: str = "") -> tuple[str, str] | None:
     """The digits of a cell that starts with a number, without blanks, and what follows; None for other cells.
 
-    `unit`: that a fraction without one has.
+    `unit`: the unit of a fraction that states none.
     """
     found = _NUMBER.fullmatch(_without_fraction(cell, unit)) if len(cell) <= MAX_LENGTH else None
     return (re.sub(_GAP, "", found[1]), found[3]) if found else None
@@ -115,18 +115,20 @@ def half_width(text: str) -> str:
 
 
 def _without_fraction(text: str, unit: str = "") -> str:
-    """A text in half width, feet with inches and fractions of inches as decimal inches; `unit`: of its header.
+    """A text in half width, with feet and inches or a fraction of inches as decimal inches; `unit`: of its header.
 
-    A sign such as \u00bd is a fraction of any unit, and 30/40 is none.
+    The sign \u00bd and its kin are fractions of any unit; 30/40 is no fraction.
     """
     text = half_width(text)
-    plain = _HALVES.sub(lambda one: f" {unicodedata.normalize('NFKC', one[0])}", text).replace("\u2044", "/").strip()
+    plain = (
+        _FRACTION_SIGN.sub(lambda one: f" {unicodedata.normalize('NFKC', one[0])}", text).replace("\u2044", "/").strip()
+    )
     feet = _FEET.fullmatch(plain)
     rest = feet[2] if feet else plain
     if found := _FRACTION.fullmatch(rest):
         whole, upper, lower, written = int(found[1] or 0), int(found[2]), int(found[3]), found[4]
         of_inches = upper % 2 == 1 and lower in (2, 4, 8, 16, 32, 64) and unit_name(written or unit, "m") == "in"
-        if not upper < lower or not (of_inches or _HALVES.search(text)):
+        if not upper < lower or not (of_inches or _FRACTION_SIGN.search(text)):
             return text
         number = whole + upper / lower
     elif feet and (found := _INCHES.fullmatch(rest)):

@@ -9,10 +9,10 @@ is wide beside the reach at one of its ends, by two limits one after the other (
 of the resolution. A flight that just touches the ground makes the response jump, and ranges lie close to such a
 strength while both ends are calm: an interval is halved too where the sum of squares of all peaks changes otherwise
 than by its derivative at the ends (`JUMP`), down to a 128th of the resolution. All this as long as the body has had
-fewer than `BUDGET` responses in a `WINDOW`. Close below the lowest that overturns the intervals are as narrow as a 4th
-of their distance from it. All of these are estimates: at the end of each window the solver confirms the lowest, there
-or close by, or else the next ones, and the change of outcome below the lowest is bisected with it. A narrower range can
-be missed.
+fewer than `BUDGET` responses in a `WINDOW`. Close below the lowest that overturns the intervals are as narrow as a
+quarter of their distance from it. All of these are estimates: at the end of each window the solver confirms the lowest,
+there or close by, or else the next ones, and the change of outcome below the lowest is bisected with it. A narrower
+range can be missed.
 """
 
 from __future__ import annotations

@@ -415,14 +415,14 @@ def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
 def _check_lengths(row: Sequence[str], header: Header) -> None:
     """Refuse a row with a length in a column that is not read.
 
-    A text such as "394 x 419 x 120 mm" beside all three dimensions, or beside as many as it has, says them twice.
+    A text such as "394 x 419 x 120 mm" is left alone if the row has all three dimensions, or as many as the text.
     """
     given = {
         one.name
         for place, (one, _) in header.columns.items()
         if place < len(row) and row[place].strip().lower() not in EMPTY
     }
-    # a diameter stands for two
+    # a diameter is width and depth
     dimensions = len(given & {"width", "depth", "length", "height", "diameter"}) + ("diameter" in given)
     for place, text in enumerate(header.texts[: len(row)]):
         cell = row[place].strip()

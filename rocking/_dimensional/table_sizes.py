@@ -49,7 +49,10 @@ class Sizes:
             yield [*row[: self.place], *parts, *row[self.place + 1 :]]
 
     def _parts(self, cell: str, rest: list[str]) -> list[str]:
-        """The dimensions of a cell, with the unit of the last one; those of another number make no number."""
+        """The dimensions of a cell, each with the unit of the last one.
+
+        A cell with more or fewer than the header becomes a text that is no number, so that its row is refused with it.
+        """
         parts = BETWEEN.split(half_width(cell.strip())) if len(cell) <= MAX_LENGTH else []
         if cell.strip().lower() in EMPTY or len(parts) != len(self.names):
             if is_unit(cell):
