@@ -2,6 +2,7 @@
 
 import math
 import re
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -109,6 +110,21 @@ def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_pag
     expect(page.locator("#dropped")).to_contain_text("dropped.csv")
     page.wait_for_function("() => document.getElementById('answer').dataset.shown.includes('dropped.csv')")
     assert page.locator("#file").evaluate("field => field.files[0].name") == "dropped.csv"
+
+
+def test_what_is_asked_about_an_earlier_file_does_not_go_on_with_a_later_one(open_page):
+    page, held, asked = open_page("/records"), [], []
+    page.route("**/v1/records/history**", lambda route: held.append(route))  # noqa: PLW0108  (takes no method)
+    page.locator("#file").set_input_files({"name": "first.csv", "mimeType": "text/csv", "buffer": short_record()})
+    while not held:
+        page.wait_for_timeout(10)
+    page.on("request", lambda one: asked.append(unquote(one.url)))
+    damaged = (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode()
+    page.locator("#file").set_input_files({"name": "damaged.csv", "mimeType": "text/csv", "buffer": damaged})
+    expect(page.locator("#file-problem")).to_have_text("damaged.csv, line 4: found what; expected a number")
+    page.wait_for_timeout(300)
+    assert [one for one in asked if "first" in one] == []
+    expect(page.locator("#file-problem")).to_have_text("damaged.csv, line 4: found what; expected a number")
 
 
 def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, content, motion):

@@ -60,25 +60,29 @@ async function show(_, all = true) {
   const power = Math.log10(Number(form.elements.scale.value.replace(",", ".")));
   if (Number.isFinite(power)) factor.value = power;
   const params = paramsOf();
-  const key = (more) => JSON.stringify([params, more, file.name, file.size, file.lastModified]);
+  const own = file; // another one may be chosen while this waits; its answers would have the name of this one
+  const key = (more) => JSON.stringify([params, more, own.name, own.size, own.lastModified]);
   const second = form.elements.second.value.trim();
   for (const one of [motion, scales, pulse, other]) one.wait();
-  const found = await result.show(key("response"), upload("response", params));
+  const found = await result.show(key("response"), upload("response", params, own));
+  if (own !== file) return;
   if (!found) {
     openDetails();
     for (const one of [motion, scales, pulse, other]) one.nothing();
     return;
   }
   const { scale, ...unscaled } = params;
-  await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }));
-  if (second) await other.show(key(second), upload("response", { ...params, component: second }));
+  await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }, own));
+  if (own !== file) return;
+  if (second) await other.show(key(second), upload("response", { ...params, component: second }, own));
   else other.nothing();
-  if (!all) return;
-  await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }));
-  await pulse.show(key("pulse"), upload("pulse", params));
+  if (!all || own !== file) return;
+  await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }, own));
+  if (own !== file) return;
+  await pulse.show(key("pulse"), upload("pulse", params, own));
 }
 
-function upload(route, params) {
+function upload(route, params, file) {
   return async function* load(signal) {
     await chartsReady();
     yield await send(`/v1/records/${route}`, params, file, signal);
