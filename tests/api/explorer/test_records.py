@@ -113,11 +113,10 @@ def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_pag
 
 
 def test_what_is_asked_about_an_earlier_file_does_not_go_on_with_a_later_one(open_page):
-    page, held, asked = open_page("/records"), [], []
-    page.route("**/v1/records/history**", lambda route: held.append(route))  # noqa: PLW0108  (takes no method)
-    page.locator("#file").set_input_files({"name": "first.csv", "mimeType": "text/csv", "buffer": short_record()})
-    while not held:
-        page.wait_for_timeout(10)
+    page, asked = open_page("/records"), []
+    page.route("**/v1/records/history**", lambda _: None)  # it has no answer
+    with page.expect_request(lambda one: "/history" in one.url and "first" in one.url):
+        page.locator("#file").set_input_files({"name": "first.csv", "mimeType": "text/csv", "buffer": short_record()})
     page.on("request", lambda one: asked.append(unquote(one.url)))
     damaged = (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode()
     page.locator("#file").set_input_files({"name": "damaged.csv", "mimeType": "text/csv", "buffer": damaged})
