@@ -64,7 +64,8 @@ def start() -> None:
             pass_fds=[listener.fileno()],
             env=os.environ | ONE_THREAD,
         )
-    atexit.register(server.communicate)  # closes its standard input, and waits for its end
+    atexit.register(shutil.rmtree, stand_in.parent, ignore_errors=True)  # a killed run leaves it to the next one
+    atexit.register(server.communicate)  # runs first: closes its standard input, and waits for its end
     sys.executable = str(stand_in)
 
 
@@ -89,7 +90,6 @@ def serve(listener: socket.socket) -> None:
                 run(client)
                 return
             jobs[os.pidfd_open(fork)] = fork, client
-    shutil.rmtree(PLACE, ignore_errors=True)
 
 
 def prepare() -> None:

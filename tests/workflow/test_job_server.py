@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -84,3 +85,32 @@ def test_without_a_server_the_client_is_python(arguments: list[str], tmp_path: P
     (tmp_path / "answer.py").write_text("print(42)")
     command = [sys.executable, "-I", "-S", CLIENT, PLACE / "socket", *arguments]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=True).stdout == b"42\n"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="forks are made on Linux only")
+def test_server_of_a_killed_run_ends_without_the_files_of_the_next_run(tmp_path: Path) -> None:
+    program = (
+        "import os, select, signal, sys\nfrom contextlib import suppress\nfrom pathlib import Path\n"
+        "from workflow import job_server\njob_server.start()\n"
+    )
+    server = "Path('server').write_text(Path(f'/proc/self/task/{os.getpid()}/children').read_text())\n"
+    waits = (
+        "with suppress(ProcessLookupError):\n"
+        "    select.select([os.pidfd_open(int(Path('server').read_text()))], [], [])\n"
+        "Path('waited').touch()\n"
+    )
+    job = "import subprocess\nsubprocess.run([sys.executable, '-c', 'print(42)'], check=True)"
+    (tmp_path / PLACE.parent).mkdir()
+    for parts, status in (((server, "os.kill(os.getpid(), signal.SIGKILL)"), -signal.SIGKILL), ((waits, job), 0)):
+        with (tmp_path / "answer").open("w") as answer:  # a pipe would stay open until the server has ended
+            done = subprocess.run(
+                [sys.executable, "-c", "".join((program, *parts))],
+                cwd=tmp_path,
+                env={**os.environ, "PYTHONPATH": str(PROJECT)},
+                stdout=answer,
+                check=False,
+            )
+        assert done.returncode == status
+    assert (tmp_path / "waited").exists()
+    assert (tmp_path / "answer").read_text() == "42\n"
+    assert not (tmp_path / PLACE).exists()
