@@ -146,12 +146,10 @@ atlas/results/manifest.json atlas-small/results/manifest.json: %/results/manifes
 %/manifest.json:
 	@echo 'RESULTS=$* is not allowed: no $@; allowed: results, atlas-small/results, atlas/results, or a folder with data sets and their manifest' >&2; exit 1
 
-VENV = test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; use make PYTHON=/path/to/python3.11' >&2; exit 1; }; \
-	$(PYTHON) -m venv --clear $(1) || { \
-	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
-
 build/uv/bin/uv:
-	@$(call VENV,build/uv)
+	@test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; use make PYTHON=/path/to/python3.11' >&2; exit 1; }
+	@$(PYTHON) -m venv --clear build/uv || { \
+	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
 	@build/uv/bin/pip install --quiet uv
 
 # No isolation: packages without a wheel are built with the pinned build tool, which is installed first; with isolation
@@ -162,14 +160,14 @@ INSTALL := $(UV) pip install --quiet --python .venv --require-hashes --no-build-
 # environment is complete. Contents are compared, not time stamps, so that a new checkout of the same lock needs nothing.
 .venv/environment.lock: $(shell cmp -s environment.lock .venv/environment.lock || echo FORCE) | $(UV)
 	@echo 'Making .venv from environment.lock ...'
-	@$(call VENV,.venv)
+	@$(UV) venv --quiet --clear --seed --python '$(or $(PYTHON),3.11)' .venv
 	@sed -n '/^setuptools==/,/[^\\]$$/p' environment.lock >.venv/build-tool.lock
 	@$(INSTALL) -r .venv/build-tool.lock && $(INSTALL) -r environment.lock
 	@cp environment.lock $@
 
 # The project is an editable install; its build tool is in the lock, so that nothing is fetched.
-.venv/project: .venv/environment.lock pyproject.toml
-	@.venv/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+.venv/project: .venv/environment.lock pyproject.toml | $(UV)
+	@$(UV) pip install --quiet --python .venv --no-deps --no-build-isolation --editable .
 	@echo 'Compiling the kernels (once, up to a minute) ...'
 	@.venv/bin/python -m rocking.precompile
 	@touch $@

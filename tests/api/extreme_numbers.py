@@ -54,7 +54,7 @@ SECONDS = 60.0
 GRANTED = 0.3
 """Time limit of a request of heavy work in the service [s]; the answer is 504 then."""
 
-PART = 0.06
+PART = 0.04
 """Part of the calls of a sample that are made."""
 
 POWERS = (300, 30, 12, 6)

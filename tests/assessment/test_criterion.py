@@ -93,7 +93,7 @@ def test_the_base_that_suffices_is_not_overturned_and_no_wider_one() -> None:
     assert row["smallest_width"] > 0.142
     rng = np.random.default_rng(8)
     for height, share in sample(list(zip(rng.uniform(0.4, 2.5, 40), rng.uniform(0.12, 0.45, 40), strict=True)), 1):
-        for place in (rocking.Site(3.0, 0.35), rocking.Site(2.5, records=RECORDS)):
+        for place in (rocking.Site(3.0, 0.35), rocking.Site(2.5, records=RECORDS[: number(1, 3)])):
             one = rocking.Object("one", width=height * share, height=height)
             (row,) = rocking.assess(one, place).rows
             # under a record a narrow range of sizes between those that were tried can overturn

@@ -29,7 +29,7 @@ def folder(tmp_path_factory):
 @pytest.mark.parametrize(("between_etas", "between_angles"), [(False, True), (True, False), (True, True)])
 def test_bounds_hold_between_restitutions_and_angles(folder, between_etas, between_angles):
     rng = np.random.default_rng(8)
-    points = random_points(number(5_000, 20_000), seed=9)
+    points = random_points(number(3_000, 20_000), seed=9)
     n = len(points["slenderness"])
     points["restitution"] = rng.uniform(ETAS[0], ETAS[-1], n) if between_etas else rng.choice(ETAS, n)
     points["alpha"] = rng.uniform(ANGLES[0], ANGLES[-1], n) if between_angles else rng.choice(ANGLES, n)
@@ -141,7 +141,7 @@ def test_bounds_hold_between_uneven_slices(tmp_path):
     etas, angles = [0.5, 0.6, 0.7, 0.8], np.radians([10.0, 15.0, 20.0, 45.0])
     for cube in spectra("cosine", restitution=etas, alpha=angles, **coarse):
         write_dataset(cube, tmp_path / f"eta-{float(cube.restitution):.2f}.nc")
-    rng, n = np.random.default_rng(3), number(5_000, 20_000)
+    rng, n = np.random.default_rng(3), number(3_000, 20_000)
     points = {"slenderness": rng.uniform(0.2, 0.35, n), "frequency_ratio": rng.uniform(9.0, 27.0, n)}
     points |= {"restitution": rng.uniform(0.5, 0.8, n), "alpha": rng.uniform(angles[2], angles[3], n)}
     found = open_cube(tmp_path).response(**points, absolute_tolerance=1e-2)

@@ -16,7 +16,7 @@ import yaml
 import rocking
 from rocking._datasets.cube import read_dataset, read_spectrum
 from rocking._datasets.provenance import settings_digest
-from tests.sampling import but_long, number
+from tests.sampling import but_long
 from tests.workflow.test_sampled_pulses import configuration as data_sets_alone
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
 from workflow.scripts.manifest import commit_of
@@ -127,6 +127,7 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
     assert rules_to_run(changed.stdout) == set.union(*modules.values()) | {"manifest", "check_results", "all"}
 
 
+@pytest.mark.long
 def test_another_restitution_repeats_what_depends_on_it_alone(tmp_path: Path) -> None:
     """Of the data sets of one pulse; files without content stand for the products."""
     run, before, changed, added = (tmp_path / name for name in ("run", "before.yaml", "changed.yaml", "added.yaml"))
@@ -141,7 +142,7 @@ def test_another_restitution_repeats_what_depends_on_it_alone(tmp_path: Path) ->
     times = {path: path.stat().st_mtime_ns for path in (run / "results").rglob("*.nc")}
     after = {"check_data_sets", "manifest", "check_results", "all"}
     cases = (added, "0.99", "0.96 0.98 0.99"), (changed, "0.97", "0.94 0.96 0.97")
-    for other, own, completed in cases[: number(1, 2)]:
+    for other, own, completed in cases:
         planned = snakemake(run, "--dry-run", configuration=other).stdout
         assert rules_to_run(planned) == {"overturning", "spectrum_part", "spectra"} | after, planned
         jobs = {
