@@ -219,6 +219,8 @@ def test_an_error_of_the_table_names_the_argument(table):
     assert "OBJECTS" in refused("assess", str(table.with_name("none.csv")), *SITE)
     table.write_text("a,b\n1,2\n")
     assert "OBJECTS" in refused("assess", str(table), *SITE)
+    table.write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
+    assert "OBJECTS: 'binary content' is not allowed; allowed: text" in refused("assess", str(table), *SITE)
 
 
 class Page(HTMLParser):
