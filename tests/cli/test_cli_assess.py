@@ -208,6 +208,7 @@ def test_meshes_are_assessed_from_all_sides(tmp_path):
         ([*SITE, "--output", "/none/table.csv"], "No such file"),
         (["--record", "none.at2"], "none.at2"),
         ([*SITE, "--friction", "0.5"], "--friction"),
+        ([*SITE, "--report", "report.pdf"], "'report.pdf' is not allowed; allowed: a name that ends in .html"),
         ([*SITE, "--floor", "x"], "--floor-periods"),
     ],
 )
