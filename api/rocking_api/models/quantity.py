@@ -170,7 +170,7 @@ AlphaDeg = Annotated[
 # blocks and motions in SI units
 
 Gravity = si(q.GRAVITY)
-PeakAcceleration = Annotated[si(q.PEAK_ACCELERATION, examples=[4.0]), WrapValidator(_keep_unit)]
+PeakAcceleration: Any = Annotated[si(q.PEAK_ACCELERATION, examples=[4.0]), WrapValidator(_keep_unit)]
 Period = si(q.PERIOD, examples=[0.5])
 Scale = Annotated[float, plain(q.SCALE.restricted(*SCALES))]
 Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
