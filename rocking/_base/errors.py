@@ -133,7 +133,9 @@ def in_range(
         return array
     if array.ndim == 0:
         if not _within(float(array), low, high, closed):
-            reject_range(parameter, float(array), low, high, closed, unit, unit_is_stated=_has_unit(value))
+            if _has_unit(value):  # then degrees were not meant
+                raise InvalidArgumentError(parameter, float(array), _interval(low, high, closed, unit))
+            reject_range(parameter, float(array), low, high, closed, unit)
     elif not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
         places = np.ndenumerate(array)
         index, wrong = next((place, entry) for place, entry in places if not _within(float(entry), low, high, closed))
@@ -290,20 +292,11 @@ def _within(value: float, low: float, high: float, closed: str) -> bool:
 
 
 def reject_range(
-    parameter: str,
-    value: Any,
-    low: float,
-    high: float,
-    closed: str,
-    unit: str,
-    index: tuple[int, ...] = (),
-    *,
-    unit_is_stated: bool = False,
+    parameter: str, value: Any, low: float, high: float, closed: str, unit: str, index: tuple[int, ...] = ()
 ) -> NoReturn:
     """Raise `InvalidArgumentError` with the allowed range in words."""
     allowed = _interval(low, high, closed, unit)
-    may_be_degrees = unit == "rad" and not unit_is_stated and isinstance(value, float) and value > high
-    if may_be_degrees and _within(math.radians(value), low, high, closed):
+    if unit == "rad" and isinstance(value, float) and value > high and _within(math.radians(value), low, high, closed):
         allowed += "; numpy.radians converts degrees" if index else f"; write '{value:g} deg' if degrees were meant"
     raise InvalidArgumentError(parameter, value, allowed, index)
 
