@@ -99,7 +99,8 @@ def objects_of_text(raw: bytes, *, json: bool, most: int | None = None, stop: St
 
     Beyond `most` rows the table is refused by `TooManyRowsError`, before an object is made.
     """
-    return objects_of_json(text_of(raw), most) if json else objects_of_csv(text_of(raw), most, stop)
+    text = text_of(raw, "objects")
+    return objects_of_json(text, most) if json else objects_of_csv(text, most, stop)
 
 
 def objects_of_json(text: str, most: int | None = None) -> ObjectTable:

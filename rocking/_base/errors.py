@@ -133,6 +133,8 @@ def in_range(
         return array
     if array.ndim == 0:
         if not _within(float(array), low, high, closed):
+            if _has_unit(value):  # then degrees were not meant
+                raise InvalidArgumentError(parameter, float(array), _interval(low, high, closed, unit))
             reject_range(parameter, float(array), low, high, closed, unit)
     elif not all(_within(float(end), low, high, closed) for end in (array.min(), array.max())):
         places = np.ndenumerate(array)

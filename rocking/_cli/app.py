@@ -38,8 +38,9 @@ class Commands(TyperGroup):
             sys.exit(super().main(*args, **extra) or 0)
         except UsageError as error:
             command = error.ctx.command_path if error.ctx else "rocking"
-            if error.format_message():  # no command: the help was printed
-                typer.echo(f"{command}: {error.format_message()}", err=True)
+            message = error.format_message().replace("Value error, ", "")  # what newer versions of typer put before it
+            if message:  # no command: the help was printed
+                typer.echo(f"{command}: {message}", err=True)
             sys.exit(error.exit_code)
         except ImportError as error:  # a package of an extra
             typer.echo(f"rocking: {error}", err=True)

@@ -52,7 +52,8 @@ def option_errors(hints: Mapping[str, str] | None = None) -> Iterator[None]:
         yield
     except InvalidArgumentError as error:
         argument = error.parameter.split("[")[0].split(",")[0]
-        option = (hints or {}).get(argument, "--" + argument.replace("_", "-"))
+        named = {"order": "--baseline-order"} | dict(hints or {})
+        option = named.get(argument, "--" + argument.replace("_", "-"))
         errors = error.errors if isinstance(error, SeveralArgumentsError) else [error]
         texts = [f"{len(errors)} values are not allowed"] if len(errors) > 1 else []
         texts += [_error_text(one) for one in errors[:MAX_ERRORS]]

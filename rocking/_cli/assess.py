@@ -100,10 +100,11 @@ def assess(
     moving_ground: Annotated[
         bool, said("Also pulses that leave the ground moving: half sine, rectangular.", "", "--moving-ground")
     ] = False,
-    sensitivity: Annotated[
-        bool,
-        said("Find factors of changed objects, and sizes that survive.", "", "--sensitivity/--no-sensitivity"),
-    ] = True,
+    # two flags: a column of the help for the negative names of one would leave no room for the other names
+    sensitivity: Annotated[bool, said("", "", "--sensitivity", hidden=True)] = True,
+    no_sensitivity: Annotated[
+        bool, said("Do not find factors of changed objects, nor sizes that survive.", "", "--no-sensitivity")
+    ] = False,
     standards: Annotated[
         str, said(f"Checks by standards beside the outcome: all, or some of {', '.join(CLAUSES)}.", "NAME,NAME,...")
     ] = "",
@@ -149,6 +150,10 @@ def assess(
 
     with option_errors(HINTS), file_errors():
         kind = printing.output_format(form)
+        if report is not None and Path(report).suffix.lower() not in (".html", ".htm"):
+            raise InvalidArgumentError(
+                "report", report, "a name that ends in .html or .htm; a browser prints it as PDF"
+            )
         if (period_min is None) != (period_max is None):
             missing = "period_min" if period_min is None else "period_max"
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
@@ -178,7 +183,7 @@ def assess(
             found = assess_objects(
                 given,
                 site,
-                sensitivity=sensitivity,
+                sensitivity=sensitivity and not no_sensitivity,
                 standards=standards,
                 samples=samples,
                 seed=seed,

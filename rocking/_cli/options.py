@@ -87,7 +87,7 @@ class BodyOptions:
 Pulse = Annotated[
     str,
     typer.Option(
-        help="Pulse, such as sine or 'mavroeidis_papageorgiou(cycles=3, phase=90deg)', or a file of samples: "
+        help="Pulse, such as sine or 'mavroeidis_papageorgiou (cycles=3, phase=90deg)', or a file of samples: "
         "columns of numbers (accelerations, or times and accelerations) or JSON; a leading minus mirrors it.",
         metavar="[NAME|FILE]",
         autocompletion=_pulses,

@@ -204,7 +204,7 @@ def distribution(configuration: Configuration) -> Panels:
     data = suite_fragility(read_suite(configuration))
 
     def panels(pictures: Any, figure: Any) -> None:
-        from rocking.plot.style import shades
+        from rocking.plot.style import label_of, shades
         from rocking.suites.distribution import distribution as distribution_of
         from rocking.suites.table import with_block
 
@@ -219,7 +219,9 @@ def distribution(configuration: Configuration) -> Panels:
                 pictures.distribution(at, ax, color=colour, label=f"{at['intensity'].item():.3g}")
             ax.set_title(f"{float(one['width']):g} m x {float(one['height']):g} m", loc="right")
             ax.label_outer()
-        title = f"{found['intensity'].attrs['long_name']} [{found['intensity'].attrs['units']}]"
+        of = f"{100.0 * found.attrs['confidence']:g} %"
+        shaded = f"shaded: {of} interval at each rotation\nlighter: {of} band; grey line: the share that survives"
+        title = f"{label_of(found['intensity'])}\n{shaded}"
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5, title=title)
 
     return panels

@@ -132,13 +132,16 @@ def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
     raw = read_bytes(source, schema.argument)
     if Path(source).suffix.lower() in SHEETS:
         return read_rows(rows_of_sheet(raw, schema.argument), schema)
-    return read_csv(text_of(raw), schema)
+    return read_csv(text_of(raw, schema.argument), schema)
 
 
-def text_of(raw: bytes) -> str:
-    """A text of UTF-8, UTF-16 with its mark, or the code page of older spreadsheets."""
+def text_of(raw: bytes, argument: str) -> str:
+    """A text of UTF-8, UTF-16 with its mark, or the code page of older spreadsheets; a picture or the like is none."""
+    is_utf16 = raw[:2] in (b"\xff\xfe", b"\xfe\xff")
+    if b"\0" in raw and not is_utf16:
+        raise InvalidArgumentError(argument, "binary content", "text, or a sheet whose name ends in .xlsx or .ods")
     try:
-        return raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+        return raw.decode("utf-16" if is_utf16 else "utf-8-sig")
     except UnicodeDecodeError:
         return raw.decode("cp1252", "replace")
 

@@ -14,6 +14,8 @@ from rocking._boundary.scan import RELATIVE_ERROR  # that of elastic blocks unde
 MARGIN = 0.05
 """Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
 
+MAX_LISTED = 4  # changes of outcome that a warning lists; of more, it states the number and both ends
+
 
 @dataclass(frozen=True)
 class Threshold:
@@ -40,5 +42,10 @@ def threshold_text(value: float, digits: int = 4, *, overturns_above: bool = Tru
 
 def warnings_of_changes(given: float, changes: Iterable[Threshold], name: str, unit: str = "") -> list[str]:
     """A warning that the outcome changes close to the given value."""
-    near = ", ".join(one.text() for one in changes if abs(one.value / given - 1.0) < MARGIN)
-    return [f"the outcome changes within {100 * MARGIN:g} % of this {name}: at {near}{unit}"] if near else []
+    near = sorted((one for one in changes if abs(one.value / given - 1.0) < MARGIN), key=lambda one: one.value)
+    if not near:
+        return []
+    places = f"at {', '.join(one.text() for one in near)}"
+    if len(near) > MAX_LISTED:
+        places = f"{len(near)} times, from {near[0].text()} to {near[-1].text()}"
+    return [f"the outcome changes within {100 * MARGIN:g} % of this {name}: {places}{unit}"]

@@ -128,7 +128,8 @@ def test_all_methods_of_a_path_are_named(client, path, allowed):
         response = client.request(method, path)
         assert response.status_code == 405
         assert response.headers["allow"] == allowed
-    assert_problem(client.put(path), 405)
+    problem = assert_problem(client.put(path), 405)
+    assert problem["detail"] == f"PUT is not a method of this route; allowed: {allowed}"
 
 
 def test_other_origins_may_read_the_answer_if_they_are_allowed(client, results):
@@ -146,7 +147,8 @@ def test_other_origins_may_read_the_answer_if_they_are_allowed(client, results):
 def test_an_unknown_path_is_answered_without_the_description_of_all_routes(results):
     """It takes a second to make."""
     with client_of(results) as client:
-        assert_problem(client.get("/v1/nothing"), 404)
+        detail = assert_problem(client.get("/v1/nothing"), 404)["detail"]
+        assert detail == "there is nothing at /v1/nothing; /docs lists the routes"
         assert client.delete("/v1/response").headers["allow"] == "GET, POST"
         assert client.app.openapi_schema is None
 

@@ -60,6 +60,14 @@ def test_warnings_under_a_pulse(client, width, height, acceleration, period, tex
     assert places == sorted(places)
 
 
+def test_an_acceleration_with_its_unit_is_not_asked_whether_g_was_meant(client):
+    """Without a unit the answer has that warning."""
+    given = {"pulse": "sine", "width": "40cm", "height": "1.6m", "period": "0.5s"}
+    for peak, asked in (("1.96", True), ("0.2g", False), ("1.96 m/s2", False)):
+        found = client.get("/v1/blocks/response", params=given | {"peak_acceleration": peak}).json()
+        assert any("meant in g" in one for one in found["warnings"]) == asked
+
+
 RECORDS = [
     # width [m], height [m], factor, texts of warnings in their order
     (0.5, 2.0, 0.5, ["not monotone"]),

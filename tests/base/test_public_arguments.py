@@ -294,7 +294,7 @@ def test_angles_in_degrees_are_asked_about():
         rocking.peak_response("sine", **PROBLEM | {"alpha": [0.1, 20.0]})
     with pytest.raises(InvalidArgumentError, match=r"\[rad\]; write '45 deg' if degrees were meant$"):
         rocking.Block.from_slenderness_angle(45, 1.0)
-    for wrong in (1000.0, -20.0, np.inf):
+    for wrong in (1000.0, -20.0, np.inf, "95 deg"):
         with pytest.raises(InvalidArgumentError, match=r"\[rad\]$"):
             rocking.peak_response("sine", **PROBLEM | {"alpha": wrong})
 

@@ -10,6 +10,7 @@ import sys
 
 import numpy as np
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 import rocking
@@ -338,6 +339,17 @@ def test_options_name_their_units_and_shells_complete_names():
     assert found.stdout.split() == ["ricker", "ricker_antisymmetric"]
 
 
+def test_no_help_is_cut_off_in_a_window_of_80_columns():
+    def commands(group, *names):
+        yield names
+        for name, command in getattr(group, "commands", {}).items():
+            yield from commands(command, *names, name)
+
+    for names in commands(get_command(app)):
+        found = CliRunner().invoke(app, [*names, "--help"], env={"COLUMNS": "80", "TERMINAL_WIDTH": "80"})
+        assert "…" not in found.stdout, names
+
+
 def test_exit_codes_are_those_of_the_help(monkeypatch, tmp_path):
     def interrupted(*_):
         raise KeyboardInterrupt
@@ -367,6 +379,7 @@ def test_errors_are_one_line():
         printed = CliRunner().invoke(app, arguments)
         assert (printed.exit_code, printed.stdout) == (2, "")
         assert len(printed.stderr.splitlines()) == 1, printed.stderr
+        assert "Value error" not in printed.stderr  # words of typer, not of this command
 
 
 def test_table_and_options_exclude_each_other(tmp_path):

@@ -208,6 +208,7 @@ def test_meshes_are_assessed_from_all_sides(tmp_path):
         ([*SITE, "--output", "/none/table.csv"], "No such file"),
         (["--record", "none.at2"], "none.at2"),
         ([*SITE, "--friction", "0.5"], "--friction"),
+        ([*SITE, "--report", "report.pdf"], "'report.pdf' is not allowed; allowed: a name that ends in .html"),
         ([*SITE, "--floor", "x"], "--floor-periods"),
     ],
 )
@@ -219,6 +220,8 @@ def test_an_error_of_the_table_names_the_argument(table):
     assert "OBJECTS" in refused("assess", str(table.with_name("none.csv")), *SITE)
     table.write_text("a,b\n1,2\n")
     assert "OBJECTS" in refused("assess", str(table), *SITE)
+    table.write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
+    assert "OBJECTS: 'binary content' is not allowed; allowed: text" in refused("assess", str(table), *SITE)
 
 
 class Page(HTMLParser):

@@ -122,7 +122,7 @@ def test_baseline_is_removed_on_request_only():
         ([MOTION, *SIZES, "--restitution", "plastic"], "--restitution"),
         ([MOTION, *SIZES, "--restitution", "1.5"], "--restitution"),
         ([MOTION, *SIZES, "--unit", "feet"], "--unit"),
-        ([MOTION, *SIZES, "--baseline-order", "9"], "--order"),
+        ([MOTION, *SIZES, "--baseline-order", "9"], "--baseline-order"),
     ],
 )
 def test_invalid_options_are_named(arguments, message):

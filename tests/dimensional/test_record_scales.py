@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._dimensional.threshold import Threshold, threshold_text
+from rocking._dimensional.threshold import Threshold, threshold_text, warnings_of_changes
 from rocking._dimensional.thresholds import BodyThresholds, overturning_scale
 from tests.sampling import but_long
 from tests.suites.motions import noise
@@ -39,6 +39,14 @@ def test_text_of_a_threshold_is_on_the_safe_side():
     assert str(Threshold(13.1270943, False)) == "survives above 13.1272"
     assert threshold_text(1.1338454) == "1.133"
     assert threshold_text(5e-7, 2) == "4.9e-07"  # within the error of the search
+
+
+def test_many_changes_nearby_are_counted():
+    changes = [Threshold(0.96 + 0.01 * k, k % 2 == 0) for k in range(6)]
+    about = "the outcome changes within 5 % of this scale: "
+    assert warnings_of_changes(1.0, changes, "scale") == [about + "6 times, from 0.9599 to 1.011"]
+    assert warnings_of_changes(1.0, changes[1::-1], "scale") == [about + "at 0.9599, 0.9701"]  # in order
+    assert warnings_of_changes(2.0, changes, "scale") == []
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])

@@ -42,6 +42,16 @@ def test_history_of_a_block_in_degrees(ax):
     assert ax.lines[4].get_xdata()[0] == data.impact_time[0]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("time [s]", r"rotation $\theta$ [deg]")
     assert ax.get_title("right") == "rocks and comes to rest"
+    assert ax.get_ylim()[1] > np.degrees(BLOCK.alpha)
+
+
+def test_a_small_rotation_fills_the_axis(ax):
+    data = BLOCK.history("sine", peak_acceleration=2.7, period=0.5)
+    largest = np.degrees(abs(data.rotation).max().item())
+    assert 0.0 < largest < 0.1 * np.degrees(BLOCK.alpha)
+    plot.history(data, ax)
+    np.testing.assert_allclose(ax.get_ylim(), (-1.2 * largest, 1.2 * largest))
+    assert ax.get_title("left") == r"$\alpha$ = 14 deg"
 
 
 def test_a_free_rocking_with_its_residual_in_degrees(ax):

@@ -95,7 +95,8 @@ def draw(data: xr.Dataset) -> Figure:
         left.plot(omega, one.semi_analytical_beyond, **(approximate | {"linewidth": 0.8}))
         right.plot(omega, 100 * one.difference, color=colour, label=rf"$\eta={eta:.2f}$")
     left.plot(omega, data.upper.max("restitution"), color=GREY, linewidth=0.9)
-    left.annotate("(3.31)", (omega[40], float(data.upper.max("restitution")[40])), xytext=(-6, 6),
+    place = data.upper.max("restitution").sel(frequency_ratio=1.5, method="nearest")
+    left.annotate("(3.31)", (float(place.frequency_ratio), float(place)), xytext=(-6, 6),
                   textcoords="offset points", ha="right", color=GREY)  # fmt: skip
     left.annotate(
         "smallest solution:\noverturning begins", (3.1, 1.44), (3.6, 1.08), fontsize=7,

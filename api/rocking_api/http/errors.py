@@ -215,10 +215,14 @@ def refusal(text: str, parameter: str, value: Any, allowed: str) -> InvalidArgum
 
 async def _handle_http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
-    headers = error.headers
+    headers, detail = dict(error.headers or {}), str(error.detail)
     if error.status_code == S.METHOD_NOT_ALLOWED and (methods := _methods(request)):
         headers = {"Allow": ", ".join(methods)}
-    return problem_response(error.status_code, str(error.detail), headers)
+    if "Allow" in headers:
+        detail = f"{request.method} is not a method of this route; allowed: {headers['Allow']}"
+    elif detail == S.NOT_FOUND.phrase:  # of no route
+        detail = f"there is nothing at {_text(request.url.path)}; /docs lists the routes"
+    return problem_response(error.status_code, detail, headers)
 
 
 def _methods(request: Request) -> list[str]:

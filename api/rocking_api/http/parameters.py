@@ -172,7 +172,7 @@ def _of_validation(error: ErrorDetails, source: str, model: type[Params]) -> Inv
         known += f", in the {source}"
         detail = f"there is no parameter `{name}` in the {source}; allowed: {known}"
         return refusal(detail, name, plain(error["input"]), known)
-    allowed = str(error["msg"])
+    allowed = str(error["msg"]).removeprefix("Input should be ")
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
     elif kind.startswith("float"):

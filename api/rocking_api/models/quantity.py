@@ -24,6 +24,7 @@ from pydantic_core import PydanticCustomError
 
 import rocking._base.quantities as q
 from rocking._base.quantity import Quantity
+from rocking._base.units import split_quantity
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.read_record import MAX_SKIP
@@ -101,6 +102,16 @@ def si(quantity: Quantity, text: str = "", kind: Any = float, **more: Any) -> An
     return Annotated[kind, BeforeValidator(read), described(own, text, **more)]
 
 
+class WithUnit(float):
+    """A number from a text that states its unit."""
+
+
+def _keep_unit(value: Any, read: ValidatorFunctionWrapHandler) -> float:
+    found: float = read(value)
+    stated = isinstance(value, str) and (split_quantity(value) or (0.0, ""))[1]
+    return WithUnit(found) if stated else found
+
+
 def between(low: float, high: float, text: str, **more: Any) -> Any:
     """A field with a range that includes its finite ends."""
     return Field(description=text, ge=low, le=high if math.isfinite(high) else None, **more)
@@ -159,7 +170,7 @@ AlphaDeg = Annotated[
 # blocks and motions in SI units
 
 Gravity = si(q.GRAVITY)
-PeakAcceleration = si(q.PEAK_ACCELERATION, examples=[4.0])
+PeakAcceleration: Any = Annotated[si(q.PEAK_ACCELERATION, examples=[4.0]), WrapValidator(_keep_unit)]
 Period = si(q.PERIOD, examples=[0.5])
 Scale = Annotated[float, plain(q.SCALE.restricted(*SCALES))]
 Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]

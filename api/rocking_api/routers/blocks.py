@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
@@ -25,7 +26,7 @@ from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import blocks as m
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import ResponseParams
-from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, served
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, WithUnit, served
 from rocking_api.models.responses import SOURCES, PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -121,7 +122,9 @@ def _blocks(
 
 
 def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:
-    problem = Problem.of(params.rocking_body, params.pulse, params.peak_acceleration, params.period, params.restitution)
+    peak = params.peak_acceleration
+    problem = Problem.of(params.rocking_body, params.pulse, peak, params.period, params.restitution)
+    problem = replace(problem, unit_is_stated=isinstance(peak, WithUnit))
     if not problem.is_block:
         if params.method == "cube":
             raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")

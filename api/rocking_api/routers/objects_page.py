@@ -123,7 +123,7 @@ def _ending(name: str) -> str:
 def _text(raw: bytes, name: str, stop: StopFlag) -> str:
     ending = _ending(name)
     if ending not in SHEETS:
-        return text_of(raw)
+        return text_of(raw, "table")
     if find_spec("python_calamine") is None:
         raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
     try:

@@ -13,6 +13,9 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._model.outcome import Outcome
 from rocking.plot.style import BLUE, GREY, VERMILION, axes_of, label_of
 
+SMALL = 0.1
+"""Share of alpha below which the axis of the rotation does not reach alpha [-]: the curve would be a straight line."""
+
 
 def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     """Draw the rotation against time, with the impacts and the angle alpha; the title says the outcome.
@@ -20,7 +23,7 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     Parameters
     ----------
     data : xarray.Dataset
-        Result of `rocking.time_history`, `rocking.time_history`, or of `history` of a block or body. Rotation in
+        Result of `rocking.time_history`, or of `history` of a block or body. Rotation in
         radians is drawn in degrees.
     ax, **style
         As of `rocking.plot`.
@@ -39,13 +42,18 @@ def history(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     impacts = data["impact_time"].values
     shown = impacts[impacts <= x.values[-1]]
     ax.plot(shown, np.zeros(shown.size), "o", color=VERMILION, markersize=2.5, label="impact")
-    ax.annotate(
-        r"$\alpha$", (1.0, alpha), xycoords=("axes fraction", "data"), xytext=(2, 0), textcoords="offset points",
-        va="center", color=GREY,
-    )  # fmt: skip
+    ax.set_ylabel(r"rotation $\theta$ [deg]" if in_degrees else r"rotation $\theta/\alpha$ [-]")
+    largest = float(abs(scale * rotation).max())
+    if 0.0 < largest < SMALL * min(of_left, alpha):
+        ax.set_ylim(-1.2 * largest, 1.2 * largest)
+        ax.set_title(rf"$\alpha$ = {alpha:.3g}{' deg' if in_degrees else ''}", loc="left", color=GREY)
+    else:
+        ax.annotate(
+            r"$\alpha$", (1.0, alpha), xycoords=("axes fraction", "data"), xytext=(2, 0), textcoords="offset points",
+            va="center", color=GREY,
+        )  # fmt: skip
     ax.set_xlim(0.0, float(x.values[-1]) or None)  # one sample has no length
     ax.set_xlabel(label_of(x))
-    ax.set_ylabel(r"rotation $\theta$ [deg]" if in_degrees else r"rotation $\theta/\alpha$ [-]")
     ax.set_title(Outcome[data.attrs["outcome"]].sentence, loc="right")
     return ax
 

@@ -87,6 +87,9 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
     with page.expect_download() as download:
         page.get_by_role("button", name="Download CSV").tap()
     assert [line.split(",")[1] for line in download.value.path().read_text().splitlines()[1:]] == ["vase", "jug"]
+    page.locator("#file").set_input_files({"name": "a.png", "mimeType": "", "buffer": b"\x89PNG\r\n\x1a\n\0\0"})
+    expect(page.locator("#table-problem")).to_contain_text("binary content; allowed: text")
+    expect(page.locator("#count")).to_have_count(0)  # no answer of the earlier file
     page.locator("#pga").fill("0")
     page.locator("#ask").tap()
     expect(page.locator("#pga-problem")).to_contain_text("allowed")

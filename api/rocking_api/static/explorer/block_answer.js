@@ -68,7 +68,7 @@ function factsOf(found) {
   const pairs = [["Uplifts at", acceleration(found.uplift_acceleration)]];
   const { largest_surviving_acceleration: largest, friction_demand: friction, rocking_model_applies: applies } = found;
   pairs.push(["This block does not overturn below, at this period", largest === null ? reasonForNone(found) : acceleration(largest, threshold)]);
-  if (found.url && largest !== null) pairs.push(["with a coefficient of friction of", number(found.largest_surviving_friction_demand, 2)]);
+  if (found.url && largest !== null) pairs.push(["Friction coefficient required at that acceleration", number(found.largest_surviving_friction_demand, 2)]);
   const margin = applies && marginOf(found);
   if (margin) pairs.push(margin);
   const all = applies ? (found.thresholds ?? []) : [];

@@ -13,7 +13,7 @@ import { clearErrors } from "./page.js";
 import { pane } from "./pane.js";
 import { showPreview } from "./pulse_preview.js";
 import { described, matchingPeriod } from "./pulses.js";
-import { blockParams, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
+import { blockParams, blockQuery, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
 import { showSite } from "./site.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state, stepsBack } from "./state.js";
@@ -80,7 +80,7 @@ function responseOf(wanted) {
   return async function* load(signal) {
     const params = blockParams(wanted);
     if (wanted.period === "") params.period = matchingPeriod(wanted, await described(wanted.pulse)) ?? "";
-    yield await (isSampled(params.pulse) ? blockUnderSamples(params, signal) : ask("/v1/blocks/response", params, signal));
+    yield await (isSampled(params.pulse) ? blockUnderSamples(params, signal) : ask("/v1/blocks/response", blockQuery(params), signal));
   };
 }
 
@@ -114,7 +114,7 @@ function link(found) {
   const spectrum = (format) => spectrumUrl(found, view, format);
   setLinks("map", found ? { csv: map("csv"), nc: map("nc"), curves: `${curvesUrl()}&format=csv` } : {});
   const params = found?.answer && { ...blockParams(state()), period: found.answer.query.period };
-  setLinks("block", params ? { json: urlOf("/v1/blocks/response", params) } : {});
+  setLinks("block", params ? { json: urlOf("/v1/blocks/response", blockQuery(params)) } : {});
   document.getElementById("open-report").disabled = !found?.answer;
   setLinks("spectrum", found?.point ? { csv: spectrum("csv"), nc: spectrum("nc") } : {});
 }

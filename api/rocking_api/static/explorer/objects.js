@@ -42,10 +42,10 @@ async function show() {
 /** Take the table of a file. */
 async function take(chosen) {
   setStatus(status, `Reading ${chosen.name} …`);
+  document.getElementById("result").replaceChildren(); // that of another table, with the rows that are corrected
   try {
     form.elements.table.value = await page(`/objects/text?name=${encodeURIComponent(chosen.name)}`, chosen, control.signal);
     document.title = `${chosen.name}: ${title}`;
-    document.getElementById("result").replaceChildren(); // with it the rows that are corrected
     await show();
   } catch (problem) {
     setStatus(status, problem, () => take(chosen));

@@ -53,6 +53,12 @@ export function blockParams(state) {
   };
 }
 
+/** These parameters in a query, where the unit says that the acceleration is not meant in g. */
+export function blockQuery(params) {
+  const { peak_acceleration: peak } = params;
+  return { ...params, peak_acceleration: typeof peak === "number" ? `${peak} m/s2` : peak };
+}
+
 function readable(restitution) {
   return restitution === "momentum" || Number.isFinite(Number.parseFloat(restitution));
 }
