@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from rocking._assessment.assess import assess
 from rocking._assessment.objects import Object
+from rocking._assessment.site import Site
 from rocking._assessment.tables import objects_of_csv, objects_of_json, read_objects
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import TooManyRowsError, csv_of_sheet
@@ -104,6 +106,9 @@ HEADER = "name;width [cm];height [cm]"
         ("Länge in mm", "90", "depth", 0.09),
         ("spessore mm", "90", "depth", 0.09),
         ("mass", "0", "mass", None),
+        ("COR", "0,85", "restitution", 0.85),
+        ("mu_s [%]", "30", "friction", 0.3),
+        ("coefficient of static friction", "0.3", "friction", 0.3),
         ("depth (cm)", "N/A", "depth", None),
     ],
 )
@@ -127,6 +132,15 @@ def test_one_reading_of_units_holds_for_every_column(header: str, cell: str, fie
         ("depth [cm]", "1,234", "decimal sign"),
         ("depth [cm]", "0", "depth"),
         ("diameter [cm]", "20", "none beside a diameter"),
+        ("depth [cm]", "40-45", "of a range or an estimate"),
+        ("depth [cm]", "ca. 40", "of a range or an estimate"),
+        ("depth [cm]", "40 cm (est.)", "of a range or an estimate"),
+        ("restitution", "85", "a percentage has its sign, 85 %"),
+        ("pedestal (cm)", "90", "pedestal (cm)"),
+        ("", "12", "#4"),
+        ("kinetic friction", "0,3", "kinetic friction"),
+        ("normal restitution", "0.8", "normal restitution"),
+        ("weight tons", "2", "weight tons"),
     ],
 )
 def test_what_is_not_certain_refuses_its_row_with_the_column(header: str, cell: str, reason: str) -> None:
@@ -170,6 +184,7 @@ def test_a_title_gives_no_units_and_totals_are_no_objects() -> None:
         ["w;unit;h;unit;mass;unit", "40;cm;1,6;m;100;lb"],
         ["w;h;unit;mass;mass unit", "400;1600;mm;100;pounds"],
         ["w;h;mass;unit of measure", "40;160;100 lb;cm"],
+        ["w;h;mass;Ma\u00dfeinheit", "40;160;100 lb;cm"],
         ["w;h;mass", "cm;m;lb", "40;1.6;100"],
         ["Dimensions (cm);;mass", "w;h;lb", "40;160;100"],
     ],
@@ -326,6 +341,15 @@ def test_rows_that_could_be_misread_are_reported(row: str) -> None:
 def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
     names = ["Total Eclipse (bronze)", "bust", "Mean old man", "Somme, battlefield", "Sum-1"]
     totals = ["Total:", "SUM", " Mittelwert : ", "\u5408\u8a08", "Avg.", "Std dev"]
+    more = [
+        "Grand total",
+        "Zwischensumme",
+        "Total g\u00e9n\u00e9ral",
+        "Subtotal hall 1",
+        "Promedio",
+        "mean \u00b1 sd",
+        "\u03a3",
+    ]
     rows = [f"{name};30;30;60\n" for name in [*names, *totals]]
     found = objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)};Total;30;60\n")
     assert found.totals == [
@@ -340,6 +364,26 @@ def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
     assert "row 8: SUM (no object)" in found.reading
     assert [one.name for one in found.objects] == names
     assert found.bad_rows == []
+    rows += [f"{name};30;30;60\n" for name in more]
+    assert len(objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)}").objects) == len(names)
+
+
+@pytest.mark.parametrize(
+    "second", ["name;width [cm];height [cm]", "name;height;width", "Objekt;Breite (mm);H\u00f6he (m)"]
+)
+def test_a_second_header_of_other_columns_or_units_refuses_the_table(second: str) -> None:
+    text = "name;width [in];height [in]\na;24;60\n{}\nb;24;60\n"
+    with pytest.raises(InvalidArgumentError, match=r"row 3.*one header"):
+        objects_of_csv(text.format(second))
+    repeated = objects_of_csv(text.format("Name;Width [in];Height"))
+    assert [one.name for one in repeated.objects] == ["a", "b"]
+    assert len(repeated.bad_rows) == 1
+
+
+def test_a_missing_depth_is_a_warning() -> None:
+    found = objects_of_csv("name;w [cm];d [cm];h [cm];diameter [cm]\na;60;?;160;\nb;60;40;160;\nc;;;160;60\n").objects
+    rows = assess(found, Site(pga=3.0, pgv=0.3, shapes=["sine"]), sensitivity=False).rows
+    assert [row["object"] for row in rows if "no depth is given" in row["warnings"]] == ["a"]
 
 
 def test_too_many_rows_are_refused_before_an_object_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
