@@ -109,6 +109,11 @@ class Table(Generic[Item]):
     totals: list[str] = field(default_factory=list)
 
     @property
+    def skipped(self) -> list[str]:
+        """The columns that are not read."""
+        return [label for label in self.cells if label not in self.columns]
+
+    @property
     def bad_rows(self) -> list[BadRow]:
         """The rows that were not read, in words."""
         return [
