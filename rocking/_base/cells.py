@@ -214,7 +214,7 @@ def read_header(text: str, names: Mapping[str, Quantity], argument: str) -> tupl
             known = ""
         if known is not None:
             return one, known
-        if is_symbol(text):
+        if is_symbol(text) or (must and named(stated, names)):  # the ratio "h/b"
             return None
         if must:
             raise InvalidArgumentError(f"{argument}, header", text, f"a unit such as {', '.join(UNITS[one.unit])}")

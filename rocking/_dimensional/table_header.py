@@ -58,7 +58,8 @@ NO_LENGTH = re.compile(
 LAST_UNIT = re.compile(r"\s(?:in|m)\s*$", re.IGNORECASE)
 
 OTHER_NUMBER = re.compile(
-    r"friction|reib|attrit|frottement|restitu|stosszahl|toleran"
+    r"friction|reib|attrit|frottement|restitu|stosszahl|toleran|\b(?:cog|cg|com)\b|cent(?:re|er) of|centroid"
+    r"|schwerpunkt|baricent|inclin|\btilt|eccentric|\boffset"
     r"|^(?:mass|weight|gewicht|peso|poids) (?!class|categ|rank)\w+$"
 )
 """Names of numbers other than lengths that are a question where they are not read."""
@@ -121,7 +122,8 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
             own = ["" if is_unit(text) else text for text in own]
         above = zip(_merged(own), own, row, strict=True)
         pairs = [_joined(*one, known) if max(map(len, one)) <= MAX_NAME else ("", False) for one in above]
-        texts = [_renamed(text, schema.renamed) for text, _ in pairs]
+        labels = labels_of([text for text, _ in pairs])
+        texts = [_renamed(*one, schema.renamed) for one in zip(labels, (text for text, _ in pairs), strict=True)]
         found: dict[int, tuple[Quantity, str]] = {}
         error = None
         for place, text in enumerate(texts):
@@ -135,7 +137,6 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
         found = _assigned(found, texts, schema)
         names = {one.name for one, _ in found.values()}
         complete = all(any(name in names for name in group) for group in schema.required)
-        labels = labels_of([text for text, _ in pairs])
         groups = {k for k, (_, group) in enumerate(pairs) if group and any(map(str.strip, own[1:]))}  # not by a title
         yield HeaderLine(number, [*row], labels, texts, found, groups, complete, error)
 
@@ -159,7 +160,7 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
         raise InvalidArgumentError(f"{schema.argument}, header", "b; h", allowed)
     count = Counter(one.name for one, _ in line.columns.values() if one.unit)
     for name in (name for name, several in count.items() if several > 1):
-        same = "; ".join(line.texts[place] for place, (one, _) in line.columns.items() if one.name == name)
+        same = "; ".join(line.labels[place] for place, (one, _) in line.columns.items() if one.name == name)
         allowed = f'one column {name}; the name of a column that is not read begins with "unused"'
         raise InvalidArgumentError(f"{schema.argument}, header", same[:MAX_NAME], allowed)
     columns, lengths, after = _with_units(line, rows, schema)
@@ -190,11 +191,11 @@ def is_used(text: str) -> bool:
     return bool(text.strip()) and not plain_name(text).startswith(_UNUSED)
 
 
-def _renamed(text: str, renamed: Mapping[str, str]) -> str:
-    """A header text replaced by the name given for it, with its own unit."""
-    if text.strip() not in renamed:
+def _renamed(label: str, text: str, renamed: Mapping[str, str]) -> str:
+    """A header text replaced by the name given for its label, with its own unit."""
+    if label.strip() not in renamed:
         return text
-    name, (_, unit) = renamed[text.strip()], name_and_unit(text)
+    name, (_, unit) = renamed[label.strip()], name_and_unit(text)
     if name in _UNUSED:
         return f"{name}: {text}"
     return f"{name} [{unit}]" if unit and not name_and_unit(name)[1] else name

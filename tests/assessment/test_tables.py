@@ -140,6 +140,9 @@ def test_one_reading_of_units_holds_for_every_column(header: str, cell: str, fie
         ("", "12", "#4"),
         ("kinetic friction", "0,3", "kinetic friction"),
         ("normal restitution", "0.8", "normal restitution"),
+        ("centre of mass [%]", "45", "centre of mass [%]"),
+        ("tilt [deg]", "2", "tilt [deg]"),
+        ("h/b", "2,5", "h/b"),
         ("weight tons", "2", "weight tons"),
     ],
 )
@@ -164,6 +167,10 @@ def test_a_length_that_is_not_read_is_read_once_it_is_named(tmp_path: Path) -> N
     assert "width [cm] as width" in repr(unused)
     with pytest.raises(InvalidArgumentError, match="columns"):
         read_objects(path, columns={"Girth": "depth"})
+    path.write_text("name;w [cm];w [cm];h [cm];\na;60;40;160;7\n", encoding="utf-8")
+    (one,) = read_objects(path, columns={"w [cm]#3": "depth", "#5": "unused"}).objects
+    assert (one.width, one.depth) == (0.6, 0.4)
+    path.write_text("name;width [cm];height [cm];Girth (mm)\na;60;160;120\n", encoding="utf-8")
     path.write_text(path.read_text(encoding="utf-8").replace("Girth", "unused: Girth"), encoding="utf-8")
     assert len(read_objects(path).objects) == 1
 
