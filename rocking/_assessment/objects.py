@@ -92,6 +92,8 @@ class Object:
     def __post_init__(self) -> None:
         if self.width is None and self.diameter is None:
             raise InvalidArgumentError("width", None, "a width, with or without a depth; or a diameter")
+        if self.height is None:
+            raise InvalidArgumentError("height", None, "a height")
         for name, other in (("width", self.width), ("depth", self.depth)):
             if self.diameter is not None and other is not None:
                 raise InvalidArgumentError(name, other, "none beside a diameter; a base is a rectangle or round")
@@ -99,7 +101,7 @@ class Object:
         checked: dict[str, float] = {}
         for name in ("width", "height", "depth", "diameter", "mass_height"):
             value = getattr(self, name)
-            if value is not None or name == "height":
+            if value is not None:
                 checked[name] = number(name, value, *LENGTHS, unit="m")
         for name, size in (("offset_width", "width"), ("offset_depth", "depth")):
             half = 0.5 * checked.get(size, checked.get("diameter", math.inf))

@@ -131,6 +131,7 @@ def identify_free_rocking(
     first = t[flights[0][held[-1]]]
     sign = float(np.sign(peaks[0]))
     starts = _starts(offset, impacts, peaks, sides)
+    _check_seconds(t, math.exp(max(one[FIRST_EDGE + sides] for one in starts)))
     count, fewer = needed + 1, False
     while True:  # a few flights first: a wrong period would shift the later ones by whole flights
         used = (t > first) & (t <= t[flights[count - 1][-1]])
@@ -166,12 +167,15 @@ def identify_free_rocking(
     departure, changes = _departure(error, fit.jac, lambda one: trace(one)[0], count)
     found = _Found(t, theta, used, model, impacts, fit, sides, level)
     result = _described(found, max(freedom, LEAST_FREEDOM), correlated, departure, changes, noise)
-    if (largest_p := float(result["frequency_parameter_upper"].max())) < LOWEST_FREQUENCY:
-        allowed = (
-            f"times in seconds: a block with p of {largest_p:.2g} rad/s is larger than 1 km; is this a counter, or ms?"
-        )
-        raise InvalidArgumentError("time", f"steps of {np.median(np.diff(t)):.3g} s", allowed)
+    _check_seconds(t, float(result["frequency_parameter_upper"].max()))
     return result
+
+
+def _check_seconds(t: Array, p: float) -> None:
+    """Refuse times of which the block, with p [rad/s] at the most, would be too large."""
+    if p < LOWEST_FREQUENCY:
+        allowed = f"times in seconds: a block with p of {p:.2g} rad/s is larger than 1 km; is this a counter, or ms?"
+        raise InvalidArgumentError("time", f"steps of {np.median(np.diff(t)):.3g} s", allowed)
 
 
 class _Found(NamedTuple):
