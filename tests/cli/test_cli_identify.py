@@ -46,6 +46,9 @@ def test_units_of_the_header(file):
         ("time [s],rotation", 100.0, [], "is this a counter, or ms?"),
         ("ms,angle in mrad", 1000.0, [], ""),
         ("time [s],angleDeg", 1.0, [], "units rad, deg, mrad"),
+        ("time [s],angular velocity", 1.0, [], "expected a column of rotations"),
+        ("time [s],acceleration", 1.0, [], "expected a column of rotations"),
+        ("time [s],theta x 1e3", 1.0, [], "expected a column of rotations"),
         ("time [s],rotation (filtered)", 1.0, ["--degrees"], ""),
     ],
 )

@@ -149,6 +149,8 @@ def read_rotations(
     column = layout.columns[chosen[0]]
     _check_name(layout, column, "rotations")
     given = None if degrees is None else "deg" if degrees else "rad"
+    if column.unit("rad") is None and _NO_ROTATION.search(column.name):
+        raise file.error(layout.line, f"the column {column.shown}", "a column of rotations")
     in_name = column.unit("rad") if given else _stated_unit(layout, column, "rad")
     stated = layout.header.unit(given, "a unit of rotation: rad, deg, mrad")
     if in_name and stated.value and in_name != stated.value:
@@ -176,6 +178,11 @@ def read_rotations(
         found = f"times with a step of {np.median(np.diff(time)):g} s"
         raise file.error(layout.line, found, f"the stated time step of {time_step:g} s")
     return time, rotation * UNITS["rad"][unit or given or "rad"]
+
+
+_NO_ROTATION = re.compile(
+    r"acc|veloc|\brate|speed|gyro|omega|[_ ]dot\b|counts\b|\b(?:cos|sin|tan)\b|\bx ?1", re.IGNORECASE
+)
 
 
 def _no_unit_of_times(layout: Layout, step: float) -> RecordFileError:
