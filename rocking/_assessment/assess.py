@@ -242,6 +242,8 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
             texts.append("against a wall, whose forces are not part of the model: sliding is not assessed")
         elif columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
+        if one.width is not None and one.depth is None:
+            texts.append("no depth is given: only rocking along the width is assessed")
         if one.diameter is not None:
             texts.append("round base: the plane model leaves out wobbling and rolling")
         if (columns["factor_slenderer"][k] <= 1.0) != (columns["factor_stockier"][k] <= 1.0):

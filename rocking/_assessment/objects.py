@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array, Flags, Index
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, number, positive
-from rocking._base.quantities import RESTITUTION
+from rocking._base.errors import InvalidArgumentError, number
+from rocking._base.quantities import FRICTION, MASS, RESTITUTION
 from rocking._base.units import Scalar
 from rocking._dimensional.body import RespondingBody
 from rocking._dimensional.body_kinds import body as describe
@@ -58,7 +58,7 @@ class Object:
     mass : float, optional
         Mass [kg], > 0; the outcome does not depend on it.
     friction : float, optional
-        Coefficient of friction at the base [-], > 0.
+        Coefficient of friction at the base [-], (0, 10].
     restitution : float, "momentum" or "kalliontzis(k=...)"
         Coefficient of restitution eta of every impact [-], [0, 1]; "momentum": from conservation of angular momentum.
     tolerance : float
@@ -92,6 +92,8 @@ class Object:
     def __post_init__(self) -> None:
         if self.width is None and self.diameter is None:
             raise InvalidArgumentError("width", None, "a width, with or without a depth; or a diameter")
+        if self.height is None:
+            raise InvalidArgumentError("height", None, "a height")
         for name, other in (("width", self.width), ("depth", self.depth)):
             if self.diameter is not None and other is not None:
                 raise InvalidArgumentError(name, other, "none beside a diameter; a base is a rectangle or round")
@@ -99,7 +101,7 @@ class Object:
         checked: dict[str, float] = {}
         for name in ("width", "height", "depth", "diameter", "mass_height"):
             value = getattr(self, name)
-            if value is not None or name == "height":
+            if value is not None:
                 checked[name] = number(name, value, *LENGTHS, unit="m")
         for name, size in (("offset_width", "width"), ("offset_depth", "depth")):
             half = 0.5 * checked.get(size, checked.get("diameter", math.inf))
@@ -137,9 +139,9 @@ class Object:
     def _check_others(self) -> None:
         """Check the values that are not dimensions."""
         checked: dict[str, float] = {}
-        for name, unit in (("mass", "kg"), ("friction", "-")):
-            if getattr(self, name) is not None:
-                checked[name] = positive(name, getattr(self, name), unit)
+        for one in (MASS, FRICTION):
+            if getattr(self, one.name) is not None:
+                checked[one.name] = one.number(getattr(self, one.name))
         share = impact_share(self.restitution)
         if share is not None and share < 1.0 and any(plane.offset or plane.side for plane in self.planes.values()):
             allowed = "momentum or a number for an object against a wall, or whose centre of mass is not in the middle"

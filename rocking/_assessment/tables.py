@@ -132,11 +132,10 @@ def objects_of_csv(text: str, most: int | None = None, stop: StopFlag | None = N
 
 
 def _objects(table: Table[Object]) -> ObjectTable:
-    skipped = [label for label in table.cells if label not in table.columns]
     for one, row in zip(table.items, zip(*table.cells.values(), strict=True), strict=True):
         details = RowDetails(one.details, dict(zip(table.cells, row, strict=True)))
         vars(one)["details"] = details  # a frozen dataclass
-    return ObjectTable(table.items, table.bad_rows, skipped, table.columns, table.totals)
+    return ObjectTable(table.items, table.bad_rows, table.skipped, table.columns, table.totals)
 
 
 def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:

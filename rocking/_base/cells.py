@@ -26,6 +26,7 @@ _FEET = re.compile(r"(\d+)\s*(?:['\u2032\u2019]|ft\.?|feet|foot)[\s,-]*(\d.*)", 
 _INCHES = re.compile(r"(\d\d?(?:\.\d+)?)\s*(\D+)", re.ASCII)
 _FRACTION = re.compile(r"(?:(\d+)[\s-]+)?(\d+)/(\d+)\s*(\D*)", re.ASCII)
 _THOUSANDS = re.compile(rf"[+-]?\d{{1,3}}(?:{_GAP}\d{{3}})+(?:[.,]\d*)?")
+_ONE = ", and no other text; of a range or an estimate the value to assess"
 _GROUPS = re.compile(r"[+-]?\d{1,3}(?:[.,]\d{3})+")
 
 
@@ -52,11 +53,13 @@ def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
         return text.lower()
     found = _NUMBER.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if not found:
-        raise InvalidArgumentError(one.name, text[:MAX_LENGTH], "a number, with its unit or with one in the header")
+        allowed = f"a number, with its unit or with one in the header{_ONE if re.search(r'[0-9]', text) else ''}"
+        raise InvalidArgumentError(one.name, text[:MAX_LENGTH], allowed)
     number = _number(one.name, found[1].strip(), found[2], text, decimal)
     written = unit_name(found[3], one.unit) if found[3] else unit or one.assumed
     if written is None:
-        raise InvalidArgumentError(one.name, text, f"a unit such as {', '.join(UNITS[one.unit])}")
+        more = _ONE if re.search(r"[0-9?~*(\u00b1]|\b(?:est|ca|max|min|approx)\b", found[3]) else ""
+        raise InvalidArgumentError(one.name, text, f"a unit such as {', '.join(UNITS[one.unit])}{more}")
     if not written and one.unit in USUAL and number:
         usual = USUAL[one.unit][-1]
         allowed = f"a unit: write {one.name} [{usual}] in the header, or {text} {usual} in the cell"
@@ -64,8 +67,8 @@ def read_cell(one: Quantity, cell: str, unit: str, decimal: str) -> float | str:
     if written == "%" and not found[3] and 0.0 < abs(number) <= 1.0:
         raise InvalidArgumentError(one.name, text, f"a percentage above 1: is it {text} %, or {text}?")
     value = number * UNITS[one.unit].get(written, 1.0) * one.times
-    if value > one.highest:
-        raise InvalidArgumentError(one.name, text, f"at most {one.highest:g}; a percentage has its sign, {text} %")
+    if one.unit == "-" and value > one.upper:
+        raise InvalidArgumentError(one.name, text, f"at most {one.upper:g}; a percentage has its sign, {text} %")
     return value
 
 
@@ -148,7 +151,7 @@ def is_symbol(text: str) -> bool:
 
 def plain_name(text: str) -> str:
     """A name in small letters, without accents, signs and doubled blanks; the sign of a diameter is its word."""
-    text = _ROUND.sub(" diameter ", re.sub("ma\u00dfe?", "abmessungen", text, flags=re.IGNORECASE)).replace(
+    text = _ROUND.sub(" diameter ", re.sub(r"\bma\u00dfe?\b", "abmessungen", text, flags=re.IGNORECASE)).replace(
         "\u00df", "ss"
     )
     bare = re.sub(r"[^0-9a-z\u0370-\u03ff\u3040-\u30ff\u4e00-\u9fff]+", " ", without_accents(text.lower()))
@@ -211,7 +214,7 @@ def read_header(text: str, names: Mapping[str, Quantity], argument: str) -> tupl
             known = ""
         if known is not None:
             return one, known
-        if is_symbol(text):
+        if is_symbol(text) or (must and named(stated, names)):  # the ratio "h/b"
             return None
         if must:
             raise InvalidArgumentError(f"{argument}, header", text, f"a unit such as {', '.join(UNITS[one.unit])}")

@@ -27,7 +27,8 @@ FREQUENCY_PARAMETER = Quantity("frequency_parameter", "rad/s", "frequency parame
 
 RESTITUTION = Quantity("restitution", "-", "coefficient of restitution", symbol="eta", lower=0.0, upper=1.0,
     closed="both", default="momentum", words=("momentum", "kalliontzis"),
-    aliases="coefficient of restitution, restitution coefficient, eta, stosszahl, restituzione, restitucion")
+    aliases="coefficient of restitution, restitution coefficient, eta, cor, stosszahl, restituzione, restitucion, "
+    "\u03b7")
 """`momentum`: from the conservation of angular momentum, (2.4) for a block, 0 where that is negative;
 `kalliontzis(k=0.8)`: the same with the impact at that share of the half base."""
 
@@ -154,10 +155,13 @@ MASS = Quantity("mass", "kg", "mass, or the weight of it; not needed for the out
     example="45 kg", aliases="weight, masse, gewicht, massa, peso, maza, varos, poids, \u03bc\u03b1\u03b6\u03b1, "
     "\u03b2\u03b1\u03c1\u03bf\u03c2", absent_beside=("height",), assumed="kg")
 
-FRICTION = Quantity("friction", "-", "coefficient of friction at the base", symbol="mu", lower=0.0,
-    aliases="friction coefficient, coefficient of friction, mu, reibung, reibungskoeffizient, reibungszahl, "
-    "haftreibung, attrito, coefficiente di attrito, frottement, friccion, trivi, coefficient de frottement, "
-    "coeficiente de friccion, \u03bc, \u03c4\u03c1\u03b9\u03b2\u03b7", highest=10.0)
+FRICTION = Quantity("friction", "-", "coefficient of friction at the base", symbol="mu", lower=0.0, upper=10.0,
+    closed="right",
+    aliases="friction coefficient, coefficient of friction, static friction, coefficient of static friction, "
+    "static friction coefficient, friction coeff, coeff of friction, cof, mu, mu s, reibung, reibungskoeffizient, "
+    "reibungszahl, reibbeiwert, haftreibung, attrito, coefficiente di attrito, frottement, friccion, trivi, "
+    "coefficient de frottement, coeficiente de friccion, coeficiente de atrito, \u03bc, \u03bc s, "
+    "\u03c4\u03c1\u03b9\u03b2\u03b7, \u6469\u64e6\u4fc2\u6570")
 
 TOLERANCE = Quantity("tolerance", "m", "uncertainty of the dimensions, up and down", lower=0.0, closed="left",
     default=0.0, aliases="dimension tolerance, toleranz, tolleranza")

@@ -53,8 +53,6 @@ class Quantity:
         Quantities beside which 0 says that this one does not apply.
     words : tuple of str
         Texts that are values.
-    highest : float
-        Value in the SI unit above which a cell is refused, because its unit is in doubt.
     joined : bool
         Whether the texts of several columns are joined; otherwise the column with the best name counts.
     assumed : str
@@ -76,7 +74,6 @@ class Quantity:
     times: float = 1.0
     absent_beside: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
-    highest: float = math.inf
     joined: bool = False
     assumed: str = ""
 

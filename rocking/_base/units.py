@@ -84,12 +84,12 @@ USUAL = {
 MAX_LENGTH = 64  # longest text that is read as a quantity or a unit [characters]
 
 _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
-    "m": ("metre", "metres", "meter", "meters"),
-    "cm": ("centimetre", "centimetres", "centimeter", "centimeters"),
-    "mm": ("millimetre", "millimetres", "millimeter", "millimeters"),
+    "m": ("metre", "metres", "meter", "meters", "metri", "metros"),
+    "cm": ("centimetre", "centimetres", "centimeter", "centimeters", "cms", "zentimeter", "centimetri", "centimetros"),
+    "mm": ("millimetre", "millimetres", "millimeter", "millimeters", "millimetri", "milimetros"),
     "km": ("kilometre", "kilometres", "kilometer", "kilometers"),
-    "in": ("in.", "inch", "inches", '"', "''", "\u2033", "\u201d"),
-    "ft": ("ft.", "foot", "feet", "'", "\u2032", "\u2019"),
+    "in": ("inch", "inches", "zoll", "pouces", "pollici", "pulgadas", '"', "''", "\u2033", "\u201d"),
+    "ft": ("foot", "feet", "'", "\u2032", "\u2019"),
     "gal": ("gals",),
     "g": ("gs", "gravity"),  # of accelerations
     "mg": ("milli-g", "millig"),
@@ -103,8 +103,8 @@ _OTHER_NAMES = {  # as `_plain` leaves them: millis are milliseconds
     "-": ("1", "\u2013", "dimensionless"),
     "kg": ("kgs", "kilo", "kilos", "kilogram", "kilograms", "kilogramme", "kilogrammes", "kilogramm"),
     "t": ("tonne", "tonnes", "tonnen"),
-    "lb": ("lbs", "lb.", "lbs.", "pound", "pounds"),
-    "oz": ("oz.", "ounce", "ounces"),
+    "lb": ("lbs", "pound", "pounds"),
+    "oz": ("ounce", "ounces"),
     "N": ("newton", "newtons"),
     "kN": ("kilonewton", "kilonewtons"),
 }
@@ -125,9 +125,9 @@ _SIGNS = str.maketrans("¹²⁻−", "12--")  # signs of powers, and the minus s
 
 
 def _plain(text: str) -> str:
-    """A unit in lower case without what may be left out; second is s."""
+    """A unit in lower case without what may be left out, a full stop included; second is s."""
     plain = re.sub(r"\*\*|\*(?=\s*s-)|[\s_^()\[\]·⋅]", "", text.lower().translate(_SIGNS))
-    return re.sub(r"sec(?:ond)?s?", "s", plain)
+    return re.sub(r"sec(?:ond)?s?", "s", plain).rstrip(".")
 
 
 _NAMES = {unit: {form.lower(): name for name in names for form in _forms(name)} for unit, names in UNITS.items()}

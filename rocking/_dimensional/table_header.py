@@ -57,6 +57,13 @@ NO_LENGTH = re.compile(
 
 LAST_UNIT = re.compile(r"\s(?:in|m)\s*$", re.IGNORECASE)
 
+OTHER_NUMBER = re.compile(
+    r"friction|reib|attrit|frottement|restitu|stosszahl|toleran|\b(?:cog|cg|com)\b|cent(?:re|er) of|centroid"
+    r"|schwerpunkt|baricent|inclin|\btilt|eccentric|\boffset"
+    r"|^(?:mass|weight|gewicht|peso|poids) (?!class|categ|rank)\w+$"
+)
+"""Names of numbers other than lengths that are a question where they are not read."""
+
 AMOUNT = re.compile(r"\W*(?:c|ca|circa|approx\w*|about|um|env\w*|max|min)?[\s.:]*\d", re.IGNORECASE)
 
 _UNUSED = ("unused", "not used")
@@ -115,7 +122,8 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
             own = ["" if is_unit(text) else text for text in own]
         above = zip(_merged(own), own, row, strict=True)
         pairs = [_joined(*one, known) if max(map(len, one)) <= MAX_NAME else ("", False) for one in above]
-        texts = [_renamed(text, schema.renamed) for text, _ in pairs]
+        labels = labels_of([text for text, _ in pairs])
+        texts = [_renamed(*one, schema.renamed) for one in zip(labels, (text for text, _ in pairs), strict=True)]
         found: dict[int, tuple[Quantity, str]] = {}
         error = None
         for place, text in enumerate(texts):
@@ -124,12 +132,11 @@ def header_lines(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Iterator
             except InvalidArgumentError as wrong:
                 column = named(name_and_unit(text)[0], known)
                 error, one = error or wrong, (column, "") if column else None
-            if one:
-                found[place] = one
+            if one and (one[0].unit or one[0].name in ("name", "number") or not stated_unit(text, "m")):
+                found[place] = one  # "pedestal (cm)" is a length
         found = _assigned(found, texts, schema)
         names = {one.name for one, _ in found.values()}
         complete = all(any(name in names for name in group) for group in schema.required)
-        labels = labels_of([text for text, _ in pairs])
         groups = {k for k, (_, group) in enumerate(pairs) if group and any(map(str.strip, own[1:]))}  # not by a title
         yield HeaderLine(number, [*row], labels, texts, found, groups, complete, error)
 
@@ -153,7 +160,7 @@ def find_header(rows: Sequence[Sequence[str]], schema: Schema[Any]) -> Header:
         raise InvalidArgumentError(f"{schema.argument}, header", "b; h", allowed)
     count = Counter(one.name for one, _ in line.columns.values() if one.unit)
     for name in (name for name, several in count.items() if several > 1):
-        same = "; ".join(line.texts[place] for place, (one, _) in line.columns.items() if one.name == name)
+        same = "; ".join(line.labels[place] for place, (one, _) in line.columns.items() if one.name == name)
         allowed = f'one column {name}; the name of a column that is not read begins with "unused"'
         raise InvalidArgumentError(f"{schema.argument}, header", same[:MAX_NAME], allowed)
     columns, lengths, after = _with_units(line, rows, schema)
@@ -171,6 +178,7 @@ def _without_header(lines: Sequence[HeaderLine], schema: Schema[Any]) -> Invalid
     missing = ", ".join(group for group, lacks in needed.items() if lacks)
     rest = [text for place, text in enumerate(texts) if place not in columns and is_used(text)]
     near = [text for text in rest if stated_unit(text, "m") or LENGTH_WORD.search(plain_name(text))]
+    near = [text for text in near if not re.search(r"radi|circumf|umfang|girth", plain_name(text))]
     allowed = f"columns {', '.join(needed)}, of at most {MAX_COLUMNS}; missing: {missing}"
     if any(is_sizes(name_and_unit(text)[0]) for text in rest):
         allowed += '; where a column has several dimensions, its header says the order: "W x D x H (cm)"'
@@ -183,11 +191,11 @@ def is_used(text: str) -> bool:
     return bool(text.strip()) and not plain_name(text).startswith(_UNUSED)
 
 
-def _renamed(text: str, renamed: Mapping[str, str]) -> str:
-    """A header text replaced by the name given for it, with its own unit."""
-    if text.strip() not in renamed:
+def _renamed(label: str, text: str, renamed: Mapping[str, str]) -> str:
+    """A header text replaced by the name given for its label, with its own unit."""
+    if label.strip() not in renamed:
         return text
-    name, (_, unit) = renamed[text.strip()], name_and_unit(text)
+    name, (_, unit) = renamed[label.strip()], name_and_unit(text)
     if name in _UNUSED:
         return f"{name}: {text}"
     return f"{name} [{unit}]" if unit and not name_and_unit(name)[1] else name
@@ -293,7 +301,11 @@ def _with_units(
     for place, name in names.items():
         found = LENGTH_WORD.search(name)
         exempt = NO_LENGTH.search(name) and (found is None or found[0] in ("base", "side", "size"))  # "base price"
-        if is_sizes(name) or ((found or LAST_UNIT.search(line.texts[place])) and not exempt):
+        if (
+            is_sizes(name)
+            or OTHER_NUMBER.search(name)
+            or ((found or LAST_UNIT.search(line.texts[place])) and not exempt)
+        ):
             weak.add(place)
     weak |= line.grouped & set(others)
     return columns, dict.fromkeys(sorted(weak), False) | lengths, last
@@ -307,12 +319,15 @@ def _beside(line: HeaderLine, columns: Mapping[int, tuple[Quantity, str]], units
     first, last = min(measured, default=0), max(measured, default=0)
     if not all(stated_unit(line.cells[place], "m") for place in measured):
         first, last = 0, len(line.texts)
+    flat = {"depth", "diameter"}.isdisjoint(one.name for one, _ in columns.values())
     found = set()
-    for place, text in enumerate(line.texts[: last + 1]):
+    for place, text in enumerate(line.texts[: last + 2]):
         name = plain_name(name_and_unit(text)[0])
         is_read = place in columns or place in units.values() or is_symbol(text)
         says_no = name.startswith(_UNUSED) or NO_LENGTH.search(name)
-        if place >= first and not is_read and not says_no and (text.strip() or 0 < place < last):
+        near = place <= last and (text.strip() or 0 < place < last)
+        near = near or (flat and place == last + 1 and not text.strip())  # may be the depth
+        if place >= first and not is_read and not says_no and near:
             found.add(place)
     return found
 

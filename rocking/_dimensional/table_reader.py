@@ -53,11 +53,13 @@ EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
 """Limits: rows without an item, where rows are limited; columns and cells of a sheet (one far out makes all)."""
 
 _TOTAL = re.compile(
-    r"(?:sub)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittelwert|totale|somma|somme|suma|count|media|moyenne|"
-    r"avg|median|std|std\.?\s*dev|standard deviation|minimum|maximum|min|max|durchschnitt|"
-    r"totaal|summa|razem|toplam|\u0438\u0442\u043e\u0433\u043e|\u03c3\u03cd\u03bd\u03bf\u03bb\u03bf|"
-    r"[\u5408\u5c0f\u7dcf\u603b][\u8a08\u8ba1])"
-    r"\.?\s*(?:[:(\d].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos)\b.*)?",
+    r"(?:sub|grand |zwischen)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittel(?:wert)?|totale|"
+    r"totaux|somma|somme|suma|soma|count|media|moyenne|promedio|avg|median|m[e\u00e9]diane|std|sd|std\.?\s*dev|"
+    r"standard deviation|minimum|maximum|min|max|durchschnitt|overall|all objects|totaal|summa|razem|toplam|ortalama|"
+    r"\u0438\u0442\u043e\u0433\u043e|\u03c3\u03cd\u03bd\u03bf\u03bb\u03bf|\u03bc\u03ad\u03c3\u03bf\u03c2 "
+    r"\u03cc\u03c1\u03bf\u03c2|\u03a3|[\u5408\u5c0f\u7dcf\u603b][\u8a08\u8ba1]|\u5e73\u5747)"
+    r"\.?\s*(?:[:(\d\u00b1].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos|hall|room|general|"
+    r"g\u00e9n\u00e9ral|geral)\b.*)?",
     re.IGNORECASE | re.DOTALL,
 )
 """First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
@@ -105,6 +107,11 @@ class Table(Generic[Item]):
     unread: list[dict[str, str]] = field(default_factory=list)
     # rows of totals, which are no items: "row 9: Total"
     totals: list[str] = field(default_factory=list)
+
+    @property
+    def skipped(self) -> list[str]:
+        """The columns that are not read."""
+        return [label for label in self.cells if label not in self.columns]
 
     @property
     def bad_rows(self) -> list[BadRow]:
@@ -333,6 +340,7 @@ def read_rows(
             items.append(schema.make(number, values, others))
             kept.append(row)
         except InvalidArgumentError as error:
+            _check_no_header(number, row, header, schema)
             errors.append((number, _of_cell(error, row, header)))
             unread.append(dict(zip_longest(labels, row[: len(labels)], fillvalue="")))
     size = len(header.texts)
@@ -349,6 +357,18 @@ def read_rows(
         for place, (one, unit) in header.columns.items()
     }
     return Table(items, columns, read, units, errors, unread, totals)
+
+
+def _check_no_header(number: int, row: Sequence[str], header: Header, schema: Schema[Any]) -> None:
+    """Refuse a table with a second header below, of other columns or units, which the rows below it would have."""
+    if any(split_number(row[place]) for place, (one, _) in header.columns.items() if one.unit and place < len(row)):
+        return
+    for line in header_lines([row], schema):
+        for place, (one, unit) in line.columns.items() if line.complete else ():
+            above = header.columns.get(place)
+            if one.unit and (above is None or above[0] != one or unit not in ("", above[1])):
+                allowed = "one header; a table with other columns or units in a file of its own"
+                raise InvalidArgumentError(f"{schema.argument}, row {number}", "; ".join(row)[:MAX_NAME], allowed)
 
 
 def _is_item(row: Sequence[str]) -> bool:
@@ -441,7 +461,8 @@ def _check_lengths(row: Sequence[str], header: Header) -> None:
             several = is_sizes(name_and_unit(text)[0]) and re.search(r"\d", cell) is not None
             is_length |= several and dimensions < 3 and len(BETWEEN.split(cell[:MAX_LENGTH])) != dimensions
         if is_length and not (number and not number[0].strip("+-0.,")):
-            allowed = 'a column named "width", "depth", "diameter" or "height", or whose name begins with "unused"'
+            known = '"width", "depth", "diameter", "height" or "friction"'
+            allowed = f'a column named as what it is, such as {known}, or whose name begins with "unused"'
             raise InvalidArgumentError(header.labels[place].strip(), cell, allowed)
 
 

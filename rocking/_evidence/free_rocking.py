@@ -47,6 +47,7 @@ MAX_ROTATION = 0.8  # largest rotation and alpha [rad]: beyond it a body hardly 
 DURATION = 1e-3, 1e5
 """Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
 
+LOWEST_FREQUENCY = 0.1  # smallest p [rad/s], of a block 1 km wide and high: lower ones are of other times than seconds
 SHORTEST_STEP = 1e-7  # shortest step between samples [s]
 MIN_IMPACTS = 3  # fewest impacts from which eta, alpha and p are told apart [-]
 MAX_FLIGHTS = 200  # most flights that are fitted [-]
@@ -130,6 +131,7 @@ def identify_free_rocking(
     first = t[flights[0][held[-1]]]
     sign = float(np.sign(peaks[0]))
     starts = _starts(offset, impacts, peaks, sides)
+    _check_seconds(t, math.exp(max(one[FIRST_EDGE + sides] for one in starts)))
     count, fewer = needed + 1, False
     while True:  # a few flights first: a wrong period would shift the later ones by whole flights
         used = (t > first) & (t <= t[flights[count - 1][-1]])
@@ -145,7 +147,8 @@ def identify_free_rocking(
         count = min(count + count // 2, len(flights))
     largest = float(np.abs(peaks).max())
     if fit.x[FIRST_EDGE : FIRST_EDGE + sides].max() >= math.log(0.999 * MAX_ROTATION):
-        raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or _DEGREES)
+        allowed = f"free rocking in radians, not degrees, of a block with alpha below {MAX_ROTATION:g} rad; none fits"
+        raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or allowed)
     if residual > LARGEST_RESIDUAL * largest:
         allowed = "free rocking: no block of the model is within 10 % of the first peak of these samples"
         raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or allowed)
@@ -163,7 +166,16 @@ def identify_free_rocking(
         )
     departure, changes = _departure(error, fit.jac, lambda one: trace(one)[0], count)
     found = _Found(t, theta, used, model, impacts, fit, sides, level)
-    return _described(found, max(freedom, LEAST_FREEDOM), correlated, departure, changes, noise)
+    result = _described(found, max(freedom, LEAST_FREEDOM), correlated, departure, changes, noise)
+    _check_seconds(t, float(result["frequency_parameter_upper"].max()))
+    return result
+
+
+def _check_seconds(t: Array, p: float) -> None:
+    """Refuse times of which the block, with p [rad/s] at the most, would be too large."""
+    if p < LOWEST_FREQUENCY:
+        allowed = f"times in seconds: a block with p of {p:.2g} rad/s is larger than 1 km; is this a counter, or ms?"
+        raise InvalidArgumentError("time", f"steps of {np.median(np.diff(t)):.3g} s", allowed)
 
 
 class _Found(NamedTuple):
@@ -232,9 +244,6 @@ def _oscillation(impacts: Array, peaks: Array) -> str | None:
     )
 
 
-_DEGREES = f"radians, with alpha below {MAX_ROTATION:g} rad: are these degrees?"
-
-
 def _peak_text(theta: Array) -> str:
     return f"values up to {np.abs(theta).max():.4g}"
 
@@ -251,7 +260,8 @@ def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, A
         allowed = f"a trace of {DURATION[0]:g} to {DURATION[1]:g} s in steps of {SHORTEST_STEP:g} s or more"
         raise InvalidArgumentError("time", f"{duration:g} s, the shortest step {shortest:g} s", allowed)
     if np.abs(theta).max() > MAX_ROTATION:
-        raise InvalidArgumentError("rotation", _peak_text(theta), _DEGREES)
+        allowed = f"radians, with alpha below {MAX_ROTATION:g} rad: are these degrees?"
+        raise InvalidArgumentError("rotation", _peak_text(theta), allowed)
     return t, theta, integer("edges", edges, 1, 2)
 
 

@@ -129,6 +129,9 @@ def test_many_blocks_as_json_and_csv(client):
     assert (both["outcome"], both["totals"]) == (found["outcome"], found["totals"])
     counted = client.post(url + "&format=json", content=TABLE + "Total,1,1,1,1\n", headers={"content-type": "text/csv"})
     assert (counted.json()["outcome"], counted.json()["totals"]) == (found["outcome"], ["row 5: Total"])
+    wide = "w [cm],h [cm],thickness [cm],pga [g],t [s]\n60,160,12,0.4,0.5\n"
+    unused = client.post(url + "&format=json", content=wide, headers={"content-type": "text/csv"}).json()
+    assert (unused["skipped"], unused["columns"]["w [cm]"]) == (["thickness [cm]"], "width")
 
 
 def test_a_text_may_state_another_unit(client):

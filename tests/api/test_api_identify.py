@@ -65,3 +65,5 @@ def test_frames_are_no_times(client):
     assert "the column frame, a counter" in problem["detail"]
     found = client.post("/v1/identify", params={"time_step": 1.0 / 60.0}, content=body, headers=headers).json()
     assert found["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]
+    json = client.post(URL, params={"time_step": 0.01}, json={"time": [*range(20)], "rotation": [0.1] * 20})
+    assert assert_problem(json, 422)["parameter"] == "time_step"

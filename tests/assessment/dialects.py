@@ -35,7 +35,7 @@ HEADERS: dict[str, tuple[str, ...]] = {
     "height": ("height", "Höhe", "Altezza", "Hauteur", "Altura", "H", "Overall height", "ύψος"),
     "diameter": ("diameter", "Durchmesser", "Diametro", "Diamètre", "Ø", "Ø base", "Dia.", "base diameter"),
     "mass": ("mass", "Weight", "Gewicht", "Peso", "Poids", "Massa"),
-    "friction": ("friction", "friction coefficient", "Reibung", "Attrito", "mu"),
+    "friction": ("friction", "friction coefficient", "Reibung", "Attrito", "mu", "COF"),
     "restitution": ("restitution", "coefficient of restitution", "eta"),
 }  # fmt: skip
 DEPTHS = ("thickness", "Dicke", "Épaisseur", "Spessore", "Espesor", "Length", "L", "Länge", "Longueur", "T")
@@ -51,7 +51,7 @@ TITLES = (
     ["Weights in lb", "rooms 1-4"], ["Mass: see list", "Height: see list"], ["Survey 7 (CM)"], ["unit", "hall"],
 )  # fmt: skip
 MISSING = ("", "-", "n/a", "–", "?", "N/A")
-TOTALS = ("Total", "Summe:", "Total (all objects)", "Somma: 3", "Total objects")
+TOTALS = ("Total", "Summe:", "Total (all objects)", "Somma: 3", "Total objects", "Grand total", "Zwischensumme", "SD")
 
 
 @dataclass

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from rocking._assessment.assess import assess
 from rocking._assessment.objects import Object
+from rocking._assessment.site import Site
 from rocking._assessment.tables import objects_of_csv, objects_of_json, read_objects
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import TooManyRowsError, csv_of_sheet
@@ -103,7 +105,12 @@ HEADER = "name;width [cm];height [cm]"
         ('Dicke (")', "10", "depth", 0.254),
         ("Länge in mm", "90", "depth", 0.09),
         ("spessore mm", "90", "depth", 0.09),
+        ("Dicke (Zoll)", "10", "depth", 0.254),
+        ("depth (CM.)", "90 mm.", "depth", 0.09),
         ("mass", "0", "mass", None),
+        ("COR", "0,85", "restitution", 0.85),
+        ("mu_s [%]", "30", "friction", 0.3),
+        ("coefficient of static friction", "0.3", "friction", 0.3),
         ("depth (cm)", "N/A", "depth", None),
     ],
 )
@@ -127,6 +134,18 @@ def test_one_reading_of_units_holds_for_every_column(header: str, cell: str, fie
         ("depth [cm]", "1,234", "decimal sign"),
         ("depth [cm]", "0", "depth"),
         ("diameter [cm]", "20", "none beside a diameter"),
+        ("depth [cm]", "40-45", "of a range or an estimate"),
+        ("depth [cm]", "ca. 40", "of a range or an estimate"),
+        ("depth [cm]", "40 cm (est.)", "of a range or an estimate"),
+        ("restitution", "85", "a percentage has its sign, 85 %"),
+        ("pedestal (cm)", "90", "pedestal (cm)"),
+        ("", "12", "#4"),
+        ("kinetic friction", "0,3", "kinetic friction"),
+        ("normal restitution", "0.8", "normal restitution"),
+        ("centre of mass [%]", "45", "centre of mass [%]"),
+        ("tilt [deg]", "2", "tilt [deg]"),
+        ("h/b", "2,5", "h/b"),
+        ("weight tons", "2", "weight tons"),
     ],
 )
 def test_what_is_not_certain_refuses_its_row_with_the_column(header: str, cell: str, reason: str) -> None:
@@ -150,6 +169,10 @@ def test_a_length_that_is_not_read_is_read_once_it_is_named(tmp_path: Path) -> N
     assert "width [cm] as width" in repr(unused)
     with pytest.raises(InvalidArgumentError, match="columns"):
         read_objects(path, columns={"Girth": "depth"})
+    path.write_text("name;w [cm];w [cm];h [cm];\na;60;40;160;7\n", encoding="utf-8")
+    (one,) = read_objects(path, columns={"w [cm]#3": "depth", "#5": "unused"}).objects
+    assert (one.width, one.depth) == (0.6, 0.4)
+    path.write_text("name;width [cm];height [cm];Girth (mm)\na;60;160;120\n", encoding="utf-8")
     path.write_text(path.read_text(encoding="utf-8").replace("Girth", "unused: Girth"), encoding="utf-8")
     assert len(read_objects(path).objects) == 1
 
@@ -170,6 +193,7 @@ def test_a_title_gives_no_units_and_totals_are_no_objects() -> None:
         ["w;unit;h;unit;mass;unit", "40;cm;1,6;m;100;lb"],
         ["w;h;unit;mass;mass unit", "400;1600;mm;100;pounds"],
         ["w;h;mass;unit of measure", "40;160;100 lb;cm"],
+        ["w;h;mass;Ma\u00dfeinheit", "40;160;100 lb;cm"],
         ["w;h;mass", "cm;m;lb", "40;1.6;100"],
         ["Dimensions (cm);;mass", "w;h;lb", "40;160;100"],
     ],
@@ -223,6 +247,7 @@ def test_several_dimensions_wide_digits_and_other_symbols(rows: list[str]) -> No
         (["name;W x D x H (cm)", "a;60"], "60 (1 of 3 dimensions"),
         (["name;w [cm];h [cm];Dimensions", "a;60;150;60 x 40 x 150 cm"], "Dimensions"),
         (["name;w [cm];h [cm];Maße", "a;60;150;T 40"], "Maße"),
+        (["name;w [cm];h [cm]", "a;60;-"], "a height"),
         (["name;w [in];h [in]", "a;30/40;60"], "30/40"),
         (["name;w;h", "a;31 1/2;60 in"], "with its unit, as 31 1/2 in"),
         (["name;w;h", "a;2' 7;60 in"], "2' 7"),
@@ -326,6 +351,15 @@ def test_rows_that_could_be_misread_are_reported(row: str) -> None:
 def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
     names = ["Total Eclipse (bronze)", "bust", "Mean old man", "Somme, battlefield", "Sum-1"]
     totals = ["Total:", "SUM", " Mittelwert : ", "\u5408\u8a08", "Avg.", "Std dev"]
+    more = [
+        "Grand total",
+        "Zwischensumme",
+        "Total g\u00e9n\u00e9ral",
+        "Subtotal hall 1",
+        "Promedio",
+        "mean \u00b1 sd",
+        "\u03a3",
+    ]
     rows = [f"{name};30;30;60\n" for name in [*names, *totals]]
     found = objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)};Total;30;60\n")
     assert found.totals == [
@@ -340,6 +374,26 @@ def test_rows_of_totals_are_those_whose_first_cell_says_so() -> None:
     assert "row 8: SUM (no object)" in found.reading
     assert [one.name for one in found.objects] == names
     assert found.bad_rows == []
+    rows += [f"{name};30;30;60\n" for name in more]
+    assert len(objects_of_csv(f"name;width [cm];depth [cm];height [cm]\n{''.join(rows)}").objects) == len(names)
+
+
+@pytest.mark.parametrize(
+    "second", ["name;width [cm];height [cm]", "name;height;width", "Objekt;Breite (mm);H\u00f6he (m)"]
+)
+def test_a_second_header_of_other_columns_or_units_refuses_the_table(second: str) -> None:
+    text = "name;width [in];height [in]\na;24;60\n{}\nb;24;60\n"
+    with pytest.raises(InvalidArgumentError, match=r"row 3.*one header"):
+        objects_of_csv(text.format(second))
+    repeated = objects_of_csv(text.format("Name;Width [in];Height"))
+    assert [one.name for one in repeated.objects] == ["a", "b"]
+    assert len(repeated.bad_rows) == 1
+
+
+def test_a_missing_depth_is_a_warning() -> None:
+    found = objects_of_csv("name;w [cm];d [cm];h [cm];diameter [cm]\na;60;?;160;\nb;60;40;160;\nc;;;160;60\n").objects
+    rows = assess(found, Site(pga=3.0, pgv=0.3, shapes=["sine"]), sensitivity=False).rows
+    assert [row["object"] for row in rows if "no depth is given" in row["warnings"]] == ["a"]
 
 
 def test_too_many_rows_are_refused_before_an_object_is_made(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,6 +37,33 @@ def test_units_of_the_header(file):
     assert "rotations in deg" in refused("identify", str(file), "--degrees")
 
 
+@pytest.mark.parametrize(
+    ("header", "times", "options", "said"),
+    [
+        ("time,rotation", 1000.0, [], "a unit of times, such as time [ms]"),
+        ("time,rotation", 100.0, ["--time-step", "0.01s"], ""),
+        ("time [s],rotation", 100.0, ["--time-step", "0.01s"], "the stated time step of 0.01 s"),
+        ("time [s],rotation", 100.0, [], "is this a counter, or ms?"),
+        ("ms,angle in mrad", 1000.0, [], ""),
+        ("time [s],angleDeg", 1.0, [], "units rad, deg, mrad"),
+        ("time [s],angular velocity", 1.0, [], "expected a column of rotations"),
+        ("time [s],acceleration", 1.0, [], "expected a column of rotations"),
+        ("time [s],theta x 1e3", 1.0, [], "expected a column of rotations"),
+        ("time [s],rotation (filtered)", 1.0, ["--degrees"], ""),
+    ],
+)
+def test_times_and_rotations_without_a_unit_that_is_understood(file, header, times, options, said):
+    time, rotation = trace()
+    factor = 1000.0 if "mrad" in header else 180.0 / np.pi if options[:1] == ["--degrees"] else 1.0
+    np.savetxt(file, np.column_stack([times * time, factor * rotation]), delimiter=",", header=header, comments="")
+    if said:
+        assert said in refused("identify", str(file), *options)
+    else:
+        found = json.loads(run("identify", str(file), "--format=json", *options))
+        assert found["frequency_parameter"] == pytest.approx([2.5], rel=1e-2)
+        assert found["alpha"] == pytest.approx([0.25], rel=1e-3)
+
+
 def test_confidence(file):
     expected = identify_free_rocking(*trace(), confidence=0.6)["alpha_upper"].item()
     found = json.loads(run("identify", str(file), "--format=json", "--confidence", "0.6"))

@@ -111,6 +111,9 @@ def test_wider_confidence_widens_the_intervals():
         (lambda t, y: (t, np.full(y.size, 0.1)), "0 impacts"),
         (lambda t, y: (t[::-1], y), "ascending"),
         (lambda t, y: (t[:10], y[:10]), "at least 15"),
+        (lambda t, y: (50.0 * t, y), "times in seconds"),
+        (lambda t, y: (1000.0 * t, y), "times in seconds"),
+        (lambda t, y: (t, np.abs(y)), "none fits"),
         (lambda t, y: (t, np.where(t > 1.0, np.nan, y)), "nan"),
     ],
 )

@@ -232,8 +232,9 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("header", "degrees", "second", "radian"),
     [
-        ("time,rotation", None, 1.0, 1.0),
-        ("time,rotation", True, 1.0, np.radians(1.0)),
+        ("time/s,rotation", None, 1.0, 1.0),
+        ("sec,angle in degrees", None, 1.0, np.radians(1.0)),
+        ("time [s],rotation", True, 1.0, np.radians(1.0)),
         ("time [ms],rotation [deg]", None, 1e-3, np.radians(1.0)),
         ("time [ms],rotation [deg]", True, 1e-3, np.radians(1.0)),
         ("t/min,theta / mrad", None, 60.0, 1e-3),

@@ -71,6 +71,10 @@ class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
 
     name: list[str] | None = q.said("labels; null without any", None)
     body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
+    columns: dict[str, str] = q.said("meaning of the columns of the table that were read, by header", {})
+    skipped: list[str] = q.said(
+        "columns of the table that were not read, such as a thickness: nothing depends on them", []
+    )
     totals: list[str] = q.said("rows of totals of the table, which are no blocks, with their first cells", [])
     source: str = BY_SOLVER
 

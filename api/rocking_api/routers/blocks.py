@@ -74,7 +74,7 @@ async def post_blocks(request: Request, service: ServiceDep) -> Response:
     """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
 
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
-    optionally name and restitution; or the parameters of another kind of body. Others are not used.
+    optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`.
     """
     given = body_form(request, TABLE_FORMS)
     params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
@@ -118,7 +118,8 @@ def _blocks(
     service.metrics.points("solver", len(table.problems))
     if form == "csv":
         return csv_response(columns, "blocks")
-    return json_response(m.BlocksResponse.model_construct(query=params, totals=table.read.totals, **columns), request)
+    columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
+    return json_response(m.BlocksResponse.model_construct(query=params, **columns), request)
 
 
 def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:

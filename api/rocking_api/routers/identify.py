@@ -10,7 +10,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import Field
 
 from rocking._base.arrays import Array
-from rocking._base.errors import finite
+from rocking._base.errors import InvalidArgumentError, finite
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
@@ -128,6 +128,8 @@ async def post_identify(request: Request, service: ServiceDep) -> Response:
 def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[Array, Array]:
     """Times [s] and rotations [rad]."""
     if isinstance(body, Trace):
+        if params.time_step is not None:
+            raise InvalidArgumentError("time_step", params.time_step, "none beside the times of JSON, which are in s")
         return np.array(body.time), (math.pi / 180.0 if params.degrees else 1.0) * np.array(body.rotation)
     stated = params.degrees if "degrees" in params.model_fields_set else None
     return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated, params.time_step)

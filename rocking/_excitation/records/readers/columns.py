@@ -94,8 +94,7 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
             )
             measured *= next(units, 1.0)
             if measured > LONGEST_STEP and time_step is None:
-                found = f"a time step of {measured:g}, without a unit"
-                raise file.error(layout.line, found, "a unit of times, such as time [ms], or the argument `time_step`")
+                raise _no_unit_of_times(layout, measured)
     else:
         (values,) = _table(layout, [chosen])
     file.check_values(values)
@@ -150,7 +149,9 @@ def read_rotations(
     column = layout.columns[chosen[0]]
     _check_name(layout, column, "rotations")
     given = None if degrees is None else "deg" if degrees else "rad"
-    in_name = _stated_unit(layout, column, "rad")
+    if column.unit("rad") is None and _NO_ROTATION.search(column.name):
+        raise file.error(layout.line, f"the column {column.shown}", "a column of rotations")
+    in_name = column.unit("rad") if given else _stated_unit(layout, column, "rad")
     stated = layout.header.unit(given, "a unit of rotation: rad, deg, mrad")
     if in_name and stated.value and in_name != stated.value:
         raise file.error(layout.line, f"the column {column.shown}", f"{stated.value}, as the header says")
@@ -167,7 +168,26 @@ def read_rotations(
             raise layout.file.error(None, layout.file.overruled[0], "one time step")
         return step * np.arange(rotation.size, dtype=np.float64), rotation * UNITS["rad"][unit or given or "rad"]
     time, rotation = _table(layout, [times[0], chosen[0]], most)
-    return time * _time_factor(layout, layout.columns[times[0]]), rotation * UNITS["rad"][unit or given or "rad"]
+    time *= _time_factor(layout, layout.columns[times[0]])
+    if layout.columns[times[0]].unit("s") is None and layout.line is not None:
+        if time_step is not None:
+            time = time_step * np.arange(time.size, dtype=np.float64)
+        elif time.size > 1 and (step := float(np.median(np.diff(time)))) > LONGEST_STEP:
+            raise _no_unit_of_times(layout, step)
+    elif time_step is not None and time.size > 1 and abs(np.median(np.diff(time)) / time_step - 1.0) > STEP_TOLERANCE:
+        found = f"times with a step of {np.median(np.diff(time)):g} s"
+        raise file.error(layout.line, found, f"the stated time step of {time_step:g} s")
+    return time, rotation * UNITS["rad"][unit or given or "rad"]
+
+
+_NO_ROTATION = re.compile(
+    r"acc|veloc|\brate|speed|gyro|omega|[_ ]dot\b|counts\b|\b(?:cos|sin|tan)\b|\bx ?1", re.IGNORECASE
+)
+
+
+def _no_unit_of_times(layout: Layout, step: float) -> RecordFileError:
+    expected = "a unit of times, such as time [ms], or the argument `time_step`"
+    return layout.file.error(layout.line, f"a time step of {step:g}, without a unit", expected)
 
 
 def _time_columns(layout: Layout) -> list[int]:
@@ -419,7 +439,7 @@ def _time_factor(layout: Layout, column: Column) -> float:
 def _stated_unit(layout: Layout, column: Column, quantity: str) -> str | None:
     """The unit of times or rotations of a column, None without; other text in brackets or after a slash is refused."""
     unit = column.unit(quantity)
-    if unit is None and re.search(r"[(\[/]", column.shown):
+    if unit is None and re.search(r"[(\[/\u00b0]|deg|grad|milli", column.shown, re.IGNORECASE):
         raise _no_unit(layout, column, quantity)
     return unit
 

@@ -344,8 +344,8 @@ def unit_in_name(name: str, quantity: str) -> str | None:
     if texts:
         return next((unit for text in texts if (unit := units_in(text.strip(" ."), quantity))), None)
     parts = re.split(r"_+", name.strip())[-MAX_UNIT_PARTS:]
-    words = name.split()[-MAX_UNIT_PARTS:]
-    texts = ["".join(parts[k:]) for k in range(1, len(parts))] + [name.partition("/")[2]]
+    words = re.sub(r"(?<=\w) in (?=\S+$)", " ", name).split()[-MAX_UNIT_PARTS:]  # "angle in degrees"
+    texts = [name, *("".join(parts[k:]) for k in range(1, len(parts))), name.partition("/")[2]]
     texts += ["".join(words[k:]) for k in range(1, len(words)) if _is_quantity(words[:k])]
     return next((unit for text in texts if (unit := unit_name(text.strip(" ."), quantity))), None)
 
