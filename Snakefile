@@ -32,6 +32,9 @@ else:
     include: "workflow/rules/benchmarks.smk"
 
 
+records.date_back_outdated(Path.cwd(), JOBS.values())
+
+
 rule all:
     default_target: True
     input:

@@ -7,7 +7,9 @@ Snakemake has noted what the products were made from (it has not for a job that 
 
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -102,5 +104,25 @@ def false_records(folder: Path) -> Iterator[tuple[Path, list[str]]]:
 def forget_false_records(folder: Path) -> Iterator[str]:
     """Delete these records, so that Snakemake runs their jobs again; yields the reasons."""
     for record, found in false_records(folder):
+        _date_back(folder, record)
         record.unlink()
         yield from found
+
+
+def date_back_outdated(folder: Path, names: Iterable[str]) -> None:
+    """Give the products of jobs that have a record of another name than `names` the oldest time.
+
+    Where a product is asked for by its path, Snakemake looks for that file alone and not for the record beside it. A
+    file that is older than the script of its job is made again.
+    """
+    for name in names:
+        job, current, _ = re.sub(r"\{\w+\}", "*", name).rsplit(".", 2)
+        for record in (folder / FOLDER).glob(f"{job}.*.json"):
+            if record.name.rsplit(".", 2)[1] != current:
+                _date_back(folder, record)
+
+
+def _date_back(folder: Path, record: Path) -> None:
+    with suppress(OSError, ValueError):  # a damaged record, or a product that was deleted
+        for name in read_record(record):
+            os.utime(folder / name, (0, 0))

@@ -125,6 +125,9 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
             source.write("\n# a change\n")
     changed = snakemake(copy_of_run, "--dry-run", project=project)
     assert rules_to_run(changed.stdout) == set.union(*modules.values()) | {"manifest", "check_results", "all"}
+    products = (f"results/figures/figure-{name}" for name in ("06.png", "07.png", "scale-law.svg"))
+    alone = snakemake(copy_of_run, "--dry-run", *products, project=project)
+    assert rules_to_run(alone.stdout) == {"figure_07", "spectra", "figure_scale_law"}, alone.stdout
 
 
 @pytest.mark.long
@@ -157,6 +160,7 @@ def test_another_restitution_repeats_what_depends_on_it_alone(tmp_path: Path) ->
     assert times == {path: path.stat().st_mtime_ns for path in (run / "results").rglob("*.nc")}
 
 
+@pytest.mark.long
 def test_lint_finds_what_is_stated(tmp_path: Path) -> None:
     found = re.findall(r"^ +\* (.*)", snakemake(tmp_path, "--lint").stdout, flags=re.MULTILINE)
     assert len(found) == 1

@@ -43,13 +43,15 @@ except ConfigurationError as error:
 PRODUCTS = {}  # path -> rule and digests, for the manifest
 RECORDS = []  # of the jobs that make products
 FINISHED = []  # files of a complete run
+JOBS = {}  # names of the jobs that have a record, with wildcards -> name of the record
 # of this process; an engine on several machines has no number of cores
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def record_of(job, provenance):
     """Path of the record with the digests of the products of a job."""
-    return f"{records.FOLDER}/{records.record_name(job, provenance)}"
+    JOBS[job] = records.record_name(job, provenance)
+    return f"{records.FOLDER}/{JOBS[job]}"
 
 
 def memory(megabytes):
