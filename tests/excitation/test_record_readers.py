@@ -48,6 +48,9 @@ def test_a_number_of_values_that_the_header_does_not_state_is_a_remark_that_rema
     assert record.source == "x.at2 (PEER AT2)"
     assert record.baseline_corrected().remarks == record.resampled(0.005).remarks == record.remarks
     assert parse_record(at2().encode(), "x.at2").remarks == ()
+    assert parse_record(f"NPTS: 20\n{pairs()}".encode(), "x").remarks == (
+        "the file holds 24 samples, its header states NPTS: 20",
+    )
 
 
 @pytest.mark.parametrize(

@@ -133,6 +133,7 @@ def test_volume_1_in_g():
         ("Response and Fourier amplitude spectra\n1 2\n", {}, "response spectra .Volume 3."),
         ("* VOL1DS FILE:  5522/01\nUNITS ARE SECONDS AND G/10\n1 2\n", {}, "a BHRC Volume 1 file"),
         ("UNCORRECTED ACCELEROGRAM DATA\n\n\nRENADIC\n0.0 1.0\n", {}, "a RENADIC Volume 1 file"),
+        ("FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\n0.0 1.0\n", {}, "a USC Volume 1 file, with a time"),
         ("CORRECTED ACCELEROGRAM OF SOMEBODY\n1 2 3\n", {}, "CORRECTED ACCELEROGRAM OF SOMEBODY; expected a Volume"),
         (
             smc().replace("2.0000000E+02", "1.7000000E+38"),

@@ -32,14 +32,14 @@ Lines = Iterator[tuple[int, bytes]]
 FIRST_LINES = 5  # lines in which the format is named
 
 REFUSED = {
-    r"^\*? ?vol1ds|\bbhrc\b": "a BHRC Volume 1 file",
-    r"\brenadic\b": "a RENADIC Volume 1 file",
+    r"^\*? ?vol1ds": "a BHRC Volume 1 file",
+    r"\Afile +\d+ of uncorrected accelerogram data of volume": "a USC Volume 1 file, with a time before each value",
+    r"(?s)\A\s*uncorrected accelerogram.*\brenadic\b": "a RENADIC Volume 1 file",
     r"^\s*response\b.*\bspectr": "response spectra (Volume 3)",
     r"^raw acc\w* counts|^\s*raw data": "a file of raw counts (Volume 0)",
-    r"^\s*\d archivo estandar|archivo estándar": "a UNAM file",
     r"^#?k-net csv": "a K-NET CSV file",
 }
-"""Names of formats that are not read, by a line at the start."""
+"""Names of formats that are not read, by the lines at the start."""
 
 BLOCK = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:points of\s+)?(?P<kind>accel|acc|veloc|vel|displ|disp)\w*\s*(?:points|pts|data)?", re.I
@@ -83,7 +83,7 @@ def format_of(file: TextFile) -> str | None:
     if TRACE.match(file.head[0]):
         return "TIMESERIES"
     for pattern, name in REFUSED.items():
-        if any(re.search(pattern, line, re.I) for line in file.head[:12]):
+        if re.search(pattern, "\n".join(file.head[:12]), re.I | re.M):
             raise file.error(0, name, "AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet or SMC, or columns of numbers")
     if re.match(r"\s*(un)?corrected accelero", file.head[0], re.I):
         if any(BLOCK.match(line) for line in file.head):
@@ -184,9 +184,8 @@ def _geonet(file: TextFile, lines: Lines) -> Iterator[Channel]:
             counts, step = ints[33:36], reals[25]
             if len(ints) != 40 or not text or abs(step / to_float(text) - 1.0) > 1e-3:
                 raise file.error(k, f"a header with the interval {step:g} s", f"that of its text, {text or 'none'} s")
-            first, *others = (_numbers(file, k, lines, count, 8) for count in counts)
-            del others
-            yield Channel(name, first, k, step, MILLIMETRE, MILLIMETRE)
+            blocks = [_numbers(file, k, lines, count, 8) for count in counts]
+            yield Channel(name, blocks[0], k, step, MILLIMETRE, MILLIMETRE)
 
 
 def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
