@@ -233,6 +233,15 @@ ODD = {
     "csv of pandas": File(
         ",time_s,acc_g\n" + "".join(f"{k},{line}\n" for k, line in enumerate(pairs(header="").split()))
     ),
+    "csv of a telephone": File(
+        "time,seconds_elapsed,x\n"
+        + "".join(f"{10**18 + k * 10**7},{line}\n" for k, line in enumerate(pairs(header="").split())),
+        {"unit": "m/s2", "component": "x"},
+        unit="m/s2",
+    ),
+    "tabs of LabVIEW": File(pairs("\t", "X_Dimension\tTime\nX_Value\tAcc [g]\tComment\n")),
+    "dates and times of day in two columns": File(clock(header="Date,Time,a [g]\n", before="2019-02-03,")),
+    "csv with the end of a DOS file": File(pairs() + "\x1a"),
     "csv with several separators at its ends": File(pairs().replace("\n", ",,\n")),
     "two tabs between the columns": File(pairs("\t\t", "t [s]\t\ta [g]\n")),
     "one column below the title Record": File(single("Record\nunit: g\ndt: 0.01\n")),

@@ -125,6 +125,8 @@ def test_volume_1_in_g():
     [
         (csmip(), {}, "components Chan 1: 360 Deg, Chan 2: Up, Chan 3: 90 Deg; .*`component`"),
         (csmip(), {"component": "deg"}, "expected component deg"),
+        (csmip().replace("    37", "    32"), {"component": "1"}, "expected the end of a block, as its number"),
+        (smc() + "1.0 2.0\n", {}, "found more than 37 values"),
         (csmip()[:3000], {"component": "1"}, "values, and 37 stated in line"),
         (cosmos(real=False), {}, "COSMOS file that states no time step"),
         (cosmos().replace("cm/sec2(04)", "counts(50)"), {"unit": "g"}, "found counts; expected a unit"),

@@ -10,10 +10,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from rocking._base.cells import without_accents
-from rocking._base.units import UNITS, quantities_of, unit_name
+from rocking._base.units import UNITS, unit_name
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, overruled
 
 _SAMPLING = "muestreo|campionamento|amostragem|echantillonnage"
@@ -65,8 +65,6 @@ _RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "am
 _DECIMAL_COMMA = re.compile(r"[+-]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))", re.ASCII)
 """A number with a decimal comma that is no separator of thousands."""
 
-T = TypeVar("T", float, str)
-
 
 class Statement(NamedTuple):
     """One statement: index of its line, its text, and what it says; None if it is not understood."""
@@ -96,7 +94,7 @@ class Header:
         unknown = next((one for one in said if one.value is None), None)
         values = {*(_SAME.get(one.value, one.value) if isinstance(one.value, str) else one.value for one in said)}
         if given is not None and (unknown or len(values) > 1):
-            if unknown and name == "unit" and quantities_of(unknown.text.partition(":")[2].strip()) & {"m", "m/s"}:
+            if unknown and name == "unit":
                 self.file.overruled.append(overruled(unknown.text, "unit", str(given)))
             return Said(None, None)  # the argument decides
         if unknown is not None:

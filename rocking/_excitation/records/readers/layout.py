@@ -19,8 +19,6 @@ MAX_NAME = 60  # most characters of the name of a column; longer ones are senten
 
 _COMMENT = "#%!*/\"'"
 
-_DECIMAL_COMMA = (";", "\t")  # separators of columns beside which a comma is the decimal sign
-
 _UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:, *+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)*+\s*+")
 """A row that may be of numbers with decimal commas only."""
 
@@ -37,7 +35,7 @@ _BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[](?:[^()\[\]]++|\([^()\[\]]*+\))*+[
 KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
     r"(time(?! (history|series))|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)"
-    r"( (since|from|after|seit|depuis|desde)\b.*| \w+)?|timestamps?|seconds?|sekunden",
+    r"( (since|from|after|seit|depuis|desde)\b.*| \w+)?|timestamps?|seconds?( elapsed)?|sekunden|x value",
     "counter": r"(?!record$)(frames?|scan|tick|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|"
     r"step|bild|punkt|messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|"
     r"count|counter|zähler|lfd)( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)|(s|sr|sl) no",
@@ -55,8 +53,6 @@ SAMPLES = (
     r"rotations?|angle|theta|θ|phi|winkel|rotación|rotazione|time (history|series)"
 )
 """Names of columns of samples, as `KINDS`: a line of them alone names columns."""
-
-COUNTS = r"\d+"
 
 
 @dataclass(frozen=True)
@@ -178,7 +174,7 @@ def _counted(line: str) -> tuple[int, float] | None:
     if len(fields) != 2:
         return None
     for count, step in (fields, fields[::-1]):
-        if re.fullmatch(COUNTS, count) and int(count) > 1 and 0.0 < to_float(step) <= LONGEST_STEP:
+        if count.isdecimal() and int(count) > 1 and 0.0 < to_float(step) <= LONGEST_STEP:
             return int(count), to_float(step)
     return None
 
@@ -195,7 +191,7 @@ def _separator(line: str) -> tuple[str | None, bool]:
     if "\t\t" in line.strip():
         return None, "," in line
     mark = next((mark for mark in (";", "\t", ",") if mark in line.strip()), None)
-    return mark, mark in _DECIMAL_COMMA
+    return mark, mark in (";", "\t")  # beside which a comma is the decimal sign
 
 
 def fields_of(line: str, separator: str | None) -> list[str]:
@@ -288,6 +284,8 @@ def _names(line: str, separator: str | None, width: int, quantity: str, surely: 
         names = fields_of(joined if mark is None else line, mark)
         if mark is not None and names[0] == "":  # as pandas writes a counter
             names[0] = "index"
+        if len(names) == width + 1:  # dates are read with the times; comments are often empty
+            names = [name for name in names if name.lower() not in ("date", "datum", "fecha", "comment")]
         if mark is None and len(names) != width:
             names = re.split(r"\s{2,}", line)
         if len(names) != width or not all(map(_is_name, names)):

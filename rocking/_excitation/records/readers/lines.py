@@ -31,12 +31,12 @@ MAX_LINE = 8192  # most bytes of a line: several hundred columns. A longer one i
 HEAD_LINES = 200  # largest number of lines that are searched for a header
 CHUNK = 65536  # bytes of rows that are read at once: some milliseconds, in which no other thread may run
 MAX_SAMPLES = 10_000_000  # largest number of values that is read from one file [-]
-MAX_CLOSING = 200  # most bytes of a comment behind the last number, such as *** End data ***
+MAX_CLOSING = 200  # most bytes of a comment behind the last number, such as *** End data ***, or the end of a DOS file
 
 _FILL = re.compile(r"9{2,}(\.(9+|25))?")
 FILL_RATIO = 3.0  # a number of nines this many times larger than all other values stands for a missing one [-]
 
-_CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%][^\r\n]*\s*\Z")
+_CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%\x1a][^\r\n]*\s*\Z")
 
 COUNT_DIFFERENCE = 0.01
 """Largest difference between the number of values and the number that the header states, as a share of it [-]: headers

@@ -16,6 +16,7 @@ import numpy as np
 from rocking._base.arrays import Array
 from rocking._base.units import quantities_of
 from rocking._excitation.records.readers.header import units_in
+from rocking._excitation.records.readers.layout import is_row
 from rocking._excitation.records.readers.lines import (
     MAX_SAMPLES,
     NUMBER,
@@ -53,8 +54,6 @@ TRACE = re.compile(
 )
 """The line above a trace of TSPAIR and SLIST."""
 
-MILLIMETRE = "mm/s2"
-
 
 @dataclass(eq=False)
 class Channel:
@@ -71,9 +70,8 @@ class Channel:
 def format_of(file: TextFile) -> str | None:
     """The name of the format; None if it is none of these; those that are not read are refused."""
     start = file.head[:FIRST_LINES]
-    for line in start:
-        if re.match(r"(un)?corrected accelerogram \S+ +(GNS|GeoNet)", line, re.I):
-            return "GeoNet"
+    if any(re.match(r"(un)?corrected accelerogram \S+ +(GNS|GeoNet)", line, re.I) for line in start):
+        return "GeoNet"
     if any(re.search(r"\(Format v0?\d", line) for line in start) and not re.search(r"spectr", start[0], re.I):
         return "COSMOS"
     if re.match(r"[0-9] (un)?corrected accel", file.head[0], re.I) or (
@@ -129,15 +127,18 @@ def _chosen(file: TextFile, channels: list[Channel], component: str | None) -> C
 
 def _blocks(file: TextFile, lines: Lines) -> Iterator[Channel]:
     """The blocks of accelerations of COSMOS and CSMIP."""
-    name, reals = "", np.zeros(0)
+    name, reals, ended = "", np.zeros(0), False
     for k, raw in lines:
         line = decoded(raw)
+        if ended and is_row(line):
+            raise file.error(k, line, "the end of a block, as its number of values says")
+        ended = False
         if found := re.match(r"(?:sta )?chan?:? +(\S+?) *: *(.*?)(?: {2,}|\(|$)", line, re.I):
             name = f"Chan {found[1]}: {found[2]}".strip()
         elif found := re.match(r"(\d+) +real-header values", line, re.I):
             reals = _numbers(file, k, lines, int(found[1]), _width(line))
         elif found := BLOCK.match(line):
-            values = _numbers(file, k, lines, int(found["count"]), _width(line))
+            values, ended = _numbers(file, k, lines, int(found["count"]), _width(line)), True
             if not found["kind"].lower().startswith("acc"):
                 continue
             text = re.search(r"units?(?: of)? *[:=]? *([^()\s,]+)|\bin +(?!units)([^()\s,]+)", line, re.I)
@@ -185,7 +186,7 @@ def _geonet(file: TextFile, lines: Lines) -> Iterator[Channel]:
             if len(ints) != 40 or not text or abs(step / to_float(text) - 1.0) > 1e-3:
                 raise file.error(k, f"a header with the interval {step:g} s", f"that of its text, {text or 'none'} s")
             blocks = [_numbers(file, k, lines, count, 8) for count in counts]
-            yield Channel(name, blocks[0], k, step, MILLIMETRE, MILLIMETRE)
+            yield Channel(name, blocks[0], k, step, "mm/s2", "mm/s2")
 
 
 def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
@@ -201,7 +202,10 @@ def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
     if not 0.0 < rate < 1e6 or ints[16] < 2:
         rates = f"{rate:g} samples a second" if 0.0 < rate < 1e6 else "uneven intervals"
         raise file.error(k, f"{ints[16]:g} values at {rates}", "uniform samples and their number")
-    yield Channel(f"{ints[13]:g}", _numbers(file, k, lines, int(ints[16]), None), k, 1.0 / rate, "cm/s2", "cm/s2")
+    values = _numbers(file, k, lines, int(ints[16]), None)
+    if any(row for _, row in lines):
+        raise file.error(k, f"more than {ints[16]:g} values", "equal numbers")
+    yield Channel(f"{ints[13]:g}", values, k, 1.0 / rate, "cm/s2", "cm/s2")
 
 
 def _traces(file: TextFile, lines: Lines) -> Iterator[Channel]:
