@@ -353,7 +353,7 @@ DAMAGED = {
         single("a =\n\n   1.0e+02 *\n\n"), {"unit": "gal", "time_step": 0.01}, error="line 3: found a factor"
     ),
     "one column with a distance named delta": File(single("unit: g\nDelta: 5\n"), error="line 2: found Delta: 5"),
-    "one column with the rate of raw data": File(single("unit: g\nsps: 200 (raw)\n"), error="line 2: found sps: 200"),
+    "one column with the rate of raw data": File(single("unit: g\nsps: 200 (raw)\n"), error="no time step"),
     **{
         f"csv of a spectrum, {names}": File(pairs(header=f"{title}{names}\n"), {"unit": "g"}, error="found a spectrum")
         for title, names in (("", "T (s),Sa (g)"), ("", "T1 (s),Se(T1)"), ("EC8 spectrum\n", "T (s),a (g)"))
@@ -363,6 +363,11 @@ DAMAGED = {
         "\n".join(" ".join(pairs(" ", "").splitlines()[k : k + 2]) for k in range(0, 24, 2)),
         {"unit": "g", "time_step": 0.01, "component": "rows"},
         error="column 1, column 3, which rise uniformly",
+    ),
+    "rows of one series with their times": File(
+        "".join(f"{k / 25:.2f} {line}\n" for k, line in enumerate(rows(4).splitlines())),
+        {"unit": "g", "time_step": 0.01},
+        error="column 5; expected the argument `component`: one of them, or rows for one series",
     ),
     "three components of noise": File(
         "".join(f"{a:.4f} {b:.4f} {c:.4f}\n" for a, b, c in NOISE),

@@ -246,8 +246,7 @@ def _is_wrapped(layout: Layout, component: str | None) -> bool:
         series = whole.ravel()
         along, down = np.abs(np.diff(series)), np.abs(np.diff(whole, axis=0)).mean()
         places = [along[k::width].mean() for k in range(width)]
-        limit = SMOOTHER if width > 3 else SMOOTHER_OF_FEW
-        if along.mean() < limit * down and max(places) < 3.0 * min(places):
+        if along.mean() < (SMOOTHER if width > 3 else SMOOTHER_OF_FEW) * down and max(places) < 3.0 * min(places):
             return True
     names = ", ".join(one.name for one in layout.columns)
     expected = f"the argument `component`: one of them, or {WRAPPED} for one series along the rows"
@@ -323,7 +322,8 @@ def _chosen(layout: Layout, times: list[int], component: str | None) -> tuple[in
             if len(listed) == 1:
                 return listed[0], []
             names = ", ".join(columns[k].shown for k in listed)
-            raise file.error(layout.line, f"components {names}", "the argument `component`: one of them")
+            rows = f", or {WRAPPED} for one series along the rows" if layout.line is None and len(listed) > 3 else ""
+            raise file.error(layout.line, f"components {names}", f"the argument `component`: one of them{rows}")
         return samples[0], [columns[k].shown for k in others if k != samples[0]]
     plain = plain_name(component)
     for key in (

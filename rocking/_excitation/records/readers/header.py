@@ -60,7 +60,7 @@ LONGEST_STEP = 0.5  # longest step of a record [s] that is taken without a unit
 MAX_STATEMENT = 400  # characters at the start of a line in which settings are searched
 
 _RATES = {"": 1.0, "hz": 1.0, "sps": 1.0, "fps": 1.0, "1/s": 1.0, "samples/s": 1.0, "samples/sec": 1.0, "khz": 1000.0}
-_RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "amostras/s"), 1.0)
+_RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "amostras/s", "samples/second"), 1.0)
 
 _DECIMAL_COMMA = re.compile(r"[+-]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))", re.ASCII)
 """A number with a decimal comma that is no separator of thousands."""
@@ -166,12 +166,12 @@ def _setting(
         number, unit = _number(text)
         agree = not in_key or not unit or unit.lower() == in_key.lower()
         unit = unit or in_key
-        rate = _RATES.get(unit.lower().strip(" .").replace("second", "sec"))
-        scale = (rate if name == "rate" else _seconds(unit)) if number else None
+        scale = (_RATES.get(unit.lower().strip(" .")) if name == "rate" else _seconds(unit)) if number else None
         step = 0.0
-        if number and scale and agree and not re.search(r"\((raw|orig\w*|before\b.*)\)", text, re.I):
+        if number and scale and agree:
             step = number * scale if name == "step" else 1.0 / (number * scale)
-        yield "step", shown, step if step and (unit or step <= LONGEST_STEP) else None
+        if not re.search(r"\((raw|orig\w*|before\b.*)\)", text, re.I):
+            yield "step", shown, step if step and (unit or step <= LONGEST_STEP) else None
     else:
         number, unit = _number(text)
         if number and not unit:
