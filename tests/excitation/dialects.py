@@ -41,7 +41,7 @@ DECOYS = [
     "frequency: 5 Hz", "Pre-event time: 10 s", "sensitivity unit: V/g", "Filter step: 3", "Duration = 12.5 s",
     "Natural period = 0.5 s", "Date: 1.2.2003",
     "start time: 12:30:05.25", "raw sampling rate: 1000 Hz", "Corner frequency, low = 0.05 Hz", "units of distance: km",
-    "dt of the filter = 0.5 s", "time step of output files: 0.1 s", "site: rock, unit B",
+    "dt of the filter = 0.5 s", "sps: 200 (raw)", "time step of output files: 0.1 s", "site: rock, unit B",
 ]  # fmt: skip
 STEPS = [
     "dt = {s:g} s", "dt: {s:g}", "time step: {ms:g} ms", "Sampling rate: {hz:g} Hz", "SAMPLING INTERVAL (sec) : {s:g}",

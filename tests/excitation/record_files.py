@@ -216,8 +216,58 @@ ODD = {
             *("Abtastrate: 100 Hz", "Zeitschritt dt: 0.01 s", "Örnekleme aralığı: 0.01 s"),
         )
     },
+    "at2 with DT in milliseconds": File(at2("NPTS= 24, DT= 10 MSEC")),
+    "at2 with a blank line below its header": File(at2(body="\n" + rows())),
+    "at2 with names above count and step": File("shock\nnpts dt\n24 0.01\n" + single(), {"unit": "g"}),
+    "csv of E, N, Z": File(THREE.replace("NS_g,EW_g", "N,E"), {"unit": "g", "component": "N"}),
+    "csv of T, L": File(
+        "T,L\n" + "".join(f"{v:.6f},1\n" for v in values()), {"unit": "g", "time_step": 0.01, "component": "T"}
+    ),
+    "blanks, with azimuths for names": File(
+        "time N00E V\n" + THREE.split("\n", 1)[1].replace(",", " "), {"unit": "g", "component": "n00e"}
+    ),
+    "csv of a, v, d without units": File(
+        "t,a,v,d\n" + "".join(f"{line},0.5\n" for line in THREE.splitlines()[1:]), {"unit": "g"}
+    ),
+    "csv with a row of units without brackets": File("t,a,v\ns,g,cm/s\n" + THREE.split("\n", 1)[1]),
+    "csv of pandas": File(
+        ",time_s,acc_g\n" + "".join(f"{k},{line}\n" for k, line in enumerate(pairs(header="").split()))
+    ),
+    "csv of a telephone": File(
+        "time,seconds_elapsed,x\n"
+        + "".join(f"{10**18 + k * 10**7},{line}\n" for k, line in enumerate(pairs(header="").split())),
+        {"unit": "m/s2", "component": "x"},
+        unit="m/s2",
+    ),
+    "tabs of LabVIEW": File(pairs("\t", "X_Dimension\tTime\nX_Value\tAcc [g]\tComment\n")),
+    "dates and times of day in two columns": File(clock(header="Date,Time,a [g]\n", before="2019-02-03,")),
+    "csv with the end of a DOS file": File(pairs() + "\x1a"),
+    "csv with several separators at its ends": File(pairs().replace("\n", ",,\n")),
+    "two tabs between the columns": File(pairs("\t\t", "t [s]\t\ta [g]\n")),
+    "one column below the title Record": File(single("Record\nunit: g\ndt: 0.01\n")),
+    "one column with small decimal commas": File(single("unit: g\ndt: 0,01\n").replace(".", ",")),
+    "one column with a rate in samples/second": File(single("unit: g\nsampling rate: 100 [samples/second]\n")),
+    "one column in spanish": File(single("UNIDADES DE LOS DATOS: Gal (cm/s/s)\ndt: 0.01\n"), unit="gal"),
+    "one column with BHRC in its title": File(single("BHRC, Iran\nunit: g\ndt: 0.01\n")),
+    "times in another unit and a step": File(times_in("t (10 ms)", 100.0), {"time_step": 0.01}),
+    "times rounded to the same and a step": File(pairs(step=0.005, digits=2), {"time_step": 0.005}, step=0.005),
+    "times of day below a title of numbers": File("35.1, 139.2\n" + clock(header=""), {"unit": "g"}),
+    "a title in two numbers above rows of two": File(
+        "24 0.01\n" + rows(2, "{:10.6f}"), {"unit": "g", "component": "rows"}
+    ),
+    **{
+        f"rows of one series with their {name}": File(
+            "".join(form.format(k + 1, line) for k, line in enumerate(rows(4, "{:10.6f}").splitlines())),
+            {"unit": "g", "time_step": 0.01, "component": "rows"},
+        )
+        for name, form in (("numbers first", "{:5d}{}\n"), ("numbers last", "{1}{0:7d}\n"))
+    },
     "csv named like AT2 values": File(pairs(header="time (sec),acceleration (G)\n")),
 }
+
+_RANDOM = np.random.default_rng(7)
+NOISE = _RANDOM.uniform(0.5, 1.0, (100, 3)) * np.where(_RANDOM.random((100, 3)) < 0.85, -1.0, 1.0).cumprod(axis=0)
+"""Components whose samples often change their signs, so that those of a row differ less than those of a column."""
 
 DAMAGED = {
     "nothing": File("", error="an empty file"),
@@ -243,7 +293,7 @@ DAMAGED = {
     "at2 with a negative NPTS": File(at2("NPTS= -24, DT= .01 SEC"), error="line 4"),
     "at2 of velocity": File(at2(units="CM/S").replace("ACCELERATION", "VELOCITY"), error="line 3: found VELOCITY"),
     "at2 of an unknown unit": File(at2(units="FURLONGS"), error="line 3: found FURLONGS"),
-    "at2 with a blank line inside": File(replaced(at2(), "\n ", "\n\n "), error="a blank line"),
+    "at2 with a blank line inside": File(at2(body=replaced(rows(), "\n", "\n\n")), error="a blank line"),
     "at2 with a component": File(at2(), {"component": "x"}, error="one component"),
     "at2 of zeros": File(at2(body="0.0 " * 24), error="all samples 0"),
     "esm without interval": File(esm({"SAMPLING_INTERVAL_S": None, "UNITS": "cm/s^2"}), error="found"),
@@ -273,6 +323,56 @@ DAMAGED = {
     ),
     "knet with one of 25 values missing": File(
         KNET_HEADER.replace("0.24", "0.25") + KNET_ROWS, error="line 12: found 25 stated, 24 values"
+    ),
+    "csv with -999 for a missing value": File(replaced(pairs(), "0.122560", "-999.0"), error="the value -999, as for"),
+    "csv with n/a for the first value": File(replaced(pairs(), "0.000000", "n/a"), error="line 2: found 0.000,n/a"),
+    "tabs and thousands": File(
+        "t [s]\ta [mm/s2]\n0.00\t0\n0.01\t-35\n0.02\t1,104\n", error="found 1,104, whose , may part thousands"
+    ),
+    "one column with its number of values at the end": File(
+        single("unit: g\ndt: 0.01\n") + "24\n", error="24 behind as many values; .*`skip`: 0"
+    ),
+    "one column with its peak first": File(
+        f"{max(values())}\n" + single(), {"unit": "g", "time_step": 0.01}, error="before 0.000000; .*`skip`: 1"
+    ),
+    "one column with a factor of other decimals": File(
+        "1.5\n" + single().replace("0.", "9."), {"unit": "gal", "time_step": 0.01}, error="1.5 before .*`skip`: 1"
+    ),
+    "csv with factors below the names": File(
+        "NS,EW\n1.0,1.0\n" + pairs(header=""),
+        {"unit": "g", "time_step": 0.01, "component": "EW"},
+        error="1.0 before 0.000000; .*`skip`: 1",
+    ),
+    "components one below the other": File(
+        single("unit: g\ndt: 0.01\nNPTS: 24\n") + single(), error="line 3: found NPTS: 24, and 48 values; .*`skip`"
+    ),
+    "one column of displacements": File(
+        single("DISPLACEMENT TIME SERIES IN UNITS OF CM\n"), {"unit": "gal", "time_step": 0.01}, error="line 1"
+    ),
+    "one column with a factor of MATLAB": File(
+        single("a =\n\n   1.0e+02 *\n\n"), {"unit": "gal", "time_step": 0.01}, error="line 3: found a factor"
+    ),
+    "one column with a distance named delta": File(single("unit: g\nDelta: 5\n"), error="line 2: found Delta: 5"),
+    "one column with the rate of raw data": File(single("unit: g\nsps: 200 (raw)\n"), error="no time step"),
+    **{
+        f"csv of a spectrum, {names}": File(pairs(header=f"{title}{names}\n"), {"unit": "g"}, error="found a spectrum")
+        for title, names in (("", "T (s),Sa (g)"), ("", "T1 (s),Se(T1)"), ("EC8 spectrum\n", "T (s),a (g)"))
+    },
+    "csv of times named acc": File(pairs(" ", "acc vel\n"), {"unit": "g", "time_step": 0.01}, error="acc, which rises"),
+    "pairs of times and values in one series": File(
+        "\n".join(" ".join(pairs(" ", "").splitlines()[k : k + 2]) for k in range(0, 24, 2)),
+        {"unit": "g", "time_step": 0.01, "component": "rows"},
+        error="column 1, column 3, which rise uniformly",
+    ),
+    "rows of one series with their times": File(
+        "".join(f"{k / 25:.2f} {line}\n" for k, line in enumerate(rows(4).splitlines())),
+        {"unit": "g", "time_step": 0.01},
+        error="column 5; expected the argument `component`: one of them, or rows for one series",
+    ),
+    "three components of noise": File(
+        "".join(f"{a:.4f} {b:.4f} {c:.4f}\n" for a, b, c in NOISE),
+        {"unit": "g", "time_step": 0.01},
+        error="components|3 columns without names",
     ),
     "csv without unit": File(pairs(header="time,acceleration\n"), error="no unit of acceleration"),
     "csv with whole numbers for times without a name": File(

@@ -48,6 +48,9 @@ def test_a_number_of_values_that_the_header_does_not_state_is_a_remark_that_rema
     assert record.source == "x.at2 (PEER AT2)"
     assert record.baseline_corrected().remarks == record.resampled(0.005).remarks == record.remarks
     assert parse_record(at2().encode(), "x.at2").remarks == ()
+    assert parse_record(f"NPTS: 20\n{pairs()}".encode(), "x").remarks == (
+        "the file holds 24 samples, its header states NPTS: 20",
+    )
 
 
 @pytest.mark.parametrize(
@@ -58,8 +61,9 @@ def test_a_number_of_values_that_the_header_does_not_state_is_a_remark_that_rema
         (pairs(), "the unit g"),
         (KNET_HEADER + KNET_ROWS, "the unit gal"),
         ("unit: g\nunit: gal\ndt: 0.01 s\n0.1\n0.2\n-0.1\n", ""),
+        ("unit: counts\ndt: 0.01 s\n0.1\n0.2\n-0.1\n", "unit: counts"),
     ],
-    ids=["AT2", "ESM", "columns", "K-NET", "two units"],
+    ids=["AT2", "ESM", "columns", "K-NET", "two units", "counts"],
 )
 def test_an_argument_beats_the_file_with_a_remark_that_names_both(file: str, stated: str) -> None:
     """What is ambiguous in the file alone is settled by the argument without one."""

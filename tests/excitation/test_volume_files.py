@@ -125,6 +125,8 @@ def test_volume_1_in_g():
     [
         (csmip(), {}, "components Chan 1: 360 Deg, Chan 2: Up, Chan 3: 90 Deg; .*`component`"),
         (csmip(), {"component": "deg"}, "expected component deg"),
+        (csmip().replace("    37", "    32"), {"component": "1"}, "expected the end of a block, as its number"),
+        (smc() + "1.0 2.0\n", {}, "found more than 37 values"),
         (csmip()[:3000], {"component": "1"}, "values, and 37 stated in line"),
         (cosmos(real=False), {}, "COSMOS file that states no time step"),
         (cosmos().replace("cm/sec2(04)", "counts(50)"), {"unit": "g"}, "found counts; expected a unit"),
@@ -133,6 +135,7 @@ def test_volume_1_in_g():
         ("Response and Fourier amplitude spectra\n1 2\n", {}, "response spectra .Volume 3."),
         ("* VOL1DS FILE:  5522/01\nUNITS ARE SECONDS AND G/10\n1 2\n", {}, "a BHRC Volume 1 file"),
         ("UNCORRECTED ACCELEROGRAM DATA\n\n\nRENADIC\n0.0 1.0\n", {}, "a RENADIC Volume 1 file"),
+        ("FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\n0.0 1.0\n", {}, "a USC Volume 1 file, with a time"),
         ("CORRECTED ACCELEROGRAM OF SOMEBODY\n1 2 3\n", {}, "CORRECTED ACCELEROGRAM OF SOMEBODY; expected a Volume"),
         (
             smc().replace("2.0000000E+02", "1.7000000E+38"),

@@ -6,7 +6,7 @@ from dataclasses import replace
 from rocking._excitation.records.readers.lines import TextFile
 
 _TIME = (
-    r"(?<![\w:./-])(?:\d{1,4}([-/.])\d\d?\1\d{1,4}[T \t])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?"
+    r"(?<![\w:./-])(?:\d{1,4}([-/.])\d\d?\1\d{1,4}[T \t,;])?(\d\d?):(\d\d):(\d\d)(?:[.,](\d{1,9}))?"
     r"(?:Z|[+-]\d\d:?\d\d)?(?![\w:.])"
 )
 CLOCK = re.compile(_TIME, re.ASCII | re.IGNORECASE)

@@ -9,15 +9,16 @@ import re
 from array import array
 from dataclasses import replace
 from decimal import Decimal
-from itertools import chain
+from itertools import chain, islice
 
 import numpy as np
 
 from rocking._base.arrays import Array
 from rocking._base.errors import RecordFileError
 from rocking._base.units import UNITS
+from rocking._excitation.records.readers.header import LONGEST_STEP, OTHER_SERIES
 from rocking._excitation.records.readers.layout import (
-    LONGEST_STEP,
+    MAX_NAMES,
     Column,
     Layout,
     base_name,
@@ -28,6 +29,7 @@ from rocking._excitation.records.readers.layout import (
     plain_name,
 )
 from rocking._excitation.records.readers.lines import (
+    HEAD_LINES,
     MAX_LINE,
     MAX_SAMPLES,
     NUMBER,
@@ -49,18 +51,29 @@ MAX_TIME = 1e12  # largest time in a column of times [s]; times are often counte
 WRAPPED = "rows"  # the component that stands for the values of all columns, row by row
 JUMP = 3.0  # a leading value this many times larger than all others is no sample [-]
 
-SMOOTHER = 0.8
+SMOOTHER = 0.6
 """Sum of the steps along the rows over that down the columns below which the rows are one series [-]: of records of 100
-and 200 samples a second in 3 to 10 columns it is 0.2 to 0.6, of three components about 1.5 and more."""
+and 200 samples a second in 3 to 10 columns it is 0.2 to 0.6, of three components of noise 0.66 and more."""
+
+SMOOTHER_OF_FEW = 0.5  # the same for two or three columns, which usually are components
 
 
 def read(file: TextFile, unit: str | None, time_step: float | None, component: str | None, skip: int | None) -> Record:
     """Read columns; arguments and errors as for `read_record`."""
     layout = find_layout(file, skip)
     header = layout.header
-    spectrum = any(re.match(r"(natural )?period|freq", plain_name(one.name)) for one in layout.columns)
-    if spectrum or any(re.search(r"response spectr|fourier", line, re.I) for line in file.head[: layout.first]):
+    names, above = [plain_name(one.name) for one in layout.columns], " ".join(file.head[: layout.first])
+    spectrum = any(re.match(r"(natural )?period|freq", name) for name in names)
+    if any(re.fullmatch(r"t ?[1n]?", name) for name in names):  # a time or a period
+        spectrum |= any(re.search(r"\bp?s[adev]\b|respon", name) for name in names) or "spectr" in above.lower()
+    if spectrum or re.search(r"response spectr|fourier", above, re.I):
         raise file.error(layout.line, "a spectrum", "a recorded ground acceleration against time")
+    for k, line in enumerate(file.head[: layout.first]):
+        if layout.width == 1 and OTHER_SERIES.search(line):
+            raise file.error(k, line.strip(), "accelerations")
+        if re.fullmatch(r"\s*\d\S*e[+-]?\d+ *\*\s*", line, re.I):
+            raise file.error(k, f"a factor of all numbers below, {line.strip()}", "numbers in full")
+    _check_thousands(layout)
     times = _time_columns(layout)
     if layout.line is None and layout.width > 1:
         times = [] if component == WRAPPED else _unnamed_times(layout)
@@ -68,6 +81,8 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
         if not times and not counted and component in (None, WRAPPED) and _is_wrapped(layout, component):
             return _wrapped(layout, unit, time_step)
         times = [k for k in times if layout.columns[k].name != component]
+    elif component == "T":  # transverse, if it does not rise
+        times = [k for k in times if layout.columns[k].name != "T" or _rises(_table(layout, [k])[0])]
     chosen, unused = _chosen(layout, times, component)
     column = layout.columns[chosen]
     _check_name(layout, column)
@@ -82,9 +97,14 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
     agreed = agreed_unit(file, layout.line if in_name else stated.line, None if said is None else str(said), unit)
     before = [k for k in times if k < chosen] or times
     measured = None
+    try:
+        in_seconds = _time_factor(layout, layout.columns[before[-1]]) if before else 1.0
+    except RecordFileError as error:
+        if time_step is None:
+            raise file.error(layout.line, error.value, f"{error.expected}; or the argument `time_step`") from None
+        before = []
     if before:
         found_times, values = _table(layout, [before[-1], chosen])
-        in_seconds = _time_factor(layout, layout.columns[before[-1]])
         known = time_step or header.step(time_step).value
         place = _last_place(layout, before[-1]) * in_seconds
         measured = _uniform_step(layout, found_times * in_seconds, place, known)
@@ -97,14 +117,17 @@ def read(file: TextFile, unit: str | None, time_step: float | None, component: s
                 raise _no_unit_of_times(layout, measured)
     else:
         (values,) = _table(layout, [chosen])
+        if layout.width > 1 and _is_uniform(values):
+            raise file.error(layout.line, f"{column.shown}, which rises uniformly", "a column of accelerations")
     file.check_values(values)
-    if layout.width == 1 and not layout.skipped and layout.counted is None:
-        _check_leading(layout, values, time_step)
+    remarks = (*header.remarks(), *_check_count(layout, values))
+    if not before and not layout.skipped and layout.counted is None:
+        _check_leading(layout, values, time_step, slice(chosen, chosen + 1))
     step = _agreed_step(layout, values.size, measured, time_step)
     stem = file.name.rsplit(".", 1)[0]
     name = stem if component is None else f"{stem} {column.name}"
     left = f"; not used: {', '.join(unused)}" if unused else ""
-    return Record(values, step, agreed, name=name, source=f"{file.name} (columns{left})", remarks=header.remarks())
+    return Record(values, step, agreed, name=name, source=f"{file.name} (columns{left})", remarks=remarks)
 
 
 def read_samples(file: TextFile, most: int) -> tuple[int, Array | None, Array]:
@@ -211,11 +234,7 @@ def _unnamed_times(layout: Layout) -> list[int]:
         return []  # perhaps one series, whose last row is shorter
     (values,) = _table(layout, [0])
     if not _rises(values):
-        if (
-            values.size > 3
-            and _rises(values[1:])
-            and np.ptp(np.diff(values[1:])) < STEP_TOLERANCE * np.diff(values[1:]).max()
-        ):
+        if _is_uniform(values[1:]):
             found = f"{layout.file.head[layout.first].strip()} above rows whose first numbers rise"
             more = "" if layout.skipped else ", or the argument `skip`"
             raise layout.file.error(layout.first, found, f"times from the first row on{more}")
@@ -238,18 +257,16 @@ def _is_wrapped(layout: Layout, component: str | None) -> bool:
     file, width = layout.file, layout.width
     if component == WRAPPED:
         return True
-    cells = [cells_of(layout, row) for row in file.head[layout.first :] if row.strip()]
-    lines = [[*map(to_float, row)] for row in cells if all(map(NUMBER.fullmatch, row))]
     counts = [one.value for one in layout.header.found.get("count", [])] + [layout.counted[0] if layout.counted else 0]
     rows = count_rows(file, layout.first)
     if any((rows - 1) * width < (count or 0) <= rows * width for count in counts) and rows not in counts:  # type: ignore[operator]
         return True
-    whole = np.array([row for row in lines if len(row) == width])
+    whole = _whole_rows(layout)
     if len(whole) > 2 and rows not in counts and np.isfinite(whole).all():
         series = whole.ravel()
         along, down = np.abs(np.diff(series)), np.abs(np.diff(whole, axis=0)).mean()
         places = [along[k::width].mean() for k in range(width)]
-        if along.mean() < SMOOTHER * down and max(places) < 3.0 * min(places):
+        if along.mean() < (SMOOTHER if width > 3 else SMOOTHER_OF_FEW) * down and max(places) < 3.0 * min(places):
             return True
     names = ", ".join(one.name for one in layout.columns)
     expected = f"the argument `component`: one of them, or {WRAPPED} for one series along the rows"
@@ -261,27 +278,55 @@ def _wrapped(layout: Layout, unit: str | None, time_step: float | None) -> Recor
     file, header = layout.file, layout.header
     said = header.unit(unit)
     agreed = agreed_unit(file, said.line, None if said.value is None else str(said.value), unit)
-    if layout.separator is None and not layout.comma:
+    remarks, width, kept = list(header.remarks()), layout.width, slice(None)
+    if (numbers := _numbers_of_rows(layout)) is not None:
+        width, kept = width - 1, slice(None, -1) if numbers else slice(1, None)
+        remarks.append(f"the {'last' if numbers else 'first'} column rises uniformly, and is no part of the series")
+    if layout.separator is None and not layout.comma and numbers is None:
         values = file.values(layout.first)
     else:
         lines = chain.from_iterable(lines for _, lines in file.rows(layout.first))
-        texts = chain.from_iterable(cells_of(layout, decoded(line)) for line in lines if line)
+        texts = chain.from_iterable(cells_of(layout, decoded(line))[kept] for line in lines if line)
         values = np.array([file.number(layout.first, text, "a number") for text in texts])
         file.check_values(values)
     rows = count_rows(file, layout.first)
-    if not (rows - 1) * layout.width < values.size <= rows * layout.width:
-        raise file.error(layout.first, f"{values.size} values in {rows} lines", f"{layout.width} values in each line")
+    if not (rows - 1) * width < values.size <= rows * width:
+        raise file.error(layout.first, f"{values.size} values in {rows} lines", f"{width} values in each line")
+    if not layout.skipped and layout.counted is None:
+        _check_leading(layout, values, time_step, kept)
     step = _agreed_step(layout, values.size, None, time_step)
-    remarks = list(header.remarks())
     for one in header.found.get("count", []):
         remarks += file.checked_count(values, int(one.value or 0), one.line)
     source = f"{file.name} (columns, one series along the rows)"
     return Record(values, step, agreed, name=file.name.rsplit(".", 1)[0], source=source, remarks=remarks)
 
 
+def _whole_rows(layout: Layout) -> Array:
+    """The first rows that have as many numbers as the first one, shape (rows, columns)."""
+    cells = (cells_of(layout, row) for row in layout.file.head[layout.first :])
+    rows = [[*map(to_float, row)] for row in cells if len(row) == layout.width and all(map(NUMBER.fullmatch, row))]
+    return np.array(rows).reshape(len(rows), layout.width)
+
+
+def _numbers_of_rows(layout: Layout) -> int | None:
+    """The first or the last of the columns of one series, if it numbers the rows or holds times."""
+    table = _whole_rows(layout)
+    found = [k for k in range(layout.width) if len(table) > 3 and _is_uniform(table[:, k])]
+    if found and found not in ([0], [layout.width - 1]):
+        names = ", ".join(layout.columns[k].name for k in found)
+        raise layout.file.error(layout.first, f"{names}, which rise uniformly", "rows of samples only")
+    return found[0] if found else None
+
+
 def _rises(values: Array) -> bool:
     """Whether there are several values, each above the one before."""
     return values.size > 1 and bool((np.diff(values) > 0.0).all())
+
+
+def _is_uniform(values: Array) -> bool:
+    """Whether there are at least three values that rise by equal steps."""
+    steps = np.diff(values)
+    return _rises(values) and values.size > 2 and bool(np.ptp(steps) < STEP_TOLERANCE * steps.max())
 
 
 def _chosen(layout: Layout, times: list[int], component: str | None) -> tuple[int, list[str]]:
@@ -297,7 +342,8 @@ def _chosen(layout: Layout, times: list[int], component: str | None) -> tuple[in
             if len(listed) == 1:
                 return listed[0], []
             names = ", ".join(columns[k].shown for k in listed)
-            raise file.error(layout.line, f"components {names}", "the argument `component`: one of them")
+            rows = f", or {WRAPPED} for one series along the rows" if layout.line is None and len(listed) > 3 else ""
+            raise file.error(layout.line, f"components {names}", f"the argument `component`: one of them{rows}")
         return samples[0], [columns[k].shown for k in others if k != samples[0]]
     plain = plain_name(component)
     for key in (
@@ -352,25 +398,59 @@ def _agreed_step(layout: Layout, count: int, measured: float | None, given: floa
     return agreed_step(file, layout.first, measured, given)
 
 
-def _check_leading(layout: Layout, values: Array, time_step: float | None) -> None:
-    """Refuse one column that begins with a count, a step or a factor, by size and form, unless `skip` is stated."""
-    texts = [row.strip() for row in layout.file.head[layout.first :] if row.strip()]
+def _check_thousands(layout: Layout) -> None:
+    """Refuse numbers such as 1,104 if all with this sign have three digits behind it: it may part thousands."""
+    content, start = layout.file.content, layout.file.start_of(layout.first)
+    for sign in (b",", b".") if layout.separator in (";", "\t") else ():
+        place = content.rfind(b"\n", 0, max(content.find(sign, start), start)) + 1
+        numbers = re.compile(rb"(?<![^\s;])[^\s;%b]*+[%b][^\s;]*+" % (sign, sign))
+        fields = [*islice(numbers.finditer(content, place), MAX_NAMES)]
+        if fields and all(_THOUSANDS.fullmatch(field[0]) for field in fields):
+            found = f"{decoded(fields[0][0])}, whose {decoded(sign)} may part thousands"
+            raise layout.file.error(None, found, "numbers without it, or with decimals that show what it is")
+
+
+_THOUSANDS = re.compile(rb"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
+
+
+def _check_count(layout: Layout, values: Array) -> list[str]:
+    """The remark on a number of values that the header does not state; several components one below the other."""
+    remarks = []
+    for one in layout.header.found.get("count", []):
+        times = values.size / float(one.value or 1)
+        if times in (2.0, 3.0) and layout.width == 1 and not layout.skipped:
+            allowed = "one component; or the argument `skip`, 0 if all are samples of one"
+            raise layout.file.error(one.line, f"{one.text}, and {values.size} values", allowed)
+        if times != 1.0 and 0.1 < times < 10.0:
+            remarks.append(f"the file holds {values.size} samples, its header states {one.text}")
+    return remarks
+
+
+def _check_leading(layout: Layout, values: Array, time_step: float | None, kept: slice) -> None:
+    """Refuse some columns with a count, a step or a factor at the start, or a count at the end, by size and form."""
+    if values[-1] == values.size - 1 and values[-1] > JUMP * np.abs(values[:-1]).max():
+        found = f"{values[-1]:g} behind as many values"
+        raise layout.file.error(None, found, "samples only; or the argument `skip`: 0")
+    rows = (cells_of(layout, row)[kept] for row in layout.file.head[layout.first :] if row.strip())
+    texts = [*chain.from_iterable(rows)][:HEAD_LINES]
     forms, digits = zip(*map(_form, texts), strict=True)
     uniform = len(texts) > 6 and len({*forms[3:]}) == 1
-    exact = len(texts) > 12 and sum(count > 4 for count in digits[3:]) > 0.8 * (len(texts) - 3)
-    said = layout.header.found.get("step", [])
-    steps = [one.value for one in said] + [time_step]
+    exact = len(texts) > 12 and sum(count > 3 for count in digits[3:]) > 0.8 * (len(texts) - 3)
+    stated = [one.value for one in layout.header.found.get("step", [])] + [time_step, *_GRAVITY]
     lead = 0
     for k in range(min(3, values.size - 2)):
         value, others = abs(values[k]), np.abs(values[k + 1 :]).max()
-        counted = value > 3.0 and values.size - 3 <= value <= values.size
-        known = value == round(value) or value <= LONGEST_STEP
-        written = (uniform and forms[k] != forms[-1]) or (exact and digits[k] <= 2)
-        if value > 0.0 and (counted or value > JUMP * others or value in (*steps, *_GRAVITY) or (written and known)):
+        whole = value == round(value)
+        counted = whole and value > 3.0 and values.size - 3 <= value <= values.size
+        written = forms[k] != forms[-1] if uniform else exact and digits[k] <= 2 and (whole or value <= LONGEST_STEP)
+        peak = value == others > 2.0 * abs(values[k + 1])
+        known = layout.width == 1 and values[k] in stated
+        if value > 0.0 and (counted or peak or known or written or value > JUMP * others):
             lead = k + 1
     if lead:
         shown = ", ".join(texts[:lead])
-        allowed = f"samples only; or the argument `skip`: {lead} if these are a count, a step or a factor, 0 if samples"
+        skip = -(-lead // len(range(layout.width)[kept]))
+        allowed = f"samples only; or the argument `skip`: {skip} if these are a count, a step or a factor, 0 if samples"
         raise layout.file.error(layout.first, f"{shown} before {texts[lead]}", allowed)
 
 
@@ -416,6 +496,8 @@ def _row(layout: Layout, index: int, line: str) -> list[float]:
     if line.startswith(("#", "%", "!")):  # it may stand for rows that are missing
         raise file.error(index, f"the comment {line}", "comments only above the first row")
     fields = fields_of(line, layout.separator)
+    if not line:
+        raise file.error(index, "a blank line", "a number")
     if len(fields) != layout.width:
         raise file.error(index, f"{len(fields)} columns", f"{layout.width}, as in line {layout.first + 1}")
     wrong = next((part for part in fields if not NUMBER.fullmatch(part)), None)
@@ -475,6 +557,9 @@ def _uniform_step(layout: Layout, times: Array, place: float, known: float | str
         raise file.error(first, "one row", "at least 2")
     if not np.abs(times).max() <= MAX_TIME:
         raise file.error(None, f"a time of {np.abs(times).max():g} s", f"times up to {MAX_TIME:g} s")
+    known = None if known is None else float(known)
+    if known and place > LARGEST_ROUNDING * known and np.ptp(times - known * np.arange(times.size)) <= 1.001 * place:
+        return known  # several times are rounded to the same
     step = float((times[-1] - times[0]) / (times.size - 1))
     middle = float(np.median(np.diff(times), overwrite_input=True))
     if not (middle > 0.0 and np.isfinite(middle)):
@@ -487,8 +572,8 @@ def _uniform_step(layout: Layout, times: Array, place: float, known: float | str
             if known is None:
                 allowed = "times with more decimals, a step in the header, or the argument `time_step`"
                 raise file.error(first, f"times rounded to {place:g} s, about {step:.3g} s apart", allowed)
-            if abs(float(known) - step) * (times.size - 1) <= place:
-                return float(known)
+            if abs(known - step) * (times.size - 1) <= place:
+                return known
         return float(f"{step:.12g}")  # removes the rounding of the difference
     wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
     more = "; or the argument `skip`" if wrong == 0 and not layout.skipped else ""

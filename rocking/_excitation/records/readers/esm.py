@@ -20,8 +20,6 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
         key, value = file.head[first].split(":", 1)
         header[key.strip().upper()] = first, value.strip()
         first += 1
-    while first < len(file.head) and not file.head[first].strip():  # as in files of AFAD
-        first += 1
 
     def entry(key: str) -> tuple[int, str]:
         if key not in header:

@@ -10,18 +10,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from rocking._base.cells import without_accents
 from rocking._base.units import UNITS, unit_name
-from rocking._excitation.records.readers.lines import NUMBER, TextFile
+from rocking._excitation.records.readers.lines import NUMBER, TextFile, overruled
 
 _SAMPLING = "muestreo|campionamento|amostragem|echantillonnage"
 
 KEYS = {
     "unit": r"(the )?((data|accel\w*?|acc|amplitude|y|sample|record|signal|rotation|angle) ?)?"
     r"(units?|einheit(en)?|unites?|unita|unidad(e|es)?|eenheid|birim)"
-    r"( (of|de|der|des|di) (the )?(accel\w*|beschleunigung\w*|data|samples|record|rotations?))?",
+    r"( (of|de|der|des|di) (the |los |las )?(ac[ce]el\w*|beschleunigung\w*|data|datos|samples|record|rotations?))?",
     "quantity": r"acc|accel|accelerations?|beschleunigung|rotations?",
     "step": r"dt|δt|d t|delta|delta t|step|"
     r"(time|sampling|sample|digiti[sz]ation) ?(step|interval|increment|spacing|period)s?|"
@@ -53,15 +53,17 @@ SENTENCES = tuple(
 )
 """Sentences with a setting."""
 
+OTHER_SERIES = re.compile(r"^(?!.*\bacc).*\b(velocity|displacement)\s+(time|history|histories|series)\b", re.I)
+"""A line that says what the numbers are if they are no accelerations."""
+
+LONGEST_STEP = 0.5  # longest step of a record [s] that is taken without a unit
 MAX_STATEMENT = 400  # characters at the start of a line in which settings are searched
 
 _RATES = {"": 1.0, "hz": 1.0, "sps": 1.0, "fps": 1.0, "1/s": 1.0, "samples/s": 1.0, "samples/sec": 1.0, "khz": 1000.0}
-_RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "amostras/s"), 1.0)
+_RATES |= dict.fromkeys(("muestras/s", "muestras por segundo", "campioni/s", "amostras/s", "samples/second"), 1.0)
 
 _DECIMAL_COMMA = re.compile(r"[+-]?(?:0,\d+|\d+,(?:\d{1,2}|\d{4,}))", re.ASCII)
 """A number with a decimal comma that is no separator of thousands."""
-
-T = TypeVar("T", float, str)
 
 
 class Statement(NamedTuple):
@@ -92,6 +94,8 @@ class Header:
         unknown = next((one for one in said if one.value is None), None)
         values = {*(_SAME.get(one.value, one.value) if isinstance(one.value, str) else one.value for one in said)}
         if given is not None and (unknown or len(values) > 1):
+            if unknown and name == "unit":
+                self.file.overruled.append(overruled(unknown.text, "unit", str(given)))
             return Said(None, None)  # the argument decides
         if unknown is not None:
             raise self.file.error(unknown.line, unknown.text, f"{expected}; or the argument `{argument}`")
@@ -163,10 +167,11 @@ def _setting(
         agree = not in_key or not unit or unit.lower() == in_key.lower()
         unit = unit or in_key
         scale = (_RATES.get(unit.lower().strip(" .")) if name == "rate" else _seconds(unit)) if number else None
+        step = 0.0
         if number and scale and agree:
-            yield "step", shown, number * scale if name == "step" else 1.0 / (number * scale)
-        else:
-            yield "step", shown, None
+            step = number * scale if name == "step" else 1.0 / (number * scale)
+        if not re.search(r"\((raw|orig\w*|before\b.*)\)", text, re.I):
+            yield "step", shown, step if step and (unit or step <= LONGEST_STEP) else None
     else:
         number, unit = _number(text)
         if number and not unit:
@@ -185,7 +190,7 @@ def _number(text: str) -> tuple[float | None, str]:
         return None, ""
     value = float(found[1].replace(",", ".").translate(str.maketrans("Dd", "Ee")))
     unit = re.split(r"[,;|(\t]", text.strip()[found.end() :])[0]
-    return (value if 0.0 < value < float("inf") else None), unit.strip().rstrip(".")
+    return (value if 0.0 < value < float("inf") else None), unit.strip().strip("[].")
 
 
 def _pairs(line: str) -> Iterator[tuple[str, str]]:

@@ -10,19 +10,16 @@ from itertools import chain
 
 from rocking._base.units import UNITS, quantities_of, unit_name
 from rocking._excitation.records.readers.clock import CLOCK, in_seconds
-from rocking._excitation.records.readers.header import Header, read_header, units_in
+from rocking._excitation.records.readers.header import LONGEST_STEP, Header, read_header, units_in
 from rocking._excitation.records.readers.lines import NUMBER, TOUCHING, TextFile, to_float
 
-LONGEST_STEP = 0.5  # longest step of a record [s] that is taken from times without a unit
 MAX_UNIT_PARTS = 8  # most parts, separated by blanks, of a unit in a column name, such as m / s ^ 2
 MAX_NAMES = 512  # most columns whose names are searched: more numbers in a row are one series
 MAX_NAME = 60  # most characters of the name of a column; longer ones are sentences
 
 _COMMENT = "#%!*/\"'"
 
-_DECIMAL_COMMA = (";", "\t")  # separators of columns beside which a comma is the decimal sign
-
-_UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:,[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)*+\s*+")
+_UNSIGNED_PAIRS = re.compile(r"\s*+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+(?:, *+[+-]?\d++,\d++(?:[Ee][+-]?\d++)?+)*+\s*+")
 """A row that may be of numbers with decimal commas only."""
 
 _COMMA_NUMBERS = re.compile(
@@ -30,17 +27,20 @@ _COMMA_NUMBERS = re.compile(
 )
 """A row of several numbers, separated by blanks, whose commas are decimal signs."""
 
+_DECIMAL = re.compile(r"[+-]?\d+,\d+(?:[Ee][+-]?\d+)?")
+_MISSING = re.compile(r"-*|\*+|#?n/?a|nan|null|none", re.I)  # texts in place of a number
+
 _BRACKETS = re.compile(r"(?:(?<!\s)\s++)?[(\[](?:[^()\[\]]++|\([^()\[\]]*+\))*+[)\]]")
 
 KINDS = {
     "time": r"((elapsed|relative|rel|record|recording|running|sample|sampling) ?)?"
     r"(time(?! (history|series))|zeit|temps|tempo|tiempo|tid|tijd|zaman|czas|t)"
-    r"( (since|from|after|seit|depuis|desde)\b.*| \w+)?|timestamps?|seconds?|sekunden",
-    "counter": r"(frame|frames|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|step|bild|punkt|"
-    r"messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|count|counter|zähler|lfd)"
-    r"( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)",
+    r"( (since|from|after|seit|depuis|desde)\b.*| \w+)?|timestamps?|seconds?( elapsed)?|sekunden|x value",
+    "counter": r"(?!record$)(frames?|scan|tick|index|idx|samples?|data ?points?|points?|pt|row|line|zeile|record|item|"
+    r"step|bild|punkt|messwert|muestra|campione|echantillon|échantillon|numero|número|no|nr|num|number|nummer|n|i|k|j|id|"
+    r"count|counter|zähler|lfd)( ?(no|nr|num|number|nummer|id|index|idx|count|counter|#|№))?|(#|№|n°|nº)|(s|sr|sl) no",
     "other": r"(vel|dis(?!t)|geschw|versch|spost|depl|spectr|fourier|psa\b|psv\b|period\b|freq|temp(erat|\b)|press|"
-    r"strain|arias|cav\b).*",
+    r"strain|arias|cav\b).*|d",
 }
 """Names of columns that hold no samples, in lower case, without signs and units, by what they hold."""
 
@@ -48,13 +48,11 @@ SAMPLES = (
     r"(ground |base |table |input |shock |measured |corrected |uncorrected |raw )?"
     r"(a|ag|üg|acc|accel|acceler\w*|accn|beschl\w*|aceler\w*|accélér\w*|ivme)( ?(time )?(history|series|values?|data))?"
     r"( ?(x|y|z|ns|ew|ud|n s|e w|u d|n|e|u|v|h\d?|\d+))?|"
-    r"ns|ew|ud|n s|e w|u d|n|s|e|w|u|z|x|y|v|h\d?|[bh][hnl][enz123]|long|longitudinal|trans|transverse|vert\w*|up|"
-    r"north|south|east|west|(chan|channel|ch|col|column) ?\d+|rotations?|angle|theta|θ|phi|winkel|rotación|rotazione|"
-    r"time (history|series)"
+    r"ns|ew|ud|eo|n s|e w|u d|e o|n|s|e|w|u|z|x|y|v|h\d?|[ns]\d\d?[ewo]|[bh][hnl][enz123]|long|"
+    r"longitudinal|trans|transverse|vert\w*|up|north|south|east|west|(chan|channel|canal|ch|col|column) ?\d+|"
+    r"rotations?|angle|theta|θ|phi|winkel|rotación|rotazione|time (history|series)"
 )
 """Names of columns of samples, as `KINDS`: a line of them alone names columns."""
-
-COUNTS = r"\d+"
 
 
 @dataclass(frozen=True)
@@ -111,9 +109,10 @@ def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expect
     timed = next((k for k, line in enumerate(file.head) if CLOCK.search(line) and len(_of_times(line)) > 1), None)
     clocks = file.head[timed] if timed is not None else ""
     file = file if timed is None else in_seconds(file, timed)
-    rows = [k for k, line in enumerate(file.head) if is_row(line)]
+    rows = [k for k, line in enumerate(file.head) if is_row(line) and (skip or k >= (timed or 0))]
     if not rows:
-        shown = next((line.strip() for line in file.head if line.strip()), "blank lines")
+        lines = [line.strip() for line in file.head if line.strip()]
+        shown = next((line for line in lines if NUMBER.match(line)), lines[0] if lines else "blank lines")
         raise file.error(None, shown, expected)
     if skip is not None and skip >= len(rows):
         raise file.error(None, f"{len(rows)} rows of numbers in the first lines", f"more than `skip` = {skip} of them")
@@ -129,17 +128,24 @@ def find_layout(file: TextFile, skip: int | None, quantity: str = "m/s2", expect
             raise file.error(first, shown, allowed)
         first = following[0]
     elif skip is None and following and (counted := _counted(file.head[first])):
-        if len(split_row(file.head[first])) == 2 and count_rows(file, following[0]) == counted[0]:
+        count = count_rows(file, following[0])
+        if len(split_row(file.head[first])) == 2 and counted[0] in (count, 2 * count - 1, 2 * count):
             first = following[0]
         else:
             counted = None
     separator, comma = _separator(file.head[first])
     width = len(fields_of(file.head[first], separator))
+    above = fields_of(file.head[first - 1], separator) if first and skip is None else []
+    texts = [field for field in above if not NUMBER.fullmatch(field)]
+    missing = len(above) == width and above[0] != "" and texts and all(map(_MISSING.fullmatch, texts))
+    if missing and (len(texts) < width or texts[0].isalpha()):
+        raise file.error(first - 1, file.head[first - 1].strip(), "a number in each column; or the argument `skip`")
     line, columns = _columns(file, first, separator, width, quantity)
     for k in (k for k, field in enumerate(fields_of(CLOCK.sub(":", clocks), separator)) if field == ":"):
         columns[k] = replace(columns[k], unit_text="s", kind="time")
-    if separator == "," and (line is None or "," not in file.head[line]):
-        _check_commas(file, first)
+    if separator == "," and (line is None or "," not in file.head[line]) and _is_decimal(file, first):
+        separator, comma, width = None, True, 1
+        line, columns = _columns(file, first, separator, width, quantity)
     if line is None:
         _check_unnamed(file, first, width)
     header = read_header(file, file.head[:first], quantity)
@@ -168,7 +174,7 @@ def _counted(line: str) -> tuple[int, float] | None:
     if len(fields) != 2:
         return None
     for count, step in (fields, fields[::-1]):
-        if re.fullmatch(COUNTS, count) and int(count) > 1 and 0.0 < to_float(step) <= LONGEST_STEP:
+        if count.isdecimal() and int(count) > 1 and 0.0 < to_float(step) <= LONGEST_STEP:
             return int(count), to_float(step)
     return None
 
@@ -182,14 +188,18 @@ def _separator(line: str) -> tuple[str | None, bool]:
     """The separator of a row of numbers, None for blanks, and whether commas are decimal signs."""
     if "," in line and _COMMA_NUMBERS.fullmatch(line):
         return None, True
+    if "\t\t" in line.strip():
+        return None, "," in line
     mark = next((mark for mark in (";", "\t", ",") if mark in line.strip()), None)
-    return mark, mark in _DECIMAL_COMMA
+    return mark, mark in (";", "\t")  # beside which a comma is the decimal sign
 
 
 def fields_of(line: str, separator: str | None) -> list[str]:
-    """The fields of a line; a separator at its end adds none."""
+    """The fields of a line; separators at its end add none."""
     fields = [part.strip().strip("\"'") for part in line.strip().split(separator)]
-    return fields[:-1] if len(fields) > 1 and fields[-1] == "" else fields
+    while len(fields) > 1 and fields[-1] == "":
+        fields.pop()
+    return fields
 
 
 def split_row(line: str) -> list[str]:
@@ -232,7 +242,11 @@ def _columns(
             names = names if all(kind_of(base_name(name)) for name in names[1:]) else []
         if names and (width > 1 or kind_of(base_name(names[0]))):  # of one column, any other line may be a title
             texts = units if not found and units else [""] * width
-            found.append((k, [_column(name, text, quantity) for name, text in zip(names, texts, strict=True)]))
+            columns = [_column(name, text, quantity) for name, text in zip(names, texts, strict=True)]
+            plain = {plain_name(one.name) for one in columns}
+            kinds = {"n": "samples"} if "e" in plain else {"v": "other"} if {"a", "d"} <= plain else {}
+            columns = [replace(one, kind=kinds.get(plain_name(one.name), one.kind)) for one in columns]
+            found.append((k, columns))
     if not found:
         return None, [Column(f"column {k + 1}", text) for k, text in enumerate(units or [""] * width)]
     place, columns = found[0]
@@ -268,6 +282,10 @@ def _names(line: str, separator: str | None, width: int, quantity: str, surely: 
     joined = _BRACKETS.sub(lambda found: "".join(found[0].split()), line)  # blanks in brackets separate no columns
     for mark in (separator, ",", ";", "\t", None):
         names = fields_of(joined if mark is None else line, mark)
+        if mark is not None and names[0] == "":  # as pandas writes a counter
+            names[0] = "index"
+        if len(names) == width + 1:  # dates are read with the times; comments are often empty
+            names = [name for name in names if name.lower() not in ("date", "datum", "fecha", "comment")]
         if mark is None and len(names) != width:
             names = re.split(r"\s{2,}", line)
         if len(names) != width or not all(map(_is_name, names)):
@@ -326,7 +344,8 @@ def _column(name: str, unit_text: str, quantity: str) -> Column:
     plain = plain_name(name)
     kind = next((kind for kind in ("time", "counter", "other") if re.fullmatch(KINDS[kind], plain)), "")
     kind = kind or kind_of(base_name(name))
-    brackets = " ".join(re.findall(r"[(\[]([^()\[\]]*)[)\]]", name + unit_text)).lower()
+    texts = re.findall(r"[(\[]([^()\[\]]*)[)\]]", name + unit_text) or [unit_text.strip(" -")]
+    brackets = " ".join(texts).lower()
     if re.fullmatch(r"frames?|samples?|points?|counts? of frames", brackets):
         kind = "counter"
     elif bare.unit(quantity):  # T [g] is a component, time_g an error
@@ -350,11 +369,15 @@ def unit_in_name(name: str, quantity: str) -> str | None:
     return next((unit for text in texts if (unit := unit_name(text.strip(" ."), quantity))), None)
 
 
-def _check_commas(file: TextFile, first: int) -> None:
-    """Refuse rows that may be of numbers with decimal commas."""
-    if all(_UNSIGNED_PAIRS.fullmatch(row) for row in file.head[first:] if row.strip()):
+def _is_decimal(file: TextFile, first: int) -> bool:
+    """Whether each row is one number with a decimal comma; rows that may be of such numbers are refused."""
+    rows = [row.strip() for row in file.head[first:] if row.strip()]
+    if all(map(_DECIMAL.fullmatch, rows)) and any(re.search(r",0\d", row) for row in rows):
+        return True  # 0,05 is no pair of whole numbers
+    if all(map(_UNSIGNED_PAIRS.fullmatch, rows)):
         allowed = "semicolons or tabs between columns with decimal commas, or names of the columns with commas"
         raise file.error(first, file.head[first].strip(), allowed)
+    return False
 
 
 def _check_unnamed(file: TextFile, first: int, width: int) -> None:

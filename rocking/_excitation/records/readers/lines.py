@@ -31,9 +31,12 @@ MAX_LINE = 8192  # most bytes of a line: several hundred columns. A longer one i
 HEAD_LINES = 200  # largest number of lines that are searched for a header
 CHUNK = 65536  # bytes of rows that are read at once: some milliseconds, in which no other thread may run
 MAX_SAMPLES = 10_000_000  # largest number of values that is read from one file [-]
-MAX_CLOSING = 200  # most bytes of a comment behind the last number, such as *** End data ***
+MAX_CLOSING = 200  # most bytes of a comment behind the last number, such as *** End data ***, or the end of a DOS file
 
-_CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%][^\r\n]*\s*\Z")
+_FILL = re.compile(r"9{2,}(\.(9+|25))?")
+FILL_RATIO = 3.0  # a number of nines this many times larger than all other values stands for a missing one [-]
+
+_CLOSING = re.compile(rb"[\r\n]+[ \t]*[*#!%\x1a][^\r\n]*\s*\Z")
 
 COUNT_DIFFERENCE = 0.01
 """Largest difference between the number of values and the number that the header states, as a share of it [-]: headers
@@ -144,10 +147,12 @@ class TextFile:
         return int(value)
 
     def values(self, first: int) -> Array:
-        """All numbers from the line `first` on, any number on each line; blank lines only at the end.
+        """All numbers from the line `first` on, any number on each line; blank lines only at the start and the end.
 
         Columns of fixed width may touch where a sign separates the numbers.
         """
+        while first < len(self.head) and not self.head[first].strip():
+            first += 1
         found = array("d")
         for k, lines in self.rows(first):
             if b"" in lines:
@@ -174,11 +179,16 @@ class TextFile:
         return found
 
     def check_values(self, values: Array) -> None:
-        """Refuse fewer than two values, and values beyond the range of doubles."""
+        """Refuse fewer than two values, some beyond the range of doubles, and numbers such as -999 for missing ones."""
         if values.size < 2:
             raise self.error(None, f"{values.size} acceleration values", "at least 2")
         if not np.isfinite(values).all():
             raise self.error(None, "a number beyond the range of doubles", "finite numbers")
+        sizes = np.abs(values)
+        if _FILL.fullmatch(f"{(largest := float(sizes.max())):.10g}"):
+            filled, sizes[sizes == largest] = float(values[sizes.argmax()]), 0.0
+            if largest > FILL_RATIO * sizes.max():
+                raise self.error(None, f"the value {filled:g}, as for missing ones", "an acceleration in each row")
 
     def checked_count(self, values: Array, stated: int, line: int) -> tuple[str, ...]:
         """The remark on a number of values that differs from the stated one, by as much as headers are usually off."""

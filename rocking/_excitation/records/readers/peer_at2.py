@@ -7,7 +7,8 @@ fewer lines of text before it.
 
 import re
 
-from rocking._excitation.records.readers.header import Statement, read_header
+from rocking._base.units import UNITS, unit_name
+from rocking._excitation.records.readers.header import OTHER_SERIES, Statement, read_header
 from rocking._excitation.records.readers.layout import names_below
 from rocking._excitation.records.readers.lines import NUMBER, TextFile, agreed_step, agreed_unit, parse_unit
 from rocking._excitation.records.record import Record
@@ -20,7 +21,7 @@ _NAMED = r"\s*+[=:]?\s*+([^\s,;=]+)"
 def header_line(file: TextFile) -> int | None:
     """Index of the line with NPTS and DT, None if the file is no AT2 file."""
     for k, line in enumerate(file.head[:HEADER_LINES]):
-        if re.search(r"\bNPTS\b", line, re.I) and re.search(r"\bDT\b", line, re.I):
+        if all(re.search(pattern, line, re.I) for pattern in (r"\bNPTS\b", r"\bDT\b", r"\d")):
             return k
     return None
 
@@ -33,14 +34,12 @@ def is_at2(file: TextFile) -> bool:
 
 def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
     """Read an AT2 file; arguments and errors as for `read_record`."""
-    place = header_line(file)
-    if place is None:
-        raise file.error(None, "no line with NPTS and DT", "one within the first lines of an AT2 file")
-    count_text, step_text = _count_and_step(file, place)
+    place = header_line(file) or 0  # there is one in what `is_at2` accepts
+    count_text, step_text, unit_text = _count_and_step(file, place)
     stated_count = file.count(place, count_text, "the number of points NPTS")
-    stated_step = file.positive(place, step_text, "the time step DT [s]")
+    stated_step = file.positive(place, step_text, "the time step DT [s]") * UNITS["s"][unit_name(unit_text, "s") or "s"]
     for k, line in enumerate(file.head[:place]):
-        if re.search(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", line, re.I):
+        if OTHER_SERIES.search(line):
             raise file.error(k, line.strip(), "an acceleration time history")
     title = file.head[1].strip() if place > 1 else ""
     header = read_header(file, file.head[:place])
@@ -49,23 +48,20 @@ def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
         if not header.found.get("unit") and last and parse_unit(last[1]):
             header.found["unit"] = [Statement(k, last[1], parse_unit(last[1]))]
     said = header.unit(unit, "a unit of acceleration, such as G")
-    line_of_unit = place if said.line is None else said.line
-    agreed = agreed_unit(file, line_of_unit, None if said.value is None else str(said.value), unit)
+    agreed = agreed_unit(file, place, None if said.value is None else str(said.value), unit)
     step = agreed_step(file, place, stated_step, time_step)
     values = file.values(place + 1)
-    remarks = file.checked_count(values, stated_count, place)
-    source = f"{file.name} (PEER AT2)"
-    about = title or file.name, source, remarks + header.remarks()
-    return Record(values, step, agreed, *about)
+    remarks = file.checked_count(values, stated_count, place) + header.remarks()
+    return Record(values, step, agreed, title or file.name, f"{file.name} (PEER AT2)", remarks)
 
 
-def _count_and_step(file: TextFile, place: int) -> tuple[str, str]:
-    """The texts of NPTS and DT on the header line."""
+def _count_and_step(file: TextFile, place: int) -> tuple[str, str, str]:
+    """The texts of NPTS and DT on the header line, and the word behind DT, which may be its unit."""
     line = file.head[place]
     leading = re.split(r"[\s,]+", line.strip(), maxsplit=2)
     if len(leading) > 2 and all(map(NUMBER.fullmatch, leading[:2])) and re.match(r"NPTS\b", leading[2], re.I):
-        return leading[0], leading[1]  # values before their names, in the order of these
-    count, step = re.search(r"\bNPTS\b" + _NAMED, line, re.I), re.search(r"\bDT\b" + _NAMED, line, re.I)
+        return leading[0], leading[1], "s"  # values before their names, in the order of these
+    count, step = re.search(r"\bNPTS\b" + _NAMED, line, re.I), re.search(r"\bDT\b" + _NAMED + r"\s*(\w*)", line, re.I)
     if count is None or step is None:
         raise file.error(place, line.strip(), "a form such as NPTS=  4000, DT= .01000 SEC")
-    return count[1], re.sub(r"(?i)s(ec)?\.?$", "", step[1])
+    return count[1], re.sub(r"(?i)s(ec)?\.?$", "", step[1]), step[2]

@@ -16,6 +16,7 @@ import numpy as np
 from rocking._base.arrays import Array
 from rocking._base.units import quantities_of
 from rocking._excitation.records.readers.header import units_in
+from rocking._excitation.records.readers.layout import is_row
 from rocking._excitation.records.readers.lines import (
     MAX_SAMPLES,
     NUMBER,
@@ -32,14 +33,14 @@ Lines = Iterator[tuple[int, bytes]]
 FIRST_LINES = 5  # lines in which the format is named
 
 REFUSED = {
-    r"^\*? ?vol1ds|\bbhrc\b": "a BHRC Volume 1 file",
-    r"\brenadic\b": "a RENADIC Volume 1 file",
+    r"^\*? ?vol1ds": "a BHRC Volume 1 file",
+    r"\Afile +\d+ of uncorrected accelerogram data of volume": "a USC Volume 1 file, with a time before each value",
+    r"(?s)\A\s*uncorrected accelerogram.*\brenadic\b": "a RENADIC Volume 1 file",
     r"^\s*response\b.*\bspectr": "response spectra (Volume 3)",
     r"^raw acc\w* counts|^\s*raw data": "a file of raw counts (Volume 0)",
-    r"^\s*\d archivo estandar|archivo estándar": "a UNAM file",
     r"^#?k-net csv": "a K-NET CSV file",
 }
-"""Names of formats that are not read, by a line at the start."""
+"""Names of formats that are not read, by the lines at the start."""
 
 BLOCK = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:points of\s+)?(?P<kind>accel|acc|veloc|vel|displ|disp)\w*\s*(?:points|pts|data)?", re.I
@@ -52,8 +53,6 @@ TRACE = re.compile(
     re.I,
 )
 """The line above a trace of TSPAIR and SLIST."""
-
-MILLIMETRE = "mm/s2"
 
 
 @dataclass(eq=False)
@@ -71,9 +70,8 @@ class Channel:
 def format_of(file: TextFile) -> str | None:
     """The name of the format; None if it is none of these; those that are not read are refused."""
     start = file.head[:FIRST_LINES]
-    for line in start:
-        if re.match(r"(un)?corrected accelerogram \S+ +(GNS|GeoNet)", line, re.I):
-            return "GeoNet"
+    if any(re.match(r"(un)?corrected accelerogram \S+ +(GNS|GeoNet)", line, re.I) for line in start):
+        return "GeoNet"
     if any(re.search(r"\(Format v0?\d", line) for line in start) and not re.search(r"spectr", start[0], re.I):
         return "COSMOS"
     if re.match(r"[0-9] (un)?corrected accel", file.head[0], re.I) or (
@@ -83,7 +81,7 @@ def format_of(file: TextFile) -> str | None:
     if TRACE.match(file.head[0]):
         return "TIMESERIES"
     for pattern, name in REFUSED.items():
-        if any(re.search(pattern, line, re.I) for line in file.head[:12]):
+        if re.search(pattern, "\n".join(file.head[:12]), re.I | re.M):
             raise file.error(0, name, "AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet or SMC, or columns of numbers")
     if re.match(r"\s*(un)?corrected accelero", file.head[0], re.I):
         if any(BLOCK.match(line) for line in file.head):
@@ -129,15 +127,18 @@ def _chosen(file: TextFile, channels: list[Channel], component: str | None) -> C
 
 def _blocks(file: TextFile, lines: Lines) -> Iterator[Channel]:
     """The blocks of accelerations of COSMOS and CSMIP."""
-    name, reals = "", np.zeros(0)
+    name, reals, ended = "", np.zeros(0), False
     for k, raw in lines:
         line = decoded(raw)
+        if ended and is_row(line):
+            raise file.error(k, line, "the end of a block, as its number of values says")
+        ended = False
         if found := re.match(r"(?:sta )?chan?:? +(\S+?) *: *(.*?)(?: {2,}|\(|$)", line, re.I):
             name = f"Chan {found[1]}: {found[2]}".strip()
         elif found := re.match(r"(\d+) +real-header values", line, re.I):
             reals = _numbers(file, k, lines, int(found[1]), _width(line))
         elif found := BLOCK.match(line):
-            values = _numbers(file, k, lines, int(found["count"]), _width(line))
+            values, ended = _numbers(file, k, lines, int(found["count"]), _width(line)), True
             if not found["kind"].lower().startswith("acc"):
                 continue
             text = re.search(r"units?(?: of)? *[:=]? *([^()\s,]+)|\bin +(?!units)([^()\s,]+)", line, re.I)
@@ -184,9 +185,8 @@ def _geonet(file: TextFile, lines: Lines) -> Iterator[Channel]:
             counts, step = ints[33:36], reals[25]
             if len(ints) != 40 or not text or abs(step / to_float(text) - 1.0) > 1e-3:
                 raise file.error(k, f"a header with the interval {step:g} s", f"that of its text, {text or 'none'} s")
-            first, *others = (_numbers(file, k, lines, count, 8) for count in counts)
-            del others
-            yield Channel(name, first, k, step, MILLIMETRE, MILLIMETRE)
+            blocks = [_numbers(file, k, lines, count, 8) for count in counts]
+            yield Channel(name, blocks[0], k, step, "mm/s2", "mm/s2")
 
 
 def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
@@ -202,7 +202,10 @@ def _smc(file: TextFile, lines: Lines) -> Iterator[Channel]:
     if not 0.0 < rate < 1e6 or ints[16] < 2:
         rates = f"{rate:g} samples a second" if 0.0 < rate < 1e6 else "uneven intervals"
         raise file.error(k, f"{ints[16]:g} values at {rates}", "uniform samples and their number")
-    yield Channel(f"{ints[13]:g}", _numbers(file, k, lines, int(ints[16]), None), k, 1.0 / rate, "cm/s2", "cm/s2")
+    values = _numbers(file, k, lines, int(ints[16]), None)
+    if any(row for _, row in lines):
+        raise file.error(k, f"more than {ints[16]:g} values", "equal numbers")
+    yield Channel(f"{ints[13]:g}", values, k, 1.0 / rate, "cm/s2", "cm/s2")
 
 
 def _traces(file: TextFile, lines: Lines) -> Iterator[Channel]:
