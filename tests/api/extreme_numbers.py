@@ -152,7 +152,7 @@ OPTIONS: dict[str, tuple[float, str]] = {
 TEXTS = {
     "pulse", "format", "all", "contact", "output", "file", "unit", "component", "vertical",
     "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
-    "objects", "record", "shapes", "moving_ground", "sensitivity", "report", "title", "place", "date",
+    "objects", "record", "shapes", "moving_ground", "sensitivity", "no_sensitivity", "report", "title", "place", "date",
     "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
     "column", "standards", "detail", "directions", "body", "sides", "second",
 }  # fmt: skip
@@ -467,6 +467,8 @@ def walk_routes(walk: Walk, results: Path) -> None:
                 query[key] = value
             if "mass_height" in query:
                 query.pop("fit", None)  # only a block in the middle is compared with a fitted pulse
+            if path == "/v1/identify":
+                del query["time_step"]  # of a table without times
             target = path.format(**{key: query.pop(key) for key in list(query) if f"{{{key}}}" in path})
             query = {key: value for key, value in query.items() if value is not None}
             numbers = {key: value for key, value in query.items() if is_numeric(parameters[key]["schema"])}

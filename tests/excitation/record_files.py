@@ -121,6 +121,9 @@ GOOD = {
     "esm in m/s^2": File(esm({"UNITS": "m/s^2"}), unit="m/s2"),
     "knet": File(KNET_HEADER + KNET_ROWS, unit="gal", samples=KNET_VALUES),
     "csv": File(pairs()),
+    "one column of a square wave": File(
+        "a [g]\n" + "0.1\n-0.3\n" * 12, {"time_step": STEP}, samples=np.tile([0.1, -0.3], 12)
+    ),
     "csv, unit in brackets": File(pairs(header="Time [s],Acceleration [cm/s2]\n"), unit="cm/s2"),
     "csv, unit as argument": File(pairs(header="t,a\n"), {"unit": "m/s2"}, unit="m/s2"),
     "csv without names": File(pairs(header=""), {"unit": "g"}),

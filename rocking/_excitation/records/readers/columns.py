@@ -439,11 +439,12 @@ def _check_leading(layout: Layout, values: Array, time_step: float | None, kept:
     stated = [one.value for one in layout.header.found.get("step", [])] + [time_step, *_GRAVITY]
     lead = 0
     for k in range(min(3, values.size - 2)):
-        value, others = abs(values[k]), np.abs(values[k + 1 :]).max()
+        below = np.abs(values[k + 1 :])
+        value, others = abs(values[k]), below.max()
         whole = value == round(value)
         counted = whole and value > 3.0 and values.size - 3 <= value <= values.size
         written = forms[k] != forms[-1] if uniform else exact and digits[k] <= 2 and (whole or value <= LONGEST_STEP)
-        peak = value == others > 2.0 * abs(values[k + 1])
+        peak = value == others > 2.0 * below[0] and np.count_nonzero(below == others) == 1
         known = layout.width == 1 and values[k] in stated
         if value > 0.0 and (counted or peak or known or written or value > JUMP * others):
             lead = k + 1
