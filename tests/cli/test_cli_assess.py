@@ -17,6 +17,7 @@ import rocking
 from rocking._cli.app import app
 from tests.api.explorer.chromium import HOW, find
 from tests.cli.test_cli import read_csv, refused, run
+from tests.sampling import ALL
 
 TABLE = """name,width [cm],depth [cm],height [cm],friction
 bust,40,30,160,0.5
@@ -296,7 +297,9 @@ def test_the_report_of_thirty_objects_is_short_and_its_page_numbers_are_true(tmp
     )
     pages = len(re.findall(rb"/Type /Page\b(?!s)", paper.read_bytes()))
     assert pages == int(re.findall(r"<i></i>([0-9]+)", text)[-1])
-    cut = "[...document.querySelectorAll('.half, td, dd')].filter(e => e.scrollHeight > e.clientHeight + 1)"
-    file.write_text(text.replace("</body>", f"<script>document.title = {cut}.map(e => e.textContent)</script></body>"))
-    found = subprocess.run([*flags, "--dump-dom", file.as_uri()], env=surroundings, check=True, capture_output=True)
-    assert b"<title></title>" in found.stdout
+    if ALL:  # nothing is cut off
+        cut = "[...document.querySelectorAll('.half, td, dd')].filter(e => e.scrollHeight > e.clientHeight + 1)"
+        script = f"<script>document.title = {cut}.map(e => e.textContent)</script></body>"
+        file.write_text(text.replace("</body>", script))
+        found = subprocess.run([*flags, "--dump-dom", file.as_uri()], env=surroundings, check=True, capture_output=True)
+        assert b"<title></title>" in found.stdout
