@@ -178,7 +178,8 @@ class Writer:
         """A cell and its value."""
         least, most, decimals = RANGES[unit]
         value = Decimal(f"{self.dice.uniform(low or least, most):.{decimals}f}")
-        if self.typed and self.dice.random() < 0.7:
+        beside_unit = self.style == "cells" and unit  # a text, with the decimal sign of the others
+        if self.typed and not beside_unit and self.dice.random() < 0.7:
             return float(value), value * FACTORS[unit]
         point = self.dice.choice(".,") if self.mixed and self.dice.random() < 0.4 else self.point
         whole, _, rest = str(value).partition(".")

@@ -48,6 +48,9 @@ from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD
 FAR = 1e9
 """Reach of a body without a peak."""
 
+LARGEST = 1e300
+"""Sums of squares and derivatives beyond it are left out: their differences would be no numbers."""
+
 LONGEST = 0.06
 """Longest step [tau]."""
 
@@ -271,7 +274,10 @@ def take_step(lanes: FloatArray, f: FloatArray, vertical: FloatArray, upright: b
 def write_result(lanes: FloatArray, lane: int, found: FloatArray, cell: int) -> None:
     """Write the result of a lane."""
     over = lanes[S, lane] == -math.inf
-    found[cell, SQUARES], found[cell, SQUARES + 1] = lanes[SUM, lane], lanes[SLOPE, lane]
+    squares, slope = lanes[SUM, lane], lanes[SLOPE, lane]
+    if not (squares < LARGEST and abs(slope) < LARGEST):  # of a body without a base, about
+        squares = slope = 0.0
+    found[cell, SQUARES], found[cell, SQUARES + 1] = squares, slope
     if not over:  # after the record it overturns from z + w of 1, about, see `rocking._solver.free_rocking`
         left = max(lanes[RATIO + (0 if lanes[SIGN, lane] > 0.0 else 1), lane] - lanes[Z, lane] - lanes[W, lane], 0.0)
         slope = lanes[DZ, lane] + lanes[DW, lane]

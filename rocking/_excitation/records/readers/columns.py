@@ -8,7 +8,6 @@ as an argument.
 import re
 from array import array
 from dataclasses import replace
-from decimal import Decimal
 from itertools import chain, islice
 
 import numpy as np
@@ -263,6 +262,7 @@ def _is_wrapped(layout: Layout, component: str | None) -> bool:
         return True
     whole = _whole_rows(layout)
     if len(whole) > 2 and rows not in counts and np.isfinite(whole).all():
+        whole = whole / max(float(np.abs(whole).max()), 1.0)  # no sum overflows
         series = whole.ravel()
         along, down = np.abs(np.diff(series)), np.abs(np.diff(whole, axis=0)).mean()
         places = [along[k::width].mean() for k in range(width)]
@@ -541,10 +541,14 @@ def _last_place(layout: Layout, column: int) -> float:
     for lines in (layout.file.head[layout.first :], last):
         rows = (cells_of(layout, line) for line in lines)
         texts = [row[column].upper().replace("D", "E") for row in rows if len(row) == layout.width]
-        found.append(
-            min((int(Decimal(text).as_tuple().exponent) for text in texts if NUMBER.fullmatch(text)), default=-20)
-        )
-    return 10.0 ** max(found)
+        found.append(min((_last_exponent(text) for text in texts if NUMBER.fullmatch(text)), default=-20.0))
+    return 10.0 ** min(max(found), 300.0)
+
+
+def _last_exponent(number: str) -> float:
+    """That of 10 in the place of the last digit, of a number with an exponent of any size."""
+    mantissa, _, exponent = number.replace(",", ".").partition("E")
+    return float(exponent or 0) - len(mantissa.partition(".")[2])
 
 
 def _uniform_step(layout: Layout, times: Array, place: float, known: float | str | None) -> float:
