@@ -542,7 +542,7 @@ def _last_place(layout: Layout, column: int) -> float:
         rows = (cells_of(layout, line) for line in lines)
         texts = [row[column].upper().replace("D", "E") for row in rows if len(row) == layout.width]
         found.append(min((_last_exponent(text) for text in texts if NUMBER.fullmatch(text)), default=-20.0))
-    return 10.0 ** min(max(found), 300.0)
+    return float(10.0 ** min(max(found), 300.0))
 
 
 def _last_exponent(number: str) -> float:
