@@ -110,7 +110,7 @@ def forget_false_records(folder: Path) -> Iterator[str]:
 
 
 def date_back_outdated(folder: Path, names: Iterable[str]) -> None:
-    """Give the products of jobs that have a record of another name than `names` the oldest time.
+    """Give the oldest time to the products of jobs whose record has another name than in `names`.
 
     Where a product is asked for by its path, Snakemake looks for that file alone and not for the record beside it. A
     file that is older than the script of its job is made again.
@@ -123,6 +123,10 @@ def date_back_outdated(folder: Path, names: Iterable[str]) -> None:
 
 
 def _date_back(folder: Path, record: Path) -> None:
-    with suppress(OSError, ValueError):  # a damaged record, or a product that was deleted
-        for name in read_record(record):
+    """Give the products of a record the oldest time."""
+    products: Mapping[str, Any] = {}
+    with suppress(ValueError):  # a damaged record
+        products = read_record(record)
+    for name in products:
+        with suppress(FileNotFoundError):
             os.utime(folder / name, (0, 0))

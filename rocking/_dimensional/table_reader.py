@@ -143,7 +143,7 @@ def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
 
 
 def text_of(raw: bytes, argument: str) -> str:
-    """A text of UTF-8, UTF-16 with its mark, or the code page of older spreadsheets; a picture or the like is none."""
+    """A text of UTF-8, UTF-16 with its mark, or the code page of older spreadsheets; binary content is refused."""
     is_utf16 = raw[:2] in (b"\xff\xfe", b"\xfe\xff")
     if b"\0" in raw and not is_utf16:
         raise InvalidArgumentError(argument, "binary content", "text, or a sheet whose name ends in .xlsx or .ods")
@@ -360,7 +360,7 @@ def read_rows(
 
 
 def _check_no_header(number: int, row: Sequence[str], header: Header, schema: Schema[Any]) -> None:
-    """Refuse a table with a second header below, of other columns or units, which the rows below it would have."""
+    """Refuse a table in which a second header names other columns or units for the rows below it."""
     if any(split_number(row[place]) for place, (one, _) in header.columns.items() if one.unit and place < len(row)):
         return
     for line in header_lines([row], schema):

@@ -47,7 +47,9 @@ MAX_ROTATION = 0.8  # largest rotation and alpha [rad]: beyond it a body hardly 
 DURATION = 1e-3, 1e5
 """Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
 
-LOWEST_FREQUENCY = 0.1  # smallest p [rad/s], of a block 1 km wide and high: lower ones are of other times than seconds
+LOWEST_FREQUENCY = (
+    0.1  # smallest p [rad/s], of a block 1 km wide and high: where it is lower, the times are not in seconds
+)
 SHORTEST_STEP = 1e-7  # shortest step between samples [s]
 MIN_IMPACTS = 3  # fewest impacts from which eta, alpha and p are told apart [-]
 MAX_FLIGHTS = 200  # most flights that are fitted [-]
@@ -172,7 +174,7 @@ def identify_free_rocking(
 
 
 def _check_seconds(t: Array, p: float) -> None:
-    """Refuse times of which the block, with p [rad/s] at the most, would be too large."""
+    """Refuse times that would make the block too large; `p`: its largest possible frequency parameter [rad/s]."""
     if p < LOWEST_FREQUENCY:
         allowed = f"times in seconds: a block with p of {p:.2g} rad/s is larger than 1 km; is this a counter, or ms?"
         raise InvalidArgumentError("time", f"steps of {np.median(np.diff(t)):.3g} s", allowed)

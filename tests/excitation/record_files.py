@@ -330,7 +330,7 @@ DAMAGED = {
     "csv with -999 for a missing value": File(replaced(pairs(), "0.122560", "-999.0"), error="the value -999, as for"),
     "csv with n/a for the first value": File(replaced(pairs(), "0.000000", "n/a"), error="line 2: found 0.000,n/a"),
     "tabs and thousands": File(
-        "t [s]\ta [mm/s2]\n0.00\t0\n0.01\t-35\n0.02\t1,104\n", error="found 1,104, whose , may part thousands"
+        "t [s]\ta [mm/s2]\n0.00\t0\n0.01\t-35\n0.02\t1,104\n", error="found 1,104, whose , may separate thousands"
     ),
     "one column with its number of values at the end": File(
         single("unit: g\ndt: 0.01\n") + "24\n", error="24 behind as many values; .*`skip`: 0"

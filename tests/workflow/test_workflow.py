@@ -122,6 +122,7 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
             source.write("\n# a change\n")
     changed = snakemake(copy_of_run, "--dry-run", project=project)
     assert rules_to_run(changed.stdout) == set.union(*modules.values()) | {"manifest", "check_results", "all"}
+    (copy_of_run / "results/figures/figure-07.svg").unlink()  # the others of its job are dated back all the same
     products = (f"results/figures/figure-{name}" for name in ("06.png", "07.png", "scale-law.svg"))
     alone = snakemake(copy_of_run, "--dry-run", *products, project=project)
     assert rules_to_run(alone.stdout) == {"figure_07", "spectra", "figure_scale_law"}, alone.stdout

@@ -49,7 +49,7 @@ FAR = 1e9
 """Reach of a body without a peak."""
 
 LARGEST = 1e300
-"""Sums of squares and derivatives beyond it are left out: their differences would be no numbers."""
+"""Larger sums of squares and derivatives are set to 0: the difference of two infinite ones is not a number."""
 
 LONGEST = 0.06
 """Longest step [tau]."""
@@ -275,7 +275,7 @@ def write_result(lanes: FloatArray, lane: int, found: FloatArray, cell: int) -> 
     """Write the result of a lane."""
     over = lanes[S, lane] == -math.inf
     squares, slope = lanes[SUM, lane], lanes[SLOPE, lane]
-    if not (squares < LARGEST and abs(slope) < LARGEST):  # of a body without a base, about
+    if not (squares < LARGEST and abs(slope) < LARGEST):  # a body with next to no base
         squares = slope = 0.0
     found[cell, SQUARES], found[cell, SQUARES + 1] = squares, slope
     if not over:  # after the record it overturns from z + w of 1, about, see `rocking._solver.free_rocking`

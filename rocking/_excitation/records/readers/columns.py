@@ -205,6 +205,7 @@ def read_rotations(
 _NO_ROTATION = re.compile(
     r"acc|veloc|\brate|speed|gyro|omega|[_ ]dot\b|counts\b|\b(?:cos|sin|tan)\b|\bx ?1", re.IGNORECASE
 )
+"""Names of columns of other quantities, or of a function or a multiple of the rotation."""
 
 
 def _no_unit_of_times(layout: Layout, step: float) -> RecordFileError:
@@ -399,14 +400,14 @@ def _agreed_step(layout: Layout, count: int, measured: float | None, given: floa
 
 
 def _check_thousands(layout: Layout) -> None:
-    """Refuse numbers such as 1,104 if all with this sign have three digits behind it: it may part thousands."""
+    """Refuse numbers such as 1,104 if all with this sign have three digits behind it: it may separate thousands."""
     content, start = layout.file.content, layout.file.start_of(layout.first)
     for sign in (b",", b".") if layout.separator in (";", "\t") else ():
         place = content.rfind(b"\n", 0, max(content.find(sign, start), start)) + 1
         numbers = re.compile(rb"(?<![^\s;])[^\s;%b]*+[%b][^\s;]*+" % (sign, sign))
         fields = [*islice(numbers.finditer(content, place), MAX_NAMES)]
         if fields and all(_THOUSANDS.fullmatch(field[0]) for field in fields):
-            found = f"{decoded(fields[0][0])}, whose {decoded(sign)} may part thousands"
+            found = f"{decoded(fields[0][0])}, whose {decoded(sign)} may separate thousands"
             raise layout.file.error(None, found, "numbers without it, or with decimals that show what it is")
 
 
@@ -546,7 +547,7 @@ def _last_place(layout: Layout, column: int) -> float:
 
 
 def _last_exponent(number: str) -> float:
-    """That of 10 in the place of the last digit, of a number with an exponent of any size."""
+    """The power of ten of the last digit of a number, whose exponent may have any size."""
     mantissa, _, exponent = number.replace(",", ".").partition("E")
     return float(exponent or 0) - len(mantissa.partition(".")[2])
 
