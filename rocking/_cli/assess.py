@@ -154,6 +154,8 @@ def assess(
             raise InvalidArgumentError(
                 "report", report, "a name that ends in .html or .htm; a browser prints it as PDF"
             )
+        if output is not None and Path(output).suffix.lower() not in (".csv", ".xlsx"):
+            raise InvalidArgumentError("output", output, "a name that ends in .csv or .xlsx")
         if (period_min is None) != (period_max is None):
             missing = "period_min" if period_min is None else "period_max"
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
@@ -269,7 +271,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
         return
     printing.print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
     if found.resolution:
-        typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart were tried")
+        typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart")
     for text, names in warnings_of(found):
         count = f"{len(names)} object{'s' if len(names) > 1 else ''}"
         typer.echo(f"warning: {count}: {printing.printable(f'{text}: {names_in_short(names)}')}")

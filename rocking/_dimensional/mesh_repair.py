@@ -71,6 +71,11 @@ def repaired(mesh: trimesh.Trimesh) -> RepairedMesh:
         remarks.append("has a negative volume: its faces, which pointed inwards, were turned")
     elif changed.any():
         remarks.append(f"has inconsistent normals: {int(changed.sum())} of {len(changed)} faces were turned")
+    solids = int((volume[~sheet] > 0.0).sum())  # cavities have negative volumes
+    if solids > 1:
+        remarks.append(
+            f"has {solids} separate solids, which are taken as one body; where they overlap, mass counts twice"
+        )
     final = np.where(outwards[:, None], closed[:, ::-1], closed)[kept]
     found = trimesh.Trimesh(points, final, process=False)
     found.remove_unreferenced_vertices()

@@ -207,6 +207,10 @@ def test_meshes_are_assessed_from_all_sides(tmp_path):
         (["--pga", "0.3g", "--period-min", "0.2s"], "--period-max"),
         (["--pga", "0.3g", "--pgv", "0.3 m/s", "--shapes", "square"], "--shapes"),
         ([*SITE, "--output", "/none/table.csv"], "No such file"),
+        (
+            [*SITE, "--output", "table.doc"],
+            "--output: 'table.doc' is not allowed; allowed: a name that ends in .csv or .xlsx",
+        ),
         (["--record", "none.at2"], "none.at2"),
         ([*SITE, "--friction", "0.5"], "--friction"),
         ([*SITE, "--report", "report.pdf"], "'report.pdf' is not allowed; allowed: a name that ends in .html"),
