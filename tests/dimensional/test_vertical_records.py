@@ -64,11 +64,11 @@ def test_uplift_depends_on_both_components() -> None:
     assert math.isnan(overturning_scale(held, BLOCK))
 
 
-def test_a_search_ends_where_the_body_would_fly() -> None:
+@pytest.mark.parametrize("heavy", [rocking.Block(4.0, 8.0), rocking.RigidBody(2.0, 2.1, 4.0)])
+def test_a_search_ends_where_the_body_would_fly(heavy: rocking.Block | rocking.RigidBody) -> None:
     record = noise(1)
     motion = rocking.Record(record.acceleration, record.time_step, "m/s2", vertical=-3.0 * record.acceleration)
     limit = -STANDARD_GRAVITY / float(motion.vertical.min())
-    heavy = rocking.Block(4.0, 8.0)
     found = heavy.thresholds(motion)
     assert found.ends_in_flight
     assert limit * (1.0 - 1e-8) < found.searched[1] < limit

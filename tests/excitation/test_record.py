@@ -29,8 +29,6 @@ def sine_record(step: float = 0.005, cycles: int = 10, period: float = 0.5, peak
         ({"acceleration": [0.0, 0.0, 0.0]}, "all samples 0"),
         ({"acceleration": [1.0, math.nan]}, "nan"),
         ({"acceleration": [1.0, 1e9]}, "acceleration"),
-        ({"time_step": 0.0}, "time_step"),
-        ({"time_step": -0.01}, "time_step"),
         ({"time_step": [0.01, 0.02]}, "one number"),
         ({"unit": "m/s"}, "unit"),
         ({"vertical": [0.0, 1.0, 2.0]}, r"shape \(3,\).* 2 samples"),
@@ -95,10 +93,7 @@ def test_processing_treats_both_components_alike() -> None:
     a = horizontal.acceleration
     record = rocking.Record(a, horizontal.time_step, "m/s2", vertical=-2.0 * a + 0.1)
     alone = rocking.Record(-2.0 * a + 0.1, horizontal.time_step, "m/s2")
-    for process in (
-        lambda motion: motion.resampled(0.002),
-        lambda motion: motion.baseline_corrected(order=2),
-    ):
+    for process in (lambda motion: motion.resampled(0.002), lambda motion: motion.baseline_corrected(order=2)):
         found = process(record)
         np.testing.assert_array_equal(found.acceleration, process(horizontal).acceleration)
         np.testing.assert_array_equal(found.vertical, process(alone).acceleration)
@@ -147,7 +142,7 @@ def test_the_mean_period_needs_no_more_memory_than_the_record() -> None:
         tracemalloc.stop()
 
 
-@pytest.mark.parametrize("step", [1e-300, 1e-12, 9e-7, 10.1, 1e300, math.nan, -0.01])
+@pytest.mark.parametrize("step", [1e-300, 0.0, 9e-7, 10.1, 1e300, math.nan, -0.01])
 def test_time_steps_out_of_range_are_rejected(step: float) -> None:
     for make in (lambda: rocking.Record([0.0, 1.0], step, "g"), lambda: sine_record().resampled(step)):
         with pytest.raises(InvalidArgumentError, match=r"`time_step` = .*\[1e-06, 10\] \[s\]"):
@@ -170,17 +165,10 @@ def test_baseline_correction_removes_a_polynomial_of_its_order(order: int) -> No
     record = rocking.Record(clean + drift, 0.005, unit="m/s2")
     corrected = record.baseline_corrected(order=order)
     left = rocking.Record(clean, 0.005, unit="m/s2").baseline_corrected(order=order)
-    np.testing.assert_allclose(
-        corrected.acceleration, left.acceleration, atol=1e-6
-    )  # the drift is linear between samples
+    # the drift is linear between samples
+    np.testing.assert_allclose(corrected.acceleration, left.acceleration, atol=1e-6)
     assert abs(corrected.final_velocity) < 0.2 * abs(record.final_velocity)
     assert record.mean_acceleration == pytest.approx(record.final_velocity / record.duration)
-
-
-@pytest.mark.parametrize("order", [-1, 7, 1.5])
-def test_baseline_orders_out_of_range_are_rejected(order: float) -> None:
-    with pytest.raises(InvalidArgumentError, match="order"):
-        sine_record().baseline_corrected(order=order)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -193,8 +181,11 @@ def test_resampling_is_the_polyphase_filter_of_scipy(up: int, down: int, samples
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * record.peak_acceleration)
 
 
-def test_steps_that_are_no_fraction_are_rejected() -> None:
+def test_what_a_record_cannot_become_is_rejected() -> None:
     with pytest.raises(InvalidArgumentError, match="fraction"):
         sine_record().resampled(0.005 * math.pi)
     with pytest.raises(InvalidArgumentError, match="duration"):
         sine_record(cycles=1).resampled(2.0)
+    for order in (-1, 7, 1.5):
+        with pytest.raises(InvalidArgumentError, match="order"):
+            sine_record().baseline_corrected(order=order)  # type: ignore[arg-type]
