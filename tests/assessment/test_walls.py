@@ -1,6 +1,5 @@
 """Objects against a wall: an assessment beside responses and thresholds of the bodies themselves."""
 
-import io
 import json
 import math
 from pathlib import Path
@@ -14,6 +13,7 @@ import rocking
 from rocking import InvalidArgumentError, Object, RigidBody
 from rocking._assessment.tables import objects_of_csv, objects_of_json
 from rocking._cli.app import app
+from rocking.suites.configuration import suite_configuration
 from tests.suites.motions import noise
 
 WALLS = {
@@ -98,36 +98,23 @@ def test_rows_of_tables_and_of_json() -> None:
         Object.from_body(WALLS["facade"], restitution="kalliontzis(k=0.5)")
 
 
-def test_the_command_takes_them(tmp_path: Path) -> None:
-    run = CliRunner()
-    options = ["--pulse", "cosine", "--peak-acceleration", "0.2g", "--period", "1.5s", "--format", "csv"]
-    texts = [
-        run.invoke(app, ["response", *body, *options]).stdout
-        for body in (
-            ["--width", "60cm", "--height", "9m", "--sides", "right", "--rebound", "0.4"],
-            ["--body", "rectangle(width=60cm, height=9m, sides=right, rebound=0.4)"],
-        )
-    ]
-    rows = [pd.read_csv(io.StringIO(text)).iloc[0] for text in texts]
-    assert rows[0]["rotation_right_deg [deg]"] == pytest.approx(rows[1]["rotation_right_deg [deg]"])
-    row = rows[0]
-    wall = RigidBody.from_size(0.6, 9.0).one_sided("right", 0.4)
-    found = wall.response("cosine", peak_acceleration="0.2 g", period=1.5)
-    assert row["rotation_right_deg [deg]"] == pytest.approx(math.degrees(found.rotation_right), rel=1e-6)
-    (tmp_path / "motion.csv").write_text("\n".join(map(str, noise(3, 300, 0.02).acceleration)))
-    suite = {
-        "name": "s",
-        "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02},
-        "measure": "pga",
-        "intensity": [1.0, 3.0, 9.0],
-        "blocks": ["rectangle(width=60cm, height=6m, sides=right)", {"width": 0.5, "height": 4.0, "sides": "right"}],
-    }
-    (tmp_path / "suite.json").write_text(json.dumps(suite))
-    out = run.invoke(app, ["fragility", str(tmp_path / "suite.json"), "--format", "csv"])
-    assert out.exit_code == 0, out.output
-    table = pd.read_csv(io.StringIO(out.stdout))
-    walls = RigidBody.from_size([0.6, 0.5], [6.0, 4.0]).one_sided("right")
-    expected = rocking.fragility(
-        [rocking.read_record(tmp_path / "motion.csv", unit="m/s2", time_step=0.02)], walls, intensity=[1.0, 3.0, 9.0]
+def test_the_command_and_a_configuration_take_them(tmp_path: Path) -> None:
+    options = ["--pulse", "cosine", "--peak-acceleration", "0.2g", "--period", "1.5s", "--format", "json"]
+    found = (
+        RigidBody.from_size(0.6, 9.0).one_sided("right", 0.4).response("cosine", peak_acceleration="0.2 g", period=1.5)
     )
-    np.testing.assert_array_equal(table["exceedances"], expected["exceedances"].values.ravel())
+    for body in (
+        ["--width", "60cm", "--height", "9m", "--sides", "right", "--rebound", "0.4"],
+        ["--body", "rectangle(width=60cm, height=9m, sides=right, rebound=0.4)"],
+    ):
+        said = json.loads(CliRunner().invoke(app, ["response", *body, *options]).stdout)
+        assert said["rotation_right_deg"] == pytest.approx(math.degrees(found.rotation_right), rel=1e-12)
+    (tmp_path / "motion.csv").write_text("\n".join(map(str, noise(3, 300, 0.02).acceleration)))
+    records = {"folder": str(tmp_path), "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02}
+    blocks = ["rectangle(width=60cm, height=6m, sides=right)", {"width": 0.5, "height": 4.0, "sides": "right"}]
+    suite = {"name": "s", "records": records, "measure": "pga", "intensity": [1.0, 3.0, 9.0], "blocks": blocks}
+    walls = RigidBody.from_size([0.6, 0.5], [6.0, 4.0]).one_sided("right")
+    made = suite_configuration(suite, tmp_path).blocks
+    assert made.sides == "right"
+    for name, values in walls.parameters.items():
+        np.testing.assert_allclose(made.parameters[name], values, rtol=1e-15)

@@ -12,14 +12,8 @@ from rocking.suites.hazard import annual_rate
 
 def curves(median, dispersion):
     """A data set with fitted curves, as `rocking.fragility` gives."""
-    return xr.Dataset(
-        {
-            name: ("model", np.array([value, value]))
-            for name, value in (("median_intensity", median), ("dispersion", dispersion))
-        },
-        {"model": ["lognormal", "logistic"]},
-        {"measure": "pga"},
-    )
+    values = {"median_intensity": ("model", [median] * 2), "dispersion": ("model", [dispersion] * 2)}
+    return xr.Dataset(values, {"model": ["lognormal", "logistic"]}, {"measure": "pga"})
 
 
 X = np.geomspace(1e-3, 1e4, 50)
@@ -39,10 +33,14 @@ def test_logistic_curve_has_a_closed_form():
     assert float(rate) == pytest.approx(1e-3 / 3.0 * math.pi * s / math.sin(math.pi * s), rel=1e-5)
 
 
-def test_step_gives_the_hazard_at_the_median():
-    found = annual_rate(curves(3.0, 0.0), (X, 1e-3 / X))
-    np.testing.assert_allclose(found.annual_rate, 1e-3 / 3.0, rtol=0.02)  # the quadrature resolves it to a step
-    assert found.annual_rate.attrs["units"] == "year-1"
+@pytest.mark.parametrize("dispersion", [0.0, 1e-9])
+def test_a_step_gives_the_hazard_at_the_median(dispersion):
+    hazard = [0.5, 2.0, 5.0], [0.3, 0.01, 1e-4]
+    for median in (1.0, 1.23456, 2.0, 3.3333):
+        found = annual_rate(curves(median, dispersion), hazard)
+        expected = np.exp(np.interp(np.log(median), *np.log(hazard)))
+        np.testing.assert_allclose(found.annual_rate, expected, rtol=1e-7)
+        assert found.annual_rate.attrs["units"] == "year-1"
 
 
 def test_intensities_above_the_hazard_curve_are_bounded():
@@ -52,13 +50,14 @@ def test_intensities_above_the_hazard_curve_are_bounded():
     assert float(found.annual_rate_upper) == pytest.approx(1e-2, rel=0.1)
 
 
-def test_no_curve_has_no_rate():
-    assert np.isnan(annual_rate(curves(math.nan, math.nan), (X, 1e-3 / X)).annual_rate).all()
-
-
 def test_labelled_hazard_curve():
     hazard = xr.DataArray(1e-3 / X, {"intensity": X}, dims="intensity")
     xr.testing.assert_identical(annual_rate(curves(3.0, 0.5), hazard), annual_rate(curves(3.0, 0.5), (X, 1e-3 / X)))
+    assert np.isnan(annual_rate(curves(math.nan, math.nan), hazard).annual_rate).all()
+    with pytest.raises(InvalidArgumentError, match="a hazard curve of pga"):
+        annual_rate(curves(3.0, 0.5), hazard.assign_attrs(measure="pgv"))
+    with pytest.raises(InvalidArgumentError, match=r"rocking\.fragility"):
+        annual_rate(xr.Dataset({"x": 1.0}), hazard)
 
 
 @pytest.mark.parametrize(
@@ -77,14 +76,3 @@ def test_labelled_hazard_curve():
 def test_invalid_hazard_curve_is_refused(hazard):
     with pytest.raises(InvalidArgumentError, match="hazard"):
         annual_rate(curves(3.0, 0.5), hazard)
-
-
-def test_a_hazard_curve_of_another_measure_is_refused():
-    hazard = xr.DataArray(1e-3 / X, {"intensity": X}, dims="intensity", attrs={"measure": "pgv"})
-    with pytest.raises(InvalidArgumentError, match="a hazard curve of pga"):
-        annual_rate(curves(3.0, 0.5), hazard)
-
-
-def test_other_data_sets_are_refused():
-    with pytest.raises(InvalidArgumentError, match=r"rocking\.fragility"):
-        annual_rate(xr.Dataset({"x": 1.0}), (X, 1e-3 / X))

@@ -1,7 +1,6 @@
 """The mildest intensity at which a record overturns a block: on the side of survival of the levels that were tried."""
 
 import numpy as np
-import pytest
 
 import rocking
 from rocking._dimensional.thresholds import overturning_scale
@@ -56,14 +55,3 @@ def test_the_largest_frequency_ratio_at_which_it_overturns_is_the_mildest():
         assert margins["overturning_scale"][k, n] == 1.0
         survived = ~overturned[k, :, n] & (levels < found[k, n])
         assert margins["levels_survived_above"][k, n] == survived.sum()
-
-
-@pytest.mark.parametrize("points", [4, 5])
-def test_stronger_levels_that_it_survives_are_counted(points):
-    outcomes = outcomes_of(np.geomspace(2.0, 12.0, points))
-    margins = record_margins(outcomes)
-    for k in range(len(BLOCKS)):
-        for n in range(len(RECORDS)):
-            own = outcomes["overturned"].values[k, :, n].astype(bool)
-            stronger = outcomes["intensity"].values > float(outcomes["overturning_intensity"][k, n])
-            assert margins["levels_survived_above"][k, n] == (~own & stronger).sum()

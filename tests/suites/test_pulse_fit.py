@@ -7,7 +7,6 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.thresholds import overturning_scale
 from tests.sampling import number
 from tests.suites.motions import BLOCK, noise, sampled
 
@@ -51,38 +50,13 @@ def test_fit_describes_a_record_and_gives_the_ratio_of_scales():
         assert rocking.suites.fit_pulse(record, family=family, blocks=[]).explained <= fit.explained + 1e-12
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_overturning_scale_is_where_the_outcome_changes(seed):
-    record = noise(seed)
-    scale = overturning_scale(record, BLOCK)
-    response = rocking.peak_response(
-        record,
-        frequency_parameter=BLOCK.frequency_parameter,
-        slenderness=BLOCK.uplift_acceleration / record.peak_acceleration / (scale * np.array([1.0 - 1e-5, 1.0])),
-        restitution=BLOCK.inelastic_restitution,
-        alpha=BLOCK.alpha,
-    )
-    assert response.overturned.tolist() == [False, True]
-    uplift = BLOCK.uplift_acceleration / record.peak_acceleration
-    coarse = rocking.peak_response(
-        record,
-        frequency_parameter=BLOCK.frequency_parameter,
-        slenderness=uplift / np.geomspace(uplift, scale * (1 - 1e-5), 300),
-        restitution=BLOCK.inelastic_restitution,
-        alpha=BLOCK.alpha,
-    )
-    assert not coarse.overturned.any()
-
-
 def test_thresholds_of_a_sampled_sine_are_its_critical_amplitudes():
     record = sampled("sine", 4.0, samples=8000)
-    exact = rocking.thresholds(
-        "sine", frequency_ratio=4.0, restitution=BLOCK.inelastic_restitution, alpha=BLOCK.alpha, highest=10.0
-    )
+    given = {"restitution": BLOCK.inelastic_restitution, "alpha": BLOCK.alpha}
+    exact = rocking.thresholds("sine", frequency_ratio=4.0, **given, highest=10.0)
     found = BLOCK.thresholds(record)
-    np.testing.assert_allclose(
-        found.value * record.peak_acceleration / BLOCK.uplift_acceleration, exact.amplitude, rtol=1e-4
-    )
+    amplitude = found.value * record.peak_acceleration / BLOCK.uplift_acceleration
+    np.testing.assert_allclose(amplitude, exact.amplitude, rtol=1e-4)
     assert found.overturns_above.tolist() == exact.overturns_above.tolist() == [True, False, True]
     assert found.searched[1] == pytest.approx(10.0 * found.searched[0])
 
