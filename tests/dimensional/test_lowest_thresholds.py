@@ -23,20 +23,12 @@ PERIODS = {"sine": 0.6, "cosine": 0.9, "c2": 1.0, "ricker_antisymmetric": 0.8}
 
 
 @pytest.mark.parametrize("pulse", but_long(PERIODS, "sine", "cosine"))
-def test_no_threshold_of_the_search_of_one_body_is_lower_and_each_is_confirmed_from_both_sides(
-    pulse: str,
-) -> None:
+def test_no_threshold_of_one_body_is_lower_and_each_is_confirmed_from_both_sides(pulse: str) -> None:
     bodies, period = random_bodies(7, 6), PERIODS[pulse]
     highest = 12.0 * np.asarray(bodies.uplift_acceleration)
     found = lowest_thresholds(Problem(bodies, as_pulse(pulse), np.ones(()), np.array(period), None), highest)
-    single = np.array(
-        [
-            rocking.RigidBody(left=left, right=right, height=height).thresholds(pulse, period=period).lowest
-            for left, right, height in zip(
-                *(bodies.parameters[name] for name in ("left", "right", "height")), strict=True
-            )
-        ]
-    )
+    sizes = zip(*(bodies.parameters[name] for name in ("left", "right", "height")), strict=True)
+    single = np.array([rocking.RigidBody(*size).thresholds(pulse, period=period).lowest for size in sizes])
     single = np.where(single <= highest, single, np.nan)
     np.testing.assert_allclose(found, single, rtol=1e-3)  # several changes can lie between two nodes, 0.05 % apart
     assert not (found > single * (1.0 + 1e-10)).any()
