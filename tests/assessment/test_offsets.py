@@ -10,7 +10,7 @@ import rocking
 from rocking._cli.app import app
 from rocking._evidence.old_rocks import unexceeded
 from rocking._excitation.records.processing import OFFSET_SHARE, offset_remark
-from tests.excitation.test_field_files import FOLDER
+from tests.excitation.test_record_readers import FOLDER
 from tests.suites.motions import noise
 
 KNET = FOLDER / "knet_offset.NS"

@@ -1,13 +1,19 @@
-"""Factors of a record at which the outcome changes: two searches, one result; text on the safe side."""
+"""Factors of a record at which the outcome changes: two searches, one result, when it is asked for and until a flag."""
 
 import math
+import threading
+import time
 
 import numpy as np
 import pytest
 
 import rocking
+from rocking._base.errors import StoppedError
+from rocking._dimensional import response
+from rocking._dimensional.problem import Problem
 from rocking._dimensional.threshold import Threshold, threshold_text, warnings_of_changes
 from rocking._dimensional.thresholds import BodyThresholds, overturning_scale
+from rocking._numba.cancellation import StopFlag
 from tests.sampling import but_long
 from tests.suites.motions import noise
 
@@ -62,3 +68,35 @@ def test_changes_in_words(count, said):
     found = BodyThresholds(values[:count], above[:count], np.array([0.5, 5.0]), "scale")
     assert found.sentence == said
     assert [one.overturns_above for one in found.changes] == above[:count].tolist()
+
+
+BLOCK = rocking.Block(0.5, 2.0)
+
+
+def test_nothing_is_searched_before_it_is_asked_for(monkeypatch):
+    monkeypatch.setattr(response, "block_thresholds", None)  # a search fails
+    found = BLOCK.response(noise(0))
+    assert found.to_dict()["outcome"] == found.outcome.name
+    assert BLOCK.response(noise(0), thresholds=False).margin is None
+    with pytest.raises(TypeError):
+        repr(found)
+
+
+def test_a_set_flag_ends_the_assessment():
+    flag = StopFlag()
+    found = BLOCK.response(noise(0), stop=flag)
+    flag.set()
+    with pytest.raises(StoppedError):
+        _ = found.warnings
+
+
+def test_a_flag_that_is_set_meanwhile_ends_the_search():
+    long = rocking.Record(np.tile(noise(0).acceleration, 40), 0.01, unit="m/s2")
+    large, flag = rocking.Block(4.0, 16.0), StopFlag()
+    found = response.respond(Problem.of(large, long), stop=flag, seconds=600.0)
+    timer = threading.Timer(0.2, flag.set)
+    timer.start()
+    began = time.process_time()
+    with pytest.raises(StoppedError):
+        _ = found.margin
+    assert time.process_time() - began < 10.0

@@ -37,15 +37,8 @@ def test_it_is_exact_between_samples_and_after_the_record(period: float, zeta: f
         def rate(t, y, k=k, slope=slope, last=last):  # type: ignore[no-untyped-def]
             return [y[1], -2 * zeta * omega * y[1] - omega**2 * y[0] - (0.0 if last else a[k] + slope * t)]
 
-        way = solve_ivp(
-            rate,
-            (0, period if last else 0.01),
-            state,
-            method="DOP853",
-            rtol=1e-12,
-            atol=1e-16,
-            events=lambda _, y: y[1],
-        )
+        options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-16, "events": lambda _, y: y[1]}
+        way = solve_ivp(rate, (0, period if last else 0.01), state, **options)
         state = way.y[:, -1]
         largest = max([largest, abs(state[0]), *(abs(y[0]) for y in way.y_events[0])])
     assert rocking.elastic_spectrum(short, period, zeta).displacement.item() == pytest.approx(largest, rel=1e-9)

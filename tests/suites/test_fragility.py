@@ -1,6 +1,5 @@
 """Fragility of suites with a known answer, and the contracts of `rocking.fragility`."""
 
-
 import numpy as np
 import pytest
 import xarray as xr
