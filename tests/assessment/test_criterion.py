@@ -115,21 +115,6 @@ def test_verdict_factor_shares_and_samples_agree(height: float, share: float, re
             assert overturned_by(body.column, motion, None, tried)[0].tolist() == [True, False]
 
 
-def test_sampled_shares_of_a_tiny_tolerance_are_the_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The restitution is that of the body, too."""
-    from rocking._assessment import sensitivity  # noqa: PLC0415
-
-    monkeypatch.setattr(sensitivity, "ETA_CHANGE", 1e-12)
-    rng = np.random.default_rng(3)
-    objects = [
-        rocking.Object(f"{k}", width=h * s, height=h, tolerance=1e-12)
-        for k, (h, s) in enumerate(zip(rng.uniform(0.4, 2.0, 4), rng.uniform(0.12, 0.4, 4), strict=True))
-    ]
-    for site in (rocking.Site(3.0, 0.3), rocking.Site(2.5, records=RECORDS)):
-        for row in rocking.assess(objects, site, sensitivity=False, samples=4).rows:
-            assert row["sampled_share"] == float(row["share"] > 0.0), row
-
-
 def test_a_harsher_hazard_has_no_lower_rate_and_bounds_hold_the_rate() -> None:
     objects = [rocking.Object(f"{k}", width=w, height=1.0) for k, w in enumerate([0.12, 0.2, 0.3, 2.0])]
     x, rates = np.array([0.5, 2.0, 8.0, 20.0]), np.array([1e-2, 1e-3, 1e-4, 1e-6])

@@ -296,18 +296,6 @@ def test_the_motion_of_a_floor_is_read_again(tmp_path):
     found = rocking.read_record(path)
     np.testing.assert_array_equal(found.acceleration, expected.acceleration)
     assert found.time_step == pytest.approx(expected.time_step, rel=1e-9)
-
-
-def test_a_block_on_an_isolation(tmp_path):
-    path = tmp_path / "isolated.csv"
-    path.write_text(run("floor", MOTION, "--period", "3s", "--damping", "0.2"))
-    motion = rocking.isolated_motion(rocking.read_record(MOTION), period=3.0, damping=0.2)
-    response = json.loads(run("record", str(path), *SIZES, "--no-thresholds", "--format=json"))
-    assert response["peak_acceleration"] == pytest.approx(motion.peak_acceleration)
-    assert response["peak_acceleration"] < 0.5 * rocking.read_record(MOTION).peak_acceleration
-
-
-def test_a_vertical_component_is_another_column():
     header = run("floor", MOTION, "--period", "0.5s", "--vertical", MOTION).splitlines()[0]
     assert header == "time_s,acceleration_m/s2,vertical_m/s2"
 

@@ -68,7 +68,10 @@ def test_one_body_has_numbers_and_many_have_arrays(kind, motion):
     if motion == "record":
         made, strong = rocking.Record(4.0 * np.sin(np.arange(0.0, 6.0, 0.05)), 0.02, "m/s2", "one"), {"scale": 0.8}
     one = body.response(made, **strong)
-    said = one.to_dict()
+    said, labelled, series = one.to_dict(), one.to_xarray(), one.to_pandas()
+    assert {name: labelled[name].attrs["units"] for name in said} == {one.name: one.unit for one in one.fields}
+    numbers = [name for name in said if name != "outcome"]
+    np.testing.assert_equal([labelled[name].item() for name in numbers], [series[name] for name in numbers])
     assert [*said] == [field.name for field in FIELDS if {kind, motion} <= field.kinds]
     assert json.loads(json.dumps(said)).keys() == said.keys()
     assert one.fields == tuple(field for field in FIELDS if field.name in said)

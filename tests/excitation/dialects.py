@@ -89,9 +89,8 @@ def make(dice: random.Random) -> Case:
 
     def motion() -> np.ndarray:
         wave = np.sin(0.4 * k * rng.uniform(0.5, 1.2) + rng.uniform(0.3, 6.0)) * np.exp(-k / n)
-        return (
-            size[unit] * rng.uniform(0.5, 1.2) * (wave + 0.05 * rng.standard_normal(n)) * np.minimum(1.0, 0.1 + k / 8.0)
-        )
+        rising = np.minimum(1.0, 0.1 + k / 8.0)
+        return size[unit] * rng.uniform(0.5, 1.2) * (wave + 0.05 * rng.standard_normal(n)) * rising
 
     comma = dice.random() < 0.2
     separator = dice.choice([";", "\t", "  "]) if comma else dice.choice([",", ", ", ";", "\t", " ", "   "])
@@ -102,7 +101,6 @@ def make(dice: random.Random) -> Case:
     shape = dice.choice(["one", "pair", "pair", "counter", "both", "components", "no time", "each", "wrapped", "more"])
     if trace:
         shape = dice.choice(["pair", "pair", "counter", "both"])
-    columns: list[tuple[str, str, list[str]]] = []  # name, unit of its own, texts
     time_unit = dice.choice(["s", "s", "s", "" if trace else "ms", ""])
     scale = 1000.0 if time_unit == "ms" else 1.0
     times = [f"{scale * step * j:.{2 if scale > 1 else 7}f}" for j in k]
@@ -118,29 +116,22 @@ def make(dice: random.Random) -> Case:
     others = [(one, unit, [form.format(value) for value in motion()]) for one in spare]
     time = dice.choice(TIMES), time_unit, times
     counter = dice.choice(COUNTERS), "", [str(start + j) for j in k]
-    if shape == "one":
-        columns = [own]
-    elif shape == "pair":
-        columns = [time, own]
-    elif shape == "counter":
-        columns = [counter, own]
-    elif shape == "both":
-        columns = [counter, time, own]
-    elif shape == "components":
-        columns = [time, own, *others]
-    elif shape == "no time":
-        columns = [own, *others]
-    elif shape == "each":
-        columns = [time, own, time, others[0]]
-    elif shape == "more":
-        columns = [time, own, ("vel", "cm/s" if unit != "m/s2" else "m/s", [form.format(v / 9.0) for v in motion()])]
+    velocity = "vel", "cm/s" if unit != "m/s2" else "m/s", [form.format(v / 9.0) for v in motion()]
+    columns: list[tuple[str, str, list[str]]] = {  # name, unit of its own, texts
+        "one": [own],
+        "pair": [time, own],
+        "counter": [counter, own],
+        "both": [counter, time, own],
+        "components": [time, own, *others],
+        "no time": [own, *others],
+        "each": [time, own, time, others[0]],
+        "more": [time, own, velocity],
+    }.get(shape, [])
 
     named = shape != "wrapped" and dice.random() < (0.9 if shape in ("both", "each", "more", "counter") else 0.7)
     where = dice.choice(["name", "name", "row", "line", "none"]) if named else dice.choice(["line", "none"])
     if trace:
-        where = (
-            "name" if named and unit != "rad" else dice.choice(["name", "none"]) if unit == "rad" and named else "none"
-        )
+        where = ("name" if unit != "rad" else dice.choice(["name", "none"])) if named else "none"
         unit = unit if where == "name" else dice.choice(["rad", "deg"])
     spelt = dice.choice(SPELLINGS.get(unit, [unit]))
     has_time = any(one is time for one in columns)

@@ -94,17 +94,14 @@ def test_functions_agree_about_the_pulse(own):
     ("start", "end", "terms", "parameter"),
     [
         (0.0, 7.0, ((1.0, 2.0), (3.0, 4.0)), "terms"),
-        (0.0, 7.0, ((1.0, -2.0, 0.0),), "terms"),
         (0.0, 7.0, ((0.0, 2.0, 0.0),), "terms"),
-        (0.0, 7.0, (), "terms"),
         (7.0, 0.0, ((1.0, 2.0, 0.0),), "end"),
         ("now", 7.0, ((1.0, 2.0, 0.0),), "start"),
     ],
 )
 def test_sums_without_a_peak_are_refused(start, end, terms, parameter):
-    with pytest.raises(InvalidArgumentError) as caught:
+    with pytest.raises(InvalidArgumentError, match=f"`{parameter}`"):
         SinusoidalPulse.of_unit_peak("burst", start, end, terms)
-    assert caught.value.parameter == parameter
 
 
 def test_response_is_that_of_direct_integration():

@@ -28,6 +28,9 @@ def test_margins_do_not_depend_on_the_levels_and_lie_below_those_that_overturn()
         assert (outcomes["overturning_intensity"].values < levels).all()
         margins = record_margins(outcomes)
         np.testing.assert_allclose(margins["overturning_scale"], exact, rtol=2e-6)
+        stronger = outcomes["intensity"] > outcomes["overturning_intensity"]
+        survived = ((outcomes["overturned"] == 0) & stronger).sum("intensity").transpose("block", "record")
+        np.testing.assert_array_equal(margins["levels_survived_above"], survived)
         pga = [record.peak_acceleration for record in RECORDS]
         np.testing.assert_allclose(outcomes["overturning_intensity"], margins["overturning_scale"] * pga, rtol=1e-12)
 

@@ -48,17 +48,6 @@ def test_planted_pulse_is_found_in_noise_of_40_decibel(family, seed):
         assert found.cycles == pytest.approx(pulse.cycles, rel=0.02)
 
 
-@pytest.mark.parametrize("seed", but_long(range(6), 0, 1))
-def test_planted_pulse_is_found_in_noise_of_the_acceleration(seed):
-    pulse = planted(MP, seed)
-    shape, peak = pulse.acceleration_pulse()
-    a = noisy(peak * shape.acceleration(2 * math.pi / pulse.period * (TIME - pulse.centre)), 40.0, seed)
-    velocity = np.concatenate([[0.0], np.cumsum(0.5 * STEP * (a[1:] + a[:-1]))])
-    found = fit_velocity(velocity, STEP, MP)
-    assert found.period == pytest.approx(pulse.period, rel=0.01)
-    assert angle_between(found.phase, pulse.phase) < 0.02
-
-
 @pytest.mark.parametrize("family", FAMILIES)
 def test_acceleration_is_the_derivative_of_the_velocity(family):
     pulse = planted(family, 3)
