@@ -65,26 +65,19 @@ def test_digest_and_equality_depend_on_samples_and_step_only() -> None:
 
 def test_a_vertical_component_belongs_to_the_record() -> None:
     upwards = np.array([0.1, -0.2, 0.0])
-    record = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=upwards)
+    given = {"acceleration": [0.0, 1.0, 0.5], "time_step": 0.01, "unit": "g"}
+    record, plain = rocking.Record(**given, vertical=upwards), rocking.Record(**given)
     upwards[0] = 5.0
     np.testing.assert_allclose(record.vertical, np.array([0.1, -0.2, 0.0]) * STANDARD_GRAVITY, rtol=1e-15)
-    assert record.vertical is not None
     with pytest.raises(ValueError, match="read-only"):
-        record.vertical[0] = 1.0
+        record.vertical[0] = 1.0  # type: ignore[index]
     assert record.peak_vertical_acceleration == pytest.approx(0.2 * STANDARD_GRAVITY)
     assert repr(record) == "<rocking.Record: 3 samples at 0.01 s, PGA 1 g, with vertical, 0.2 g>"
-    plain = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g")
-    assert plain.vertical is None
-    assert plain.peak_vertical_acceleration == 0.0
-    others = [
-        plain,
-        rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=np.zeros(3)),
-        rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=[0.1, -0.2, 0.01]),
-        rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"),
-    ]
-    assert len({record.digest, *(other.digest for other in others)}) == 5
-    assert record == rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=[0.1, -0.2, 0.0], name="other")
-    assert record != plain
+    assert (plain.vertical, plain.peak_vertical_acceleration) == (None, 0.0)
+    others = [rocking.Record(**given, vertical=other) for other in (np.zeros(3), [0.1, -0.2, 0.01])]
+    others.append(rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"))
+    assert len({record.digest, plain.digest, *(other.digest for other in others)}) == 5
+    assert record == rocking.Record(**given, vertical=[0.1, -0.2, 0.0], name="other") != plain
     assert record.arias_intensity == plain.arias_intensity
 
 

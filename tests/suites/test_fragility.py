@@ -1,4 +1,6 @@
-"""Fragility of suites with a known answer, and the contracts of `rocking.fragility`."""
+"""Fragility of suites with a known answer, its contracts, margins of records, vertical components."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,10 +8,16 @@ import xarray as xr
 from scipy.stats import norm
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
 from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._dimensional.thresholds import overturning_scale
+from rocking.suites.configuration import RecordFiles
 from rocking.suites.fits import FitStatus, binomial_interval
+from rocking.suites.margins import with_margins
+from rocking.suites.outcomes import check_suite, suite_outcomes
+from rocking.suites.summary import record_margins
 from tests.suites.motions import BLOCK, noise, sampled
 
 MEDIAN, BETA = 6.0, 0.35  # PGA [m/s2] at which the synthetic suite overturns the block
@@ -227,3 +235,103 @@ def test_an_object_has_the_fragility_of_each_of_its_directions(noisy):
         np.testing.assert_array_equal(found.overturned.sel(direction=direction), block.overturned)
     leaning = rocking.Object("box", width=0.4, height=1.6, offset_width=0.05)
     assert rocking.fragility(motions, leaning, intensity=levels).sizes["record"] == 6
+
+
+MOTIONS = [noise(seed) for seed in range(3)]
+TWO = [BLOCK, rocking.Block(0.8, 4.0)]
+
+
+def outcomes_of(levels, measure="pga"):
+    suite = check_suite(MOTIONS, TWO, levels, measure, "momentum")
+    return with_margins(suite_outcomes(suite), suite)
+
+
+def test_margins_do_not_depend_on_the_levels_and_lie_below_those_that_overturn():
+    coarse, fine = (outcomes_of(np.geomspace(1.0, 40.0, points)) for points in (6, 20))
+    exact = [[overturning_scale(record, block) for record in MOTIONS] for block in TWO]
+    for outcomes in (coarse, fine):
+        overturned = outcomes["overturned"].values.astype(bool)
+        levels = np.where(overturned, outcomes["intensity"].values[:, None], np.inf).min(axis=1)
+        assert np.isfinite(levels).all()
+        assert (outcomes["overturning_intensity"].values < levels).all()
+        margins = record_margins(outcomes)
+        np.testing.assert_allclose(margins["overturning_scale"], exact, rtol=2e-6)
+        stronger = outcomes["intensity"] > outcomes["overturning_intensity"]
+        survived = ((outcomes["overturned"] == 0) & stronger).sum("intensity").transpose("block", "record")
+        np.testing.assert_array_equal(margins["levels_survived_above"], survived)
+        pga = [record.peak_acceleration for record in MOTIONS]
+        np.testing.assert_allclose(outcomes["overturning_intensity"], margins["overturning_scale"] * pga, rtol=1e-12)
+
+
+def test_a_block_that_survives_all_levels_has_no_margin():
+    outcomes = outcomes_of([0.5, 1.0])
+    assert outcomes["overturning_intensity"].isnull().all()
+    margins = record_margins(outcomes)
+    assert margins["overturning_scale"].isnull().all()
+    assert not margins["levels_survived_above"].any()
+
+
+def test_the_largest_frequency_ratio_at_which_it_overturns_is_the_mildest():
+    outcomes = outcomes_of(np.geomspace(0.3, 30.0, 8), "frequency_ratio")
+    margins = record_margins(outcomes)
+    found, overturned = outcomes["overturning_intensity"].values, outcomes["overturned"].values.astype(bool)
+    assert np.isfinite(found).any()
+    levels = outcomes["intensity"].values
+    for k, n in np.argwhere(np.isfinite(found)):
+        assert found[k, n] >= levels[overturned[k, :, n]].max()
+        near = check_suite(
+            MOTIONS[n], TWO[k], found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5]), "frequency_ratio", "momentum"
+        )
+        assert suite_outcomes(near)["overturned"].values.ravel().tolist() == [1, 0]
+        assert margins["overturning_scale"][k, n] == 1.0
+        survived = ~overturned[k, :, n] & (levels < found[k, n])
+        assert margins["levels_survived_above"][k, n] == survived.sum()
+
+
+BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.2, 1.0, gravity=3.7)]
+FEW_LEVELS = np.array([1.0, 2.0, 3.0, 4.0])
+
+
+def with_vertical(seed: int, share: float = 0.5) -> rocking.Record:
+    record = noise(seed)
+    a = record.acceleration
+    return rocking.Record(a, record.time_step, "m/s2", name=f"noise {seed}", vertical=share * np.roll(a, 7))
+
+
+@pytest.mark.parametrize("measure", ["pga", "frequency_ratio"])
+def test_outcomes_are_those_of_the_single_blocks(measure: str) -> None:
+    records = [with_vertical(1), noise(2)]
+    found = rocking.fragility(records, BLOCKS, intensity=FEW_LEVELS, measure=measure)
+    for place in np.ndindex(2, 4, 2):
+        body, level, record = BLOCKS[place[0]], FEW_LEVELS[place[1]], records[place[2]]
+        eta = body.inelastic_restitution
+        if measure == "frequency_ratio":
+            own = 2.0 * np.pi / (record.mean_period * body.frequency_parameter)
+            size = body.half_diagonal * (level / own) ** 2
+            body = rocking.Block.from_slenderness_angle(body.alpha, size, gravity=body.gravity)
+        alone = body.response(record, scale=float(found["scale"].values[place]), restitution=eta, thresholds=False)
+        assert found["overturned"].values[place] == alone.overturned
+        assert found["peak_rotation"].values[place] == pytest.approx(alone.peak_rotation, rel=1e-6, nan_ok=True)
+
+
+def test_a_level_at_which_a_body_would_fly_is_refused() -> None:
+    record = with_vertical(1, share=-1.0)
+    flies = STANDARD_GRAVITY / -float(record.vertical.min()) * record.peak_acceleration
+    rocking.fragility(record, BLOCKS[0], intensity=[1.0, 0.999 * flies])
+    with pytest.raises(InvalidArgumentError, match=r"`intensity` = .* factor of noise 1 is below .* -g at .* s"):
+        rocking.fragility(record, BLOCKS[0], intensity=[1.0, 1.001 * flies])
+    with pytest.raises(InvalidArgumentError, match="`intensity`"):
+        rocking.suites.suite_sensitivity(record, BLOCKS[0], intensity=[1.001 * flies])
+
+
+def test_the_vertical_component_is_never_another_file(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.csv").write_text("time_s,NS_g,up\n0,1,4\n0.5,2,5\n1,3,6\n")
+    (tmp_path / "up").write_text("unit: g\ndt: 0.5\n7\n8\n9\n")
+    files = RecordFiles(tmp_path, "*.csv", "g", None, "NS_g", "up", None)
+    (path,) = files.paths()
+    np.testing.assert_allclose(files.read(path).vertical, STANDARD_GRAVITY * np.array([4.0, 5.0, 6.0]), rtol=1e-15)
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'a.csv' .* allowed: a component of a.csv"):
+        replace(files, vertical="a.csv").read(path)
+    with pytest.raises(InvalidArgumentError, match=r"`path` = .*none.csv.*: no such file"):
+        files.read(tmp_path / "none.csv")
