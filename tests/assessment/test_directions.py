@@ -105,9 +105,8 @@ def test_a_mesh_that_is_turned_has_the_directions_of_the_object(tmp_path):
     plain = directions_of(rocking.Object("slab", width=0.8, depth=0.2, height=1.6))
     assert float(found["factor"].min()) == pytest.approx(float(plain["factor"].min()), rel=1e-6)
     assert weakest(found) in (127.3, 307.3)
-    np.testing.assert_allclose(
-        np.ptp(mesh.footprint, axis=0), np.ptp(turned_corners(0.8, 0.2, 37.3), axis=0), rtol=1e-6
-    )
+    corners = turned_corners(0.8, 0.2, 37.3)
+    np.testing.assert_allclose(np.ptp(mesh.footprint, axis=0), np.ptp(corners, axis=0), rtol=1e-6)
 
 
 def turned_corners(width, depth, degrees):

@@ -97,9 +97,8 @@ def test_rows_of_tables_and_of_json() -> None:
 
 def test_the_command_and_a_configuration_take_them(tmp_path: Path) -> None:
     options = ["--pulse", "cosine", "--peak-acceleration", "0.2g", "--period", "1.5s", "--format", "json"]
-    found = (
-        RigidBody.from_size(0.6, 9.0).one_sided("right", 0.4).response("cosine", peak_acceleration="0.2 g", period=1.5)
-    )
+    wall = RigidBody.from_size(0.6, 9.0).one_sided("right", 0.4)
+    found = wall.response("cosine", peak_acceleration="0.2 g", period=1.5)
     for body in (
         ["--width", "60cm", "--height", "9m", "--sides", "right", "--rebound", "0.4"],
         ["--body", "rectangle(width=60cm, height=9m, sides=right, rebound=0.4)"],

@@ -126,25 +126,6 @@ def test_contact_is_said_to_be_unknown():
     assert "structure of alpha" in repr(found)
 
 
-def test_it_is_accepted_wherever_a_block_is():
-    frame = frame_of(0.5)
-    spectrum = frame.spectrum("sine", peak_acceleration=2.5, period=[0.5, 1.0])
-    assert float(spectrum["rotation"][0]) == pytest.approx(
-        frame.response("sine", peak_acceleration=2.5, period=0.5).rotation, rel=1e-12
-    )
-    time = np.arange(0.0, 4.0, 0.01)
-    record = rocking.Record(2.5 * np.sin(4 * np.pi * time) * (time < 0.5), 0.01, "m/s2")
-    found = frame.response(record)
-    wanted = rocking.peak_response(
-        record, frequency_parameter=frame.frequency_parameter, alpha=frame.alpha,
-        slenderness=frame.uplift_acceleration / record.peak_acceleration, restitution=frame.momentum_restitution,
-    )  # fmt: skip
-    assert found.peak_rotation == float(wanted.peak_rotation)
-    levels = [0.9 * frame.uplift_acceleration, 20.0 * frame.uplift_acceleration]
-    outcomes = rocking.fragility(record, frame, intensity=levels, measure="pga")
-    assert outcomes["overturned"].values.ravel().tolist() == [False, True]
-
-
 @pytest.mark.parametrize(
     ("make", "given", "said"),
     [

@@ -279,9 +279,8 @@ def test_the_largest_frequency_ratio_at_which_it_overturns_is_the_mildest():
     levels = outcomes["intensity"].values
     for k, n in np.argwhere(np.isfinite(found)):
         assert found[k, n] >= levels[overturned[k, :, n]].max()
-        near = check_suite(
-            MOTIONS[n], TWO[k], found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5]), "frequency_ratio", "momentum"
-        )
+        around = found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5])
+        near = check_suite(MOTIONS[n], TWO[k], around, "frequency_ratio", "momentum")
         assert suite_outcomes(near)["overturned"].values.ravel().tolist() == [1, 0]
         assert margins["overturning_scale"][k, n] == 1.0
         survived = ~overturned[k, :, n] & (levels < found[k, n])

@@ -44,13 +44,6 @@ def test_a_step_gives_the_hazard_at_the_median(dispersion):
         assert found.annual_rate.attrs["units"] == "year-1"
 
 
-def test_intensities_above_the_hazard_curve_are_bounded():
-    found = annual_rate(curves(3.0, 0.5), ([0.1, 1.0], [1e-1, 1e-2])).sel(model="lognormal")
-    whole = annual_rate(curves(3.0, 0.5), (X, 1e-2 / X)).annual_rate.sel(model="lognormal")
-    assert float(found.annual_rate) < float(whole) < float(found.annual_rate_upper)
-    assert float(found.annual_rate_upper) == pytest.approx(1e-2, rel=0.1)
-
-
 def test_labelled_hazard_curve():
     hazard = xr.DataArray(1e-3 / X, {"intensity": X}, dims="intensity")
     xr.testing.assert_identical(annual_rate(curves(3.0, 0.5), hazard), annual_rate(curves(3.0, 0.5), (X, 1e-3 / X)))

@@ -5,7 +5,6 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking.suites.table import sensitivity_table
 from tests.suites.motions import BLOCK, noise, sampled
 
 LEVELS = [2.5, 4.5, 7.0]
@@ -78,16 +77,6 @@ def test_forces_of_equivalent_blocks_are_not_known(motions):
     found = rocking.suites.suite_sensitivity(motions[0], frame, intensity=[3.0])
     assert np.isnan(found.friction_demand.item())
     assert found.overturned.item() == rocking.fragility(motions[0], frame, intensity=[3.0]).overturned.item()
-
-
-def test_table_has_a_row_for_each_block_and_level(found, motions):
-    rows = sensitivity_table(found)
-    assert rows["intensity"] == LEVELS
-    assert rows["changed_resampled"] == found.changed_resampled.values.tolist()
-    assert set(rows["restitution_low"]) == {float(found.restitution_low)}
-    assert "demand" not in rows
-    both = rocking.suites.suite_sensitivity(motions[:1], [BLOCK, rocking.Block(0.5, 2.0)], intensity=LEVELS[:1])
-    assert sensitivity_table(both)["width"] == both.width.values.tolist()
 
 
 @pytest.mark.parametrize(
