@@ -44,21 +44,15 @@ def test_each_entry_takes_the_number_that_momentum_gives(width, height, k):
 
 def test_thresholds_fragility_and_assessments_follow():
     """The same as with the number; k = 1 is momentum to the last digit."""
-    block = rocking.Block(0.3, 1.2)
-    eta = by_momentum(0.15, 0.6, np.hypot(0.15, 0.6) / np.sqrt(3), 0.7)
-    lowest = [block.thresholds("sine", period=0.5, restitution=one).lowest for one in (TEXT, eta)]
+    block, texts = rocking.Block(0.3, 1.2), (TEXT, by_momentum(0.15, 0.6, np.hypot(0.15, 0.6) / np.sqrt(3), 0.7))
+    lowest = [block.thresholds("sine", period=0.5, restitution=one).lowest for one in texts]
     assert lowest[0] == pytest.approx(lowest[1], rel=1e-9)
     record = rocking.Record(5 * np.sin(7 * 0.01 * np.arange(300)), 0.01, "m/s2")
-    found = [
-        rocking.fragility([record], block, intensity=[3.0, 6.0, 9.0], restitution=one)["peak_rotation"].values
-        for one in (TEXT, eta)
-    ]
-    np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
+    found = [rocking.fragility([record], block, intensity=[3.0, 6.0, 9.0], restitution=one) for one in texts]
+    np.testing.assert_allclose(*(one["peak_rotation"] for one in found), rtol=1e-9)
     site = rocking.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker"])
-    rows = [
-        rocking.assess(rocking.Object("a", width=0.3, height=1.2, restitution=one), site, sensitivity=False).rows
-        for one in (TEXT, eta, "kalliontzis(k=1)", "momentum")
-    ]
+    objects = [rocking.Object("a", 0.3, 1.2, restitution=one) for one in (*texts, "kalliontzis(k=1)", "momentum")]
+    rows = [rocking.assess(one, site, sensitivity=False).rows for one in objects]
     assert rows[0][0]["factor"] == pytest.approx(rows[1][0]["factor"], rel=1e-9)
     assert rows[2] == rows[3]
 

@@ -148,7 +148,6 @@ def test_every_variable_has_unit_and_meaning(noisy):
         ({"intensity": [0.0, 1.0]}, "intensity"),
         ({"measure": "sa"}, "measure"),
         ({"restitution": "plastic"}, "restitution"),
-        ({"restitution": 1.2}, "restitution"),
         ({"demand": "sliding"}, "demand"),
         ({"demand": 0.0}, "demand"),
         ({"demand": []}, "demand"),
