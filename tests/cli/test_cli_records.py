@@ -94,9 +94,8 @@ def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
 
 
 def test_baseline_is_removed_on_request_only():
-    plain, corrected = (
-        json.loads(run("record", MOTION, *SIZES, *more, "--format=json")) for more in ([], ["--baseline-order", "1"])
-    )
+    each = ([], ["--baseline-order", "1"])
+    plain, corrected = (json.loads(run("record", MOTION, *SIZES, *more, "--format=json")) for more in each)
     assert abs(corrected["final_velocity"]) < abs(plain["final_velocity"])
 
 

@@ -157,12 +157,9 @@ def make(dice: random.Random) -> Case:
         names = [_named(dice, one, where, spelt if one is not time else one[1], mark) for one in columns]
         header.append(dice.choice(["", prefix]) + mark.join(names))
         if where == "row":
-            units = [
-                f"[{spelt if one is not time else one[1] or 's'}]" if one[1] or one is time else "[-]"
-                for one in columns
-            ]
-            units = [f"[{one[1]}]" if one[0] == "vel" else text for one, text in zip(columns, units, strict=True)]
-            header.append(mark.join(units))
+            own_unit = {id(time): time[1] or "s", id(velocity): velocity[1]}
+            units = [own_unit.get(id(one)) or (spelt if one[1] else "-") for one in columns]
+            header.append(mark.join(f"[{text}]" for text in units))
     if dice.random() < 0.1:
         header.append("-" * 30)
     leading: list[str] = []
