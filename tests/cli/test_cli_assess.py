@@ -71,9 +71,8 @@ def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
     table.write_text(INVENTORY.replace("wide", "152,0"))
     header, *lines = cells(run("assess", str(table), *PULSES), 5)
     assert header == ASKED
-    found = rocking.assess(
-        rocking.read_objects(table).objects, rocking.Site("0.3 g", "0.3 m/s", shapes=["sine", "cosine"])
-    )
+    site = rocking.Site("0.3 g", "0.3 m/s", shapes=["sine", "cosine"])
+    found = rocking.assess(rocking.read_objects(table).objects, site)
     worst = {row["object"]: row for row in reversed(found.rows)}
     assert [line[1] for line in lines] == [*dict.fromkeys(row["object"] for row in found.rows)]
     for line in lines[:-1]:

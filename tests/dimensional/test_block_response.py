@@ -51,23 +51,21 @@ def test_thresholds_and_margins_are_changes_of_the_outcome():
         assert block.response("sine", **MOTION, restitution=eta).overturned is overturned
 
 
-@pytest.mark.parametrize("motion", ["sine", "record"])
-@pytest.mark.parametrize(
-    "block",
-    [BLOCK, rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)],
-    ids=["rigid", "linear"],
-)
+LINEAR = rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)
+
+
+@pytest.mark.parametrize("motion", ["sine", RECORD], ids=["pulse", "record"])
+@pytest.mark.parametrize("block", [BLOCK, LINEAR], ids=["rigid", "linear"])
 def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
-    by_record = motion == "record"
-    made, period = (RECORD, {}) if by_record else (motion, {"period": 0.5})
+    by_record = motion is RECORD
+    period, name, unit = ({}, "scale", "1") if by_record else ({"period": 0.5}, "peak_acceleration", "m s-2")
+    found = block.thresholds(motion, **period)
     strength = {} if by_record else {"peak_acceleration": 4.0}
-    found = block.thresholds(made, **period)
-    assert list(found) == list(block.response(made, **strength, **period).thresholds)
+    assert list(found) == list(block.response(motion, **strength, **period).thresholds)
     assert len(found) == found.value.size > 0
-    name, unit = ("scale", "1") if by_record else ("peak_acceleration", "m s-2")
     for factor, overturned in ((1 - 2e-6, False), (1 + 2e-6, True)):
-        assert block.response(made, **{name: factor * found[0].value}, **period).overturned is overturned
-    none = block.thresholds(made, highest=0.999 * found[0].value, **period)
+        assert block.response(motion, **{name: factor * found[0].value}, **period).overturned is overturned
+    none = block.thresholds(motion, highest=0.999 * found[0].value, **period)
     assert (len(none), list(none)) == (0, [])
     assert "was found to overturn it" in repr(none)
     data = found.to_xarray()
@@ -75,7 +73,7 @@ def test_thresholds_are_of_one_type_whatever_the_motion(block, motion):
     assert data[name].attrs["units"] == unit
     assert len(found.to_pandas()) == len(found)
     with pytest.raises(InvalidArgumentError):
-        block.thresholds(made, **({"period": 0.5} if by_record else {}))
+        block.thresholds(motion, **({"period": 0.5} if by_record else {}))
 
 
 def test_margins_and_responses_as_text_and_tables():
@@ -115,9 +113,8 @@ def test_arrays_of_arguments_broadcast(motion):
         each = [BLOCK.thresholds(made, period=one).value for one in (0.4, 0.5)]
         lowest = BLOCK.thresholds(made, period=[0.4, 0.5]).lowest
         np.testing.assert_allclose(lowest, [one[0] for one in each], rtol=1e-9)
-    linear = rocking.EquivalentBlock(0.2, 2.0, restitution=0.9, uplift_acceleration=1.5)
     with pytest.raises(InvalidArgumentError, match="its equation of motion is linear"):
-        linear.response(made, **{name: [1.0, 2.0]}, **period)
+        LINEAR.response(made, **{name: [1.0, 2.0]}, **period)
 
 
 def test_spectrum_of_a_structure_over_its_size():

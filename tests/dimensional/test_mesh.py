@@ -56,7 +56,10 @@ REPAIRED = {
     "open and flipped": (without(flipped(box(), slice(None, None, 3)), -0.59), "inconsistent normals"),
     "faces twice": (with_faces(box(), [*box().faces, *box().faces[:2]]), "2 of 194 were left out"),
     "stray face": (with_faces(box(), [*box().faces, *last((0, 1, 2))], FAR), "1 of 193 were left out"),
-    "face on an edge": (with_faces(box(), [*box().faces, [*box().faces[5, :2], *last((0,))[0]]], FAR[:1]), "1 of 193"),
+    "face on an edge": (
+        with_faces(box(), [*box().faces, [*box().faces[5, :2], len(box().vertices)]], FAR[:1]),
+        "1 of 193",
+    ),
 }
 
 

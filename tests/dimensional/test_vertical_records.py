@@ -82,9 +82,8 @@ def test_a_search_ends_where_the_body_would_fly(heavy: rocking.Block | rocking.R
 
 def test_thresholds_are_those_of_the_responses() -> None:
     record = noise(2)
-    motion = rocking.Record(
-        record.acceleration, record.time_step, "m/s2", vertical=0.6 * np.roll(record.acceleration, 9)
-    )
+    upwards = 0.6 * np.roll(record.acceleration, 9)
+    motion = rocking.Record(record.acceleration, record.time_step, "m/s2", vertical=upwards)
     found = BLOCK.thresholds(motion)
     assert found.value.size
     assert overturning_scale(motion, BLOCK) == found.value[0]

@@ -121,12 +121,9 @@ def test_reading_takes_at_most_four_times_the_memory_of_the_file(header: str, ro
     assert 1024 * int(grown) < 4 * path.stat().st_size
 
 
-def test_a_missing_file_is_an_invalid_argument(tmp_path) -> None:
+def test_errors_can_be_sent_between_processes(tmp_path) -> None:
     with pytest.raises(InvalidArgumentError, match="no such file"):
         rocking.read_record(tmp_path / "none.at2")
-
-
-def test_errors_can_be_sent_between_processes() -> None:
     error = RecordFileError("a.at2", 3, "x", "a number")
     copy = pickle.loads(pickle.dumps(error))
     assert str(copy) == str(error) == "a.at2, line 3: found x; expected a number"
