@@ -106,7 +106,6 @@ def test_baseline_is_removed_on_request_only():
         ([MOTION, "--width", "0.5", "--height", "2m"], "--width"),
         ([MOTION, *SIZES, "--scale", "0"], "--scale"),
         ([MOTION, *SIZES, "--restitution", "plastic"], "--restitution"),
-        ([MOTION, *SIZES, "--restitution", "1.5"], "--restitution"),
         ([MOTION, *SIZES, "--unit", "feet"], "--unit"),
         ([MOTION, *SIZES, "--baseline-order", "9"], "--baseline-order"),
     ],

@@ -100,14 +100,11 @@ def test_three_files_hold_the_fractions(found, tmp_path):
     assert content["levels"]["fraction"] == expected.tolist()
     assert (content["measure"], content["unit"]) == ("pga", "m s-2")
     assert content["curves"]["median_intensity"] == found["median_intensity"].values.tolist()
+    mild = rocking.fragility(noise(1), BLOCKS[1], intensity=[0.1, 0.2])
+    rocking.suites.write_fragility(mild, tmp_path / "mild.json")  # a curve that does not exist is null
+    assert json.loads((tmp_path / "mild.json").read_text())["curves"]["median_intensity"] == [None, None]
     (curves,) = read(tmp_path / "curves.xml").values()
     np.testing.assert_allclose(curves["overturns"](LEVELS / 9.80665), expected, atol=1e-8)
-
-
-def test_a_curve_that_does_not_exist_is_null(tmp_path):
-    mild = rocking.fragility(noise(1), rocking.Block(0.3, 1.0), intensity=[0.1, 0.2])
-    rocking.suites.write_fragility(mild, tmp_path / "mild.json")
-    assert json.loads((tmp_path / "mild.json").read_text())["curves"]["median_intensity"] == [None, None]
 
 
 def test_components_of_pelicun_are_the_fits_over_g(found, tmp_path):

@@ -120,6 +120,8 @@ def test_pgv_is_in_centimetres_a_second(tmp_path):
     found = read_hazard(written(tmp_path, CURVES, "PGV/curves.csv"))
     np.testing.assert_allclose(found["intensity"], [0.000025, 0.0005, 0.005, 0.015])
     assert (found.attrs["measure"], found["intensity"].attrs["units"]) == ("pgv", "m s-1")
+    with pytest.raises(InvalidArgumentError, match="no such file"):
+        read_hazard(tmp_path / "PGV" / "none.csv")
 
 
 @pytest.mark.parametrize(
@@ -156,8 +158,3 @@ def test_a_table_of_ones_own(tmp_path, header):
     np.testing.assert_allclose(found["intensity"], [0.1 * unit, 0.4 * unit])
     assert found.values.tolist() == [2e-2, 4e-4]
     assert found.attrs["measure"] == header[:3].lower()
-
-
-def test_a_file_that_cannot_be_read(tmp_path):
-    with pytest.raises(InvalidArgumentError, match="no such file"):
-        read_hazard(tmp_path / "none.csv")
