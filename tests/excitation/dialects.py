@@ -169,7 +169,6 @@ def make(dice: random.Random) -> Case:
         )
     if shape == "wrapped":
         width = dice.choice([4, 5, 8])
-        columns = []
         body = [separator.join(written[j : j + width]) for j in range(0, n, width)]
     else:
         body = [separator.join(texts) for texts in zip(*(one[2] for one in columns), strict=True)]
@@ -182,17 +181,14 @@ def make(dice: random.Random) -> Case:
     content = (end.join(lines) + end).encode(dice.choice(["utf-8", "utf-8", "utf-8-sig", "utf-16"]))
 
     needed: dict[str, Any] = {}
-    stated: dict[str, Any] = {}
     if trace:
-        stated = {"degrees": unit == "deg"} if where == "none" else {}
+        stated: dict[str, Any] = {"degrees": unit == "deg"} if where == "none" else {}
         needed = stated if unit == "deg" else {}
         if not has_time or not named:
             stated = {**stated, "time_step": step}
     else:
         stated = {"unit": unit}
-        if not has_time or not named:
-            stated["time_step"] = step
-        if time_unit == "ms" and where not in ("name", "row"):
+        if not has_time or not named or (time_unit == "ms" and where not in ("name", "row")):
             stated["time_step"] = step
         if len(columns) > 1:
             stated["component"] = name if named else f"column {columns.index(own) + 1}"
