@@ -138,10 +138,8 @@ class Writer:
 
     def _with_unit(self, one: str, name: str) -> str:
         unit = self.units.get(one, "")
-        beside = self.style in ("header", "group", "column", "title") and not (
-            self.style != "header" and unit in LENGTHS
-        )
-        if not unit or not beside:
+        common = unit in LENGTHS  # one unit of all lengths, elsewhere
+        if not unit or not (self.style == "header" or (self.style in ("group", "column", "title") and not common)):
             return name
         words = {"in": ["in", "inch", '"'], "lb": ["lb", "lbs", "pounds"], "%": ["%", "percent"]}.get(unit, [unit])
         written = self.dice.choice(words)
@@ -196,8 +194,7 @@ class Writer:
     def _object(self, k: int) -> tuple[str, dict[str, Any], dict[str, Any]]:
         """Label, values and cells of an object."""
         is_round = self.round and self.dice.random() < 0.5
-        values: dict[str, Any] = {}
-        cells: dict[str, Any] = {}
+        values, cells = dict[str, Any](), dict[str, Any]()
         for one in self.columns:
             if one == "name":
                 cells[one] = f"{self.dice.choice(['vase', 'bust', 'Total Eclipse', 'kouros, young'])} {k}"
@@ -234,8 +231,7 @@ class Writer:
 
 def errors_of(table: ObjectTable, dialect: Dialect) -> list[str]:
     """What a table says that is not true."""
-    found = []
-    refused = {one.row for one in table.bad_rows}
+    found, refused = [], {one.row for one in table.bad_rows}
     for one in table.objects:
         truth = dialect.objects.get(one.name)
         if truth is None:
@@ -246,9 +242,8 @@ def errors_of(table: ObjectTable, dialect: Dialect) -> list[str]:
         pairs = [(read, sides)]
         for name in ("height", "diameter", "mass", "friction", "restitution"):
             value = getattr(one, name)
-            pairs.append(
-                ([] if value in (None, "momentum") else [value], [float(truth[name])] if name in truth else [])
-            )
+            known = [float(truth[name])] if name in truth else []
+            pairs.append(([] if value in (None, "momentum") else [value], known))
         for ours, theirs in pairs:
             if len(ours) != len(theirs) or any(abs(a - b) > 1e-9 * abs(b) for a, b in zip(ours, theirs, strict=True)):
                 found.append(f"{one.name}: {ours} for {theirs}")

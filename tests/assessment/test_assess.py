@@ -9,7 +9,7 @@ import pytest
 import rocking
 from rocking._assessment.assess import assess
 from rocking._assessment.columns import OUTPUTS, VERDICTS
-from rocking._assessment.objects import Bodies, Object
+from rocking._assessment.objects import Object
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.sensitivity import SIZE_ERROR
 from rocking._assessment.site import Site
@@ -75,11 +75,8 @@ def test_rows_come_worst_first_with_verdicts_of_the_share() -> None:
 def test_the_smallest_width_and_the_largest_height_are_where_the_outcome_changes() -> None:
     (row,) = assess(Object("pier", width=0.4, height=1.6), SITE).rows
     for change, overturns in ((1.0, False), (1.0 - 2.0 * SIZE_ERROR, True)):
-        piers = [
-            Object("width", width=row["smallest_width"] * change, height=1.6),
-            Object("height", width=0.4, height=row["largest_height"] / change),
-        ]
-        for one in assess(piers, SITE, sensitivity=False).rows:
+        sizes = (row["smallest_width"] * change, 1.6), (0.4, row["largest_height"] / change)
+        for one in assess([Object("pier", width=b, height=h) for b, h in sizes], SITE, sensitivity=False).rows:
             assert (one["share"] > 0.0) == overturns
 
 
@@ -98,34 +95,25 @@ def test_suite_of_records_with_hazard() -> None:
     records = [Record(rng.normal(size=300) * np.hanning(300), 0.05, "m/s2", name=f"r{k}") for k in range(6)]
     site = Site(pga=4.0, records=records, hazard=([0.5, 20.0], [0.1, 1e-4]))
     slender, stocky = Object("slender", width=0.1, height=0.8), Object("stocky", width=2.0, height=0.8)
-    found = assess([stocky, slender], site, sensitivity=False)
-    worst, best = found.rows
+    worst, best = assess([stocky, slender], site, sensitivity=False).rows
     assert (worst["object"], best["object"]) == ("slender", "stocky")
     assert worst["share_lower"] < worst["share"] <= worst["share_upper"]
     assert 1e-4 < worst["annual_rate"] < 0.1
     assert worst["annual_rate_lower"] == worst["annual_rate"] <= worst["annual_rate_upper"]
-    assert (best["annual_rate"], best["annual_rate_lower"], best["annual_rate_upper"]) == (
-        None,
-        0.0,
-        pytest.approx(1e-4),
-    )
+    assert (best["annual_rate"], best["annual_rate_lower"], best["annual_rate_upper"]) == (None, 0.0, 1e-4)
     assert "the annual rate of overturning is at least 0, at most 0.0001" in best["warnings"]
-    body = Bodies.of([slender]).scaled().rigid
-    outcomes = [body.response(one, scale=4.0 / one.peak_acceleration).overturned[0] for one in records]
-    assert {one.name for one, hit in zip(records, outcomes, strict=True) if hit} <= {
-        *worst["overturned_by"].split("; ")
-    }
+    body = rocking.Block(0.1, 0.8)
+    hit = {one.name for one in records if body.response(one, scale=4.0 / one.peak_acceleration).overturned}
+    assert hit <= {*worst["overturned_by"].split("; ")}
 
 
 def test_friction_less_than_the_slope_slides_first() -> None:
     friction = {"rough": 0.5, "smooth": 0.1, "unknown": None}
     found = assess([Object(name, width=0.3, height=1.0, friction=mu) for name, mu in friction.items()], SITE).rows
     by_name = {row["object"]: row for row in found}
-    assert by_name["rough"]["slides_first"] is False
+    assert [by_name[name]["slides_first"] for name in friction] == [False, True, None]
     assert by_name["rough"]["sliding"] is None
-    assert by_name["smooth"]["slides_first"] is True
     assert by_name["smooth"]["sliding"] > 0.0
-    assert by_name["unknown"]["slides_first"] is None
     assert "sliding is not assessed" in by_name["unknown"]["warnings"]
 
 
@@ -143,7 +131,7 @@ def test_result_as_table(tmp_path) -> None:
 @pytest.mark.parametrize(
     "given",
     [{"pga": 3.0}, {"pgv": 0.3}, {"pga": 3.0, "pgv": 0.3, "periods": (0.1, 1.0)}, {"pga": 3.0, "periods": 0.5},
-     {"pga": 3.0, "periods": (0.5, 0.6, 0.7)}, {"pga": -1.0, "pgv": 0.3}],
+     {"pga": 3.0, "periods": (0.5, 0.6, 0.7)}],
 )  # fmt: skip
 def test_incomplete_sites_are_refused(given) -> None:
     with pytest.raises(InvalidArgumentError):
@@ -153,8 +141,7 @@ def test_incomplete_sites_are_refused(given) -> None:
 @pytest.mark.parametrize(
     "given",
     [{"height": 1.0}, {"width": 0.4}, {"width": 0.4, "diameter": 0.4, "height": 1.0},
-     {"width": 0.4, "height": 1.0, "offset_width": 0.2}, {"width": 0.4, "height": 1.0, "tolerance": 0.2},
-     {"width": 0.4, "height": 1.0, "restitution": 1.2}, {"width": 0.4, "height": 1.0, "offset_depth": 0.1},
+     {"width": 0.4, "height": 1.0, "offset_width": 0.2}, {"width": 0.4, "height": 1.0, "offset_depth": 0.1},
      {"diameter": 0.4, "height": 1.0, "offset_width": 0.19, "offset_depth": 0.19},
      {"width": 0.4, "height": 1.0, "mass_height": 1.1}],
 )  # fmt: skip

@@ -1,7 +1,6 @@
 """Checks by standards beside the outcome: against the clauses themselves, in table, report and command."""
 
-import csv
-import io
+import json
 import re
 
 import numpy as np
@@ -54,9 +53,7 @@ def test_only_what_is_asked_for_is_stated():
     assert all(none[f"{name}_ratio"] is None for name in CLAUSES)
     some = rocking.assess(OBJECT, SITE, sensitivity=False, standards=["static", "asce43"]).rows[0]
     assert [name for name in CLAUSES if some[f"{name}_ratio"] is not None] == ["static", "asce43"]
-    assert {name: some[name] for name in none if not name.endswith("_ratio")} == {
-        name: none[name] for name in none if not name.endswith("_ratio")
-    }
+    assert all(some[name] == none[name] for name in none if not name.endswith("_ratio"))
     for wrong in ("eurocode", 3, ["static", 1]):
         with pytest.raises(rocking.InvalidArgumentError, match="standards"):
             rocking.assess(OBJECT, SITE, standards=wrong)
@@ -68,25 +65,13 @@ def test_report_and_command_state_them(found, tmp_path):
     for name, meaning in CLAUSES.items():
         verdict = "passes" if found.rows[0][f"{name}_ratio"] < 1 else "fails"
         assert re.search(rf"{re.escape(meaning)}: \S+ of what it allows, {verdict}", " ".join(text.split()))
-    assert "of what it allows" not in report_html(
-        rocking.assess(OBJECT, SITE, sensitivity=False), Project("", "", "", "", "")
-    )
+    plain = rocking.assess(OBJECT, SITE, sensitivity=False)
+    assert "of what it allows" not in report_html(plain, Project("", "", "", "", ""))
     file = tmp_path / "one.csv"
     file.write_text("name,width [m],height [m],offset width [m]\nbust,0.3,1.6,0.03\n")
-    given = [
-        "assess",
-        str(file),
-        "--pga",
-        "3m/s2",
-        "--pgv",
-        "0.4m/s",
-        "--no-sensitivity",
-        "--standards",
-        "static,ishiyama",
-    ]
+    given = ["assess", str(file), "--pga", "3m/s2", "--pgv", "0.4m/s", "--no-sensitivity"]
+    given += ["--standards", "static,ishiyama"]
     shown = CliRunner().invoke(app, [*given, "--all"]).stdout
     assert "static_ratio" in shown
-    (row,) = csv.DictReader(io.StringIO(CliRunner().invoke(app, [*given, "--format=csv"]).stdout))
-    assert float(next(row[name] for name in row if name.startswith("static_ratio"))) == pytest.approx(
-        3.0 / standards.west_acceleration(0.12, 0.8)
-    )
+    said = json.loads(CliRunner().invoke(app, [*given, "--format=json"]).stdout)
+    assert said["static_ratio"] == [pytest.approx(3.0 / standards.west_acceleration(0.12, 0.8))]

@@ -1,4 +1,4 @@
-"""`rocking record` and `rocking fragility`: three formats, errors that name the file, the line or the key."""
+"""`rocking record`, `rocking floor` and `rocking fragility`: formats, errors that name the option or the file."""
 
 import json
 import math
@@ -68,26 +68,13 @@ def test_a_body_whose_mass_is_not_in_the_middle():
     faster = json.loads(run("record", MOTION, *SIZES, "--offset=3cm", "--no-thresholds", "--format=json"))
     assert faster["margin"] is None
     assert "threshold_scale" not in faster
-    middle = [run("record", MOTION, *SIZES, "--no-thresholds", *offset) for offset in ([], ["--offset=0cm"])]
-    assert middle[0] == middle[1]
-    assert "--fit: True is not allowed" in refused("record", MOTION, *SIZES, "--offset=3cm", "--fit")
 
 
 def test_thresholds_and_pulse():
     result = json.loads(run("record", MOTION, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--format=json"))
-    scales = np.array(result["threshold_scale"])
-    assert np.all(np.diff(scales) > 0.0)
-    assert result["overturns_above"][0] is True
-    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
-    for scale, above in zip(scales[:6], result["overturns_above"], strict=False):
-        found = rocking.peak_response(
-            motion,
-            frequency_parameter=block.frequency_parameter,
-            slenderness=block.uplift_acceleration / motion.peak_acceleration / (scale * np.array([1 - 2e-6, 1 + 2e-6])),
-            restitution=0.8,
-            alpha=block.alpha,
-        )
-        assert found.overturned.tolist() == [not above, above]
+    expected = rocking.Block(0.5, 2.0).thresholds(rocking.read_record(MOTION), restitution=0.8)
+    assert result["threshold_scale"] == expected.value.tolist()
+    assert result["overturns_above"] == [one.overturns_above for one in expected.changes]
     assert result["pulse"] == "mavroeidis_papageorgiou"
     assert 0.0 < result["pulse_explained"] < 1.0
 
@@ -96,20 +83,19 @@ def test_unit_and_step_are_stated_where_the_file_does_not(tmp_path):
     motion = rocking.read_record(MOTION)
     path = tmp_path / "plain.txt"
     path.write_text("\n".join(map(repr, (motion.acceleration * 100.0).tolist())))
-    given = ["--unit", "cm/s2", "--time-step", "10 ms"]
-    plain = json.loads(run("record", str(path), *SIZES, *given, "--format=json"))
-    assert plain["peak_rotation"] == pytest.approx(
-        json.loads(run("record", MOTION, *SIZES, "--format=json"))["peak_rotation"], rel=1e-6
-    )
-    assert "no unit of acceleration" in refused("record", str(path), *SIZES, "--time-step", "10 ms")
-    assert "no time step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")
-    assert "or --time-step" in refused("record", str(path), *SIZES, "--unit", "cm/s2")  # not the name in Python
+    unit, step = ["--unit", "cm/s2"], ["--time-step", "10 ms"]
+    found = json.loads(run("record", str(path), *SIZES, *unit, *step, "--no-thresholds", "--format=json"))
+    expected = rocking.Block(0.5, 2.0).response(motion, thresholds=False)
+    assert found["peak_rotation"] == pytest.approx(expected.peak_rotation, rel=1e-6)
+    assert "no unit of acceleration" in refused("record", str(path), *SIZES, *step)
+    said = refused("record", str(path), *SIZES, *unit)
+    assert "no time step" in said
+    assert "or --time-step" in said  # not the name in Python
 
 
 def test_baseline_is_removed_on_request_only():
-    plain, corrected = (
-        json.loads(run("record", MOTION, *SIZES, *more, "--format=json")) for more in ([], ["--baseline-order", "1"])
-    )
+    each = ([], ["--baseline-order", "1"])
+    plain, corrected = (json.loads(run("record", MOTION, *SIZES, *more, "--format=json")) for more in each)
     assert abs(corrected["final_velocity"]) < abs(plain["final_velocity"])
 
 
@@ -120,7 +106,6 @@ def test_baseline_is_removed_on_request_only():
         ([MOTION, "--width", "0.5", "--height", "2m"], "--width"),
         ([MOTION, *SIZES, "--scale", "0"], "--scale"),
         ([MOTION, *SIZES, "--restitution", "plastic"], "--restitution"),
-        ([MOTION, *SIZES, "--restitution", "1.5"], "--restitution"),
         ([MOTION, *SIZES, "--unit", "feet"], "--unit"),
         ([MOTION, *SIZES, "--baseline-order", "9"], "--baseline-order"),
     ],
@@ -141,7 +126,6 @@ def test_fragility_in_three_formats(small):
     assert result["curves"]["annual_rate"][0] > 0.0
     rows = list(read_csv(run("fragility", str(small), "--format=csv")))
     assert len(rows) == 3 * 4
-    assert "intensity [m/s2]" in run("fragility", str(small), "--format=csv").splitlines()[0]
     assert {row["demand"] for row in rows} == {"overturning", "alpha", "0.5 alpha"}
     text = run("fragility", str(small))
     assert "measure  pga" in text
@@ -167,12 +151,13 @@ def test_friction_restitution_and_sampling_in_three_formats(small):
 
 def test_table_is_for_csv_and_for_what_the_configuration_asks_for(small, tmp_path):
     assert "with --format csv" in refused("fragility", str(small), "--format=json", "--table", "curves")
-    rows = list(read_csv(run("fragility", str(small), "--format=csv", "--table", "curves")))
+    rows = read_csv(run("fragility", str(small), "--format=csv", "--table", "curves"))
     assert len(rows) == 3 * 2
     given = json.loads(small.read_text())
     del given["sensitivity"]
-    path = tmp_path / "plain.json"
-    path.write_text(json.dumps(given))
+    path = tmp_path / "plain.yaml"
+    path.write_text(yaml.safe_dump({"title": "a suite", "suite": given}))
+    assert run("fragility", str(path), "--format=csv") == run("fragility", str(small), "--format=csv")
     assert "no sensitivity" in refused("fragility", str(path), "--format=csv", "--table", "sensitivity")
     assert "sensitivity" not in json.loads(run("fragility", str(path), "--format=json"))
 
@@ -200,16 +185,8 @@ def test_a_hazard_curve_from_a_file(small, tmp_path):
     rates = json.loads(run("fragility", str(small), "--format=json"))["curves"]["annual_rate"]
     found = json.loads(run("fragility", str(small), "--format=json", "--hazard", str(path)))["curves"]["annual_rate"]
     assert found == pytest.approx(rates, rel=1e-9)
-    path.write_text(path.read_text().replace("lon", "x"))
+    path.write_text("")
     assert "--hazard" in refused("fragility", str(small), "--hazard", str(path))
-
-
-def test_configuration_may_be_yaml_or_toml(small, tmp_path):
-    given = json.loads(small.read_text())
-    (tmp_path / "suite.yaml").write_text(yaml.safe_dump({"title": "a suite", "suite": given}))
-    assert run("fragility", str(tmp_path / "suite.yaml"), "--format=csv") == run(
-        "fragility", str(small), "--format=csv"
-    )
 
 
 @pytest.mark.parametrize(
@@ -226,11 +203,22 @@ def test_invalid_configuration_names_the_key(small, tmp_path, change, message):
     assert message in refused("fragility", str(path))
 
 
-@pytest.mark.parametrize(("name", "text"), [("a.toml", "x ="), ("a.json", "{"), ("a.yaml", "a: [1"), ("b.json", "[1]")])
-def test_unreadable_configuration_is_refused(name, text, tmp_path):
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.toml", "x =", "a.toml"),
+        ("a.json", "{", "a.json"),
+        ("a.yaml", "a: [1", "a.yaml"),
+        ("b.json", "[1]", "b.json"),
+        ("a.json", "[" * 10_000, "a readable configuration"),
+        ("a.yaml", "[" * 2000, "a readable configuration"),
+        ("a.toml", "a=" + "[" * 4000, "a readable configuration"),
+        ("a.toml", "a" + ".a" * 4000 + " = 1\n", "at most 4096 characters"),
+    ],
+)
+def test_unreadable_configurations_are_refused(name, text, message, tmp_path):
     (tmp_path / name).write_text(text)
-    assert name in refused("fragility", str(tmp_path / name)).replace(" ", "")
-    assert "missing.yaml" in refused("fragility", "missing.yaml")
+    assert message in refused("fragility", str(tmp_path / name))
 
 
 def test_remarks_of_a_suite_are_warnings(small, tmp_path):
@@ -247,36 +235,22 @@ def test_remarks_of_a_suite_are_warnings(small, tmp_path):
     assert "warning: first: the file holds 100 samples, its header states 101\n" in found.stderr
 
 
-@pytest.mark.parametrize(
-    ("name", "text"), [("a.json", "[" * 10_000), ("a.yaml", "[" * 2000), ("a.toml", "a=" + "[" * 4000)]
-)
-def test_a_configuration_of_nested_brackets_is_refused(name, text, tmp_path):
-    path = tmp_path / name
-    path.write_text(text)
-    assert "a readable configuration" in refused("fragility", str(path))
-
-
-def test_a_long_line_of_toml_is_refused(tmp_path):
-    path = tmp_path / "a.toml"
-    path.write_text("a" + ".a" * 4000 + " = 1\n")
-    assert "at most 4096 characters" in refused("fragility", str(path))
-
-
 def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     motion = rocking.read_record(MOTION, vertical=UP)
     expected = rocking.Block(0.5, 2.0).response(motion, scale=0.9)
-    found = json.loads(run("record", MOTION, *SIZES, "--scale", "0.9", "--vertical", UP, "--format=json"))
+    options = [*SIZES, "--scale=0.9", "--format=json"]
+    found = json.loads(run("record", MOTION, *options, "--vertical", UP))
     assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
     assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
-    without = json.loads(run("record", MOTION, *SIZES, "--scale", "0.9", "--format=json"))
-    assert without["peak_vertical_acceleration"] is None
-    assert without["peak_rotation"] != found["peak_rotation"]
     path = tmp_path / "both.csv"
     rows = np.stack([motion.times, motion.acceleration, motion.vertical], axis=1).tolist()
     path.write_text("t,h_m/s2,up_m/s2\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in rows))
-    columns = "--component", "h", "--vertical", "up"
-    same = json.loads(run("record", str(path), *SIZES, "--scale", "0.9", *columns, "--format=json"))
+    same = json.loads(run("record", str(path), *options, "--component", "h", "--vertical", "up"))
     assert same["peak_rotation"] == found["peak_rotation"]
+    assert "--vertical" in refused("record", MOTION, *SIZES, "--vertical", "none.at2")
+    said = refused("record", MOTION, *SIZES, "--vertical", UP, "--scale", "4")
+    assert "--scale" in said
+    assert "-g at " in said
 
 
 def test_the_worst_direction_of_two_components(tmp_path):
@@ -287,7 +261,8 @@ def test_the_worst_direction_of_two_components(tmp_path):
         (tmp_path / f"{name[-3:]}.csv").write_text("\n".join([rows[0], *rows[1:2001:4]]))
     east, north, up = (str(tmp_path / f"{name}.csv") for name in ("HNE", "HNN", "HNZ"))
     first, second = (rocking.read_record(path, vertical=up) for path in (east, north))
-    found = json.loads(run("record", east, *SIZES, "--second", north, "--vertical", up, "--format=json"))
+    options = [*SIZES, "--second", north, "--vertical", up, "--format=json"]
+    found = json.loads(run("record", east, *options))
     site = rocking.Site(records=[(first, second)])
     assessed = rocking.assess(rocking.Object("block", 0.5, 2.0), site, sensitivity=False).to_pandas()
     assert found["overturning_scale"] == pytest.approx(float(assessed.factor[0]), rel=2e-6)
@@ -301,18 +276,37 @@ def test_the_worst_direction_of_two_components(tmp_path):
     turned = rocking.Block(0.5, 2.0).response(along(found["direction_deg"]))
     assert found["overturning_scale"] == pytest.approx(turned.overturning_scale)
     body = rocking.RigidBody.from_size(0.5, 2.0, offset=0.05)
-    given = (*SIZES, "--offset", "5cm", "--second", north, "--vertical", up, "--no-thresholds", "--scale=0.7")
-    quick = json.loads(run("record", east, *given, "--format=json"))
+    quick = json.loads(run("record", east, *options, "--offset", "5cm", "--no-thresholds", "--scale=0.7"))
     every = [body.response(along(15 * k), scale=0.7, thresholds=False) for k in range(24)]
     assert quick["overturned"] == any(one.overturned for one in every)
     if not quick["overturned"]:
-        largest = max(math.degrees(one.rotation) for one in every)
-        assert quick["peak_rotation_deg"] == pytest.approx(largest)
+        assert quick["peak_rotation_deg"] == pytest.approx(max(math.degrees(one.rotation) for one in every))
     assert "--second" in refused("record", east, *SIZES, "--second", str(motions / "napa_HNN.csv"))
 
 
-def test_errors_of_the_vertical_component_name_the_option():
-    assert "--vertical" in refused("record", MOTION, *SIZES, "--vertical", "none.at2")
-    said = refused("record", MOTION, *SIZES, "--vertical", UP, "--scale", "4")
-    assert "--scale" in said
-    assert "-g at " in said
+def test_the_motion_of_a_floor_is_read_again(tmp_path):
+    path = tmp_path / "floor.csv"
+    modes = ["--period", "0.5s", "--period", "100 ms", "--participation", "1.3", "--participation", "-0.3"]
+    path.write_text(run("floor", MOTION, *modes, "--damping", "0.03"))
+    expected = rocking.floor_motion(
+        rocking.read_record(MOTION), periods=[0.5, 0.1], damping=0.03, participation=[1.3, -0.3]
+    )
+    found = rocking.read_record(path)
+    np.testing.assert_array_equal(found.acceleration, expected.acceleration)
+    assert found.time_step == pytest.approx(expected.time_step, rel=1e-9)
+    header = run("floor", MOTION, "--period", "0.5s", "--vertical", MOTION).splitlines()[0]
+    assert header == "time_s,acceleration_m/s2,vertical_m/s2"
+
+
+@pytest.mark.parametrize(
+    ("said", "options"),
+    [
+        ("--period", [MOTION]),
+        ("--period", [MOTION, "--period", "0.5"]),
+        ("--period", [MOTION, "--period", "1000s"]),
+        ("--damping", [MOTION, "--period", "0.5s", "--damping", "1.5"]),
+        ("none.csv", ["none.csv", "--period", "0.5s"]),
+    ],
+)
+def test_errors_name_the_option(said, options):
+    assert said in refused("floor", *options)

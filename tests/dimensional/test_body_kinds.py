@@ -10,9 +10,11 @@ import rocking
 from rocking._assessment.objects import Bodies
 from rocking._assessment.tables import objects_of_csv, objects_of_json
 from rocking._base.errors import InvalidArgumentError
-from rocking._dimensional.body_kinds import BODIES, body
+from rocking._dimensional.body_kinds import body
 
 BOX = [(-0.2, 0.0), (0.2, 0.0), (0.2, 1.6), (-0.2, 1.6)]
+FRAME = rocking.EquivalentBlock.rocking_frame(rocking.Block(1.0, 8.0), mass_ratio=2.0)
+ARCH = rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=math.radians(157.5), voussoirs=7)
 
 
 @pytest.mark.parametrize(
@@ -23,14 +25,8 @@ BOX = [(-0.2, 0.0), (0.2, 0.0), (0.2, 1.6), (-0.2, 1.6)]
         ("offset_mass(width=40cm, height=1.6m)", rocking.Block(0.4, 1.6)),
         ("two_edges(left=12cm,right=18cm,mass_height=40cm,gyration=30 cm)", rocking.RigidBody(0.12, 0.18, 0.4, 0.3)),
         ("outline(vertices=-0.2 0; 0.2 0; 0.2 1.6; -0.2 1.6)", rocking.RigidBody.from_polygon(BOX)),
-        (
-            "frame(width=1m, height=8m, mass_ratio=200 %)",
-            rocking.EquivalentBlock.rocking_frame(rocking.Block(1.0, 8.0), mass_ratio=2.0),
-        ),
-        (
-            "arch(radius=10m, thickness=1.5m, embrace=157.5deg, voussoirs=7)",
-            rocking.EquivalentBlock.masonry_arch(radius=10.0, thickness=1.5, embrace=math.radians(157.5), voussoirs=7),
-        ),
+        ("frame(width=1m, height=8m, mass_ratio=200 %)", FRAME),
+        ("arch(radius=10m, thickness=1.5m, embrace=157.5deg, voussoirs=7)", ARCH),
     ],
 )
 def test_a_text_makes_the_body(text, expected):
@@ -51,12 +47,9 @@ def test_gyration_of_parts_is_that_of_the_whole():
     square = (outer * (0.4**2 + 1.6**2) - inner * (0.36**2 + 1.56**2)) / 12.0 / (outer - inner)
     hollow = body("hollow(width=40cm, height=1.6m, wall=2cm)")
     assert float(hollow.gyration) == pytest.approx(math.sqrt(square), rel=1e-14)
-    whole = body(
-        "on_pedestal(width=40cm, height=1.2m, pedestal_width=40cm, pedestal_height=40cm, pedestal_mass=0.3333333333)"
-    )
-    same = rocking.RigidBody.from_size(0.4, 1.6)
-    np.testing.assert_allclose(float(whole.gyration), float(same.gyration), rtol=1e-9)
-    np.testing.assert_allclose(float(whole.height), 0.8, rtol=1e-9)
+    pedestal = "pedestal_width=40cm, pedestal_height=40cm, pedestal_mass=0.3333333333"
+    whole, same = body(f"on_pedestal(width=40cm, height=1.2m, {pedestal})"), rocking.RigidBody.from_size(0.4, 1.6)
+    assert (float(whole.gyration), float(whole.height)) == pytest.approx((float(same.gyration), 0.8), rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -76,17 +69,8 @@ def test_gyration_of_parts_is_that_of_the_whole():
     ],
 )
 def test_what_is_no_description_is_refused_by_its_parameter(text, parameter):
-    with pytest.raises(InvalidArgumentError) as caught:
+    with pytest.raises(InvalidArgumentError, match=f"`{parameter}`"):
         body(text)
-    assert caught.value.parameter == parameter
-
-
-def test_every_kind_declares_its_parameters():
-    for kind in BODIES.values():
-        assert kind.meaning.endswith(".")
-        for name, field in kind.fields.items():
-            assert (field.name, bool(field.meaning)) == (name, True)
-            assert name not in kind.needed or field.default is None
 
 
 def test_an_object_of_a_table_is_of_any_rigid_kind():
@@ -111,13 +95,10 @@ def test_an_object_of_a_table_is_of_any_rigid_kind():
         "known": "offset_mass(width=40cm, height=160cm, gyration=50cm)",
     }
     for name, said in expected.items():
-        made = Bodies.of([found[name]]).scaled().rigid
-        one = body(said)
-        for edge in ("right", "left"):
-            np.testing.assert_allclose(getattr(made, edge).alpha, getattr(one, edge).alpha, rtol=1e-12)
-            np.testing.assert_allclose(
-                getattr(made, edge).frequency_parameter, getattr(one, edge).frequency_parameter, rtol=1e-12
-            )
+        made, one = Bodies.of([found[name]]).scaled().rigid, body(said)
+        for edge, other in ((made.right, one.right), (made.left, one.left)):
+            np.testing.assert_allclose(edge.alpha, other.alpha, rtol=1e-12)
+            np.testing.assert_allclose(edge.frequency_parameter, other.frequency_parameter, rtol=1e-12)
     json = '[{"name": "a", "width": "40 cm", "height": 1.6, "wall": 0.02}]'
     assert objects_of_json(json).objects[0].planes == found["case"].planes
     assert rocking.Object.from_body(expected["case"]).planes == found["case"].planes

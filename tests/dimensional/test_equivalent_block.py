@@ -20,31 +20,17 @@ def frame_of(mass_ratio):
 
 def test_a_rectangular_body_is_the_block():
     b, h, mass = 0.3, 2.0, 700.0
-    body = rocking.EquivalentBlock.rigid_body(
-        mass=mass, inertia=mass * (b * b + h * h) / 3.0, base=2 * b, centre_height=h
-    )
+    given = {"mass": mass, "inertia": mass * (b * b + h * h) / 3.0, "centre_height": h}
+    body = rocking.EquivalentBlock.rigid_body(base=2 * b, **given)
     assert body.alpha == COLUMN.alpha
-    assert body.frequency_parameter == pytest.approx(COLUMN.frequency_parameter, rel=1e-14)
-    assert body.momentum_restitution == pytest.approx(COLUMN.momentum_restitution, rel=1e-14)
-    assert body.uplift_acceleration == pytest.approx(COLUMN.uplift_acceleration, rel=1e-14)
+    for name in ("frequency_parameter", "momentum_restitution", "uplift_acceleration"):
+        assert getattr(body, name) == pytest.approx(getattr(COLUMN, name), rel=1e-14)
     ground = {"peak_acceleration": 2.5, "period": 0.5}
     same, found = COLUMN.response("sine", **ground), body.response("sine", **ground)
-    assert found.outcome == same.outcome
-    assert found.rotation == pytest.approx(same.rotation, rel=1e-11)
-    assert found.displacement == pytest.approx(same.displacement, rel=1e-11)
-    assert found.impacts == same.impacts
-
-
-def test_a_body_on_crushed_edges_is_easier_to_overturn():
-    b, h, mass = 0.3, 2.0, 700.0
-    inertia = mass * (b * b + h * h) / 3.0
-    whole, crushed = (
-        rocking.EquivalentBlock.rigid_body(mass=mass, inertia=inertia, base=base, centre_height=h)
-        for base in (2 * b, 1.8 * b)
-    )
-    assert crushed.uplift_acceleration == pytest.approx(0.9 * whole.uplift_acceleration, rel=1e-12)
-    safe = [one.response("sine", peak_acceleration=2.5, period=1.0).thresholds[0].value for one in (crushed, whole)]
-    assert safe[0] < safe[1]
+    assert (found.outcome, found.impacts) == (same.outcome, same.impacts)
+    assert (found.rotation, found.displacement) == pytest.approx((same.rotation, same.displacement), rel=1e-11)
+    crushed = rocking.EquivalentBlock.rigid_body(base=1.8 * b, **given)
+    assert crushed.uplift_acceleration == pytest.approx(0.9 * body.uplift_acceleration, rel=1e-12)
 
 
 def frame_by_lagrange(mass_ratio, peak, period, times):
@@ -140,38 +126,19 @@ def test_contact_is_said_to_be_unknown():
     assert "structure of alpha" in repr(found)
 
 
-def test_it_is_accepted_wherever_a_block_is():
-    frame = frame_of(0.5)
-    spectrum = frame.spectrum("sine", peak_acceleration=2.5, period=[0.5, 1.0])
-    assert float(spectrum["rotation"][0]) == pytest.approx(
-        frame.response("sine", peak_acceleration=2.5, period=0.5).rotation, rel=1e-12
-    )
-    time = np.arange(0.0, 4.0, 0.01)
-    record = rocking.Record(2.5 * np.sin(4 * np.pi * time) * (time < 0.5), 0.01, "m/s2")
-    found = frame.response(record)
-    wanted = rocking.peak_response(
-        record, frequency_parameter=frame.frequency_parameter, alpha=frame.alpha,
-        slenderness=frame.uplift_acceleration / record.peak_acceleration, restitution=frame.momentum_restitution,
-    )  # fmt: skip
-    assert found.peak_rotation == float(wanted.peak_rotation)
-    levels = [0.9 * frame.uplift_acceleration, 20.0 * frame.uplift_acceleration]
-    outcomes = rocking.fragility(record, frame, intensity=levels, measure="pga")
-    assert outcomes["overturned"].values.ravel().tolist() == [False, True]
-
-
-def test_structures_that_would_bounce_are_refused():
-    squat = rocking.Block(width=4.0, height=2.0)
-    with pytest.raises(InvalidArgumentError, match="column"):
-        rocking.EquivalentBlock.rocking_frame(squat, mass_ratio=1.0)
-    with pytest.raises(InvalidArgumentError, match="base"):
-        rocking.EquivalentBlock.rigid_body(mass=1.0, inertia=0.1, base=4.0, centre_height=0.5)
-    with pytest.raises(InvalidArgumentError, match="stiffness"):
-        rocking.EquivalentBlock.linear_mechanism(
-            mass=1.0, stiffness=-1.0, restoring=1.0, load=1.0, restitution=0.9, top_height=1.0
-        )
-    with pytest.raises(InvalidArgumentError, match=r"`restoring` = 2\.0"):  # C/K is an angle
-        rocking.EquivalentBlock.linear_mechanism(
-            mass=1.0, stiffness=1.0, restoring=2.0, load=1.0, restitution=0.9, top_height=1.0
-        )
-    with pytest.raises(InvalidArgumentError, match=r"`inertia` = '20 kg m2'.*a number in \[kg m2\]"):
-        rocking.EquivalentBlock.rigid_body(mass="0.3 t", inertia="20 kg m2", base=0.4, centre_height=0.8)
+@pytest.mark.parametrize(
+    ("make", "given", "said"),
+    [
+        ("rocking_frame", {"column": rocking.Block(width=4.0, height=2.0), "mass_ratio": 1.0}, "column"),
+        ("rigid_body", {"mass": 1.0, "inertia": 0.1, "base": 4.0, "centre_height": 0.5}, "base"),
+        ("rigid_body", {"mass": "0.3 t", "inertia": "20 kg m2", "base": 0.4, "centre_height": 0.8},
+         r"`inertia` = '20 kg m2'.*a number in \[kg m2\]"),
+        ("linear_mechanism", {"stiffness": -1.0, "restoring": 1.0}, "stiffness"),
+        ("linear_mechanism", {"stiffness": 1.0, "restoring": 2.0}, r"`restoring` = 2\.0"),  # C/K is an angle
+    ],
+)  # fmt: skip
+def test_structures_that_would_bounce_are_refused(make, given, said):
+    if make == "linear_mechanism":
+        given |= {"mass": 1.0, "load": 1.0, "restitution": 0.9, "top_height": 1.0}
+    with pytest.raises(InvalidArgumentError, match=said):
+        getattr(rocking.EquivalentBlock, make)(**given)

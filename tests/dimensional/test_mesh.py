@@ -1,7 +1,9 @@
-"""Meshes with the defects of scans: repaired with a warning if that is certain, otherwise refused by name."""
+"""Meshes: defects of scans are repaired with a warning or refused by name; their parts are counted first."""
 
 from __future__ import annotations
 
+import json
+import struct
 import warnings
 from pathlib import Path
 
@@ -10,6 +12,9 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.mesh_parts import MAX_PARTS, with_few_parts
+from rocking._dimensional.table_reader import rows_of_sheet
+from tests.sheets import xlsx_bytes
 
 trimesh = pytest.importorskip("trimesh")
 
@@ -53,7 +58,7 @@ REPAIRED = {
     "stray face": (with_faces(box(), [*box().faces, *last((0, 1, 2))], FAR), "1 of 193 were left out"),
     "face on an edge": (
         with_faces(box(), [*box().faces, [*box().faces[5, :2], len(box().vertices)]], FAR[:1]),
-        "1 of 193 were left out",
+        "1 of 193",
     ),
 }
 
@@ -89,16 +94,12 @@ def test_bodies_side_by_side_and_cavities_have_their_volumes(tmp_path: Path) -> 
     cavity = trimesh.creation.box((0.2, 0.1, 0.6))
     cavity.invert()
     trimesh.util.concatenate([box(), cavity]).export(tmp_path / "hollow.ply")
-    hollow = rocking.RigidBody.from_mesh(tmp_path / "hollow.ply")  # without a warning
+    stacked(2).export(tmp_path / "halves.ply")  # walls between them count for nothing
+    halves, hollow = (rocking.RigidBody.from_mesh(tmp_path / f"{name}.ply") for name in ("halves", "hollow"))
+    assert float(halves.gyration) == pytest.approx(BOX["gyration"], rel=1e-6)
     mass, hole = 0.4 * 0.3 * 1.2, 0.2 * 0.1 * 0.6
     inertia = (mass * 1.6 - hole * 0.4) / (mass - hole) / 12.0
     assert float(hollow.gyration) == pytest.approx(np.sqrt(inertia), rel=1e-6)
-
-
-def test_walls_between_two_halves_count_for_nothing(tmp_path: Path) -> None:
-    stacked(2).export(tmp_path / "halves.ply")
-    found = rocking.RigidBody.from_mesh(tmp_path / "halves.ply")
-    assert float(found.gyration) == pytest.approx(BOX["gyration"], rel=1e-6)
 
 
 def test_map_coordinates_keep_the_digits(tmp_path: Path) -> None:
@@ -165,3 +166,40 @@ def test_meshes_and_outlines_have_the_size_of_objects(size: float, tmp_path: Pat
     with pytest.raises(InvalidArgumentError, match="`base`"):
         rocking.Object.from_outline([(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)])
     assert rocking.Object.from_outline([(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)]).planes
+
+
+def glb(**tree):
+    text = json.dumps(tree).encode()
+    return struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text), len(text), 0x4E4F534A) + text
+
+
+def ply(elements):
+    return b"ply\nformat ascii 1.0\n" + b"element e 0\n" * elements + b"end_header\n"
+
+
+@pytest.mark.parametrize(
+    ("ending", "made"),
+    [
+        ("ply", ply),
+        ("stl", lambda count: b" solid a\nendsolid a\n" * count),
+        ("glb", lambda count: glb(nodes=[{}] * count)),
+        ("glb", lambda count: glb(nodes=[{"children": [0] * count}])),
+        ("glb", lambda count: glb(meshes=[{"primitives": [{}] * count}])),
+    ],
+)
+def test_files_of_many_parts_are_refused(ending, made):
+    few = made(MAX_PARTS)
+    assert with_few_parts(few, ending) == few
+    with pytest.raises(ValueError, match=f"{MAX_PARTS + 1} .*at most {MAX_PARTS}"):
+        with_few_parts(made(MAX_PARTS + 1), ending)
+
+
+def test_materials_are_left_out_of_an_obj_file():
+    given = b"mtllib a.mtl\nv 0 0 0\nusemtl m1\nf 1 2 3\r\n  usemtl m2\r\nf 1 2 4\ng usemtl\n"
+    assert with_few_parts(given, "obj") == b"\nv 0 0 0\n\nf 1 2 3\r\n\r\nf 1 2 4\ng usemtl\n"
+
+
+@pytest.mark.parametrize("last", ["ZZZZ9", "C999999"])
+def test_a_sheet_with_a_cell_far_out_is_refused(last):
+    with pytest.raises(InvalidArgumentError, match="1000000 cells"):
+        rows_of_sheet(xlsx_bytes([["object"]], last=last), "table")

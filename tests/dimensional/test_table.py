@@ -28,8 +28,8 @@ def test_names_are_kept(delimiter, end):
 
 
 def test_names_that_were_written_are_read_back():
-    rest = [[0.2] * len(NAMES), [0.8] * len(NAMES), [0.4] * len(NAMES), [0.5] * len(NAMES)]
-    text = csv_text(dict(zip(HEADER.strip().split(","), [NAMES, *rest], strict=True)))
+    columns = [NAMES, *([value] * len(NAMES) for value in (0.2, 0.8, 0.4, 0.5))]
+    text = csv_text(dict(zip(HEADER.strip().split(","), columns, strict=True)))
     assert [name.removeprefix("'") for name in read_table(text, "sine").names] == [
         name.removeprefix("'") for name in NAMES
     ]
@@ -39,24 +39,21 @@ GOOD = "vase,0.2,0.8,0.4,0.5\n"
 
 
 @pytest.mark.parametrize(
-    ("rows", "line", "reason"),
+    ("text", "line", "reason"),
     [
-        (GOOD + '"vase,0.2,0.8,0.4,0.5\n' + GOOD, 3, "unexpected end of data"),
-        (GOOD + '"va"se,0.2,0.8,0.4,0.5\n', 3, "',' expected after '\"'"),
-        (GOOD + f"{'v' * 131_073},0.2,0.8,0.4,0.5\n", 3, "field larger than field limit"),
-        (GOOD + '"two\nlines",0.2,0.8,0.4,0.5\n"vase', 5, "unexpected end of data"),
+        (HEADER + GOOD + '"vase,0.2,0.8,0.4,0.5\n' + GOOD, 3, "unexpected end of data"),
+        (HEADER + GOOD + '"va"se,0.2,0.8,0.4,0.5\n', 3, "',' expected after '\"'"),
+        (HEADER + GOOD + f"{'v' * 131_073},0.2,0.8,0.4,0.5\n", 3, "field larger than field limit"),
+        (HEADER + GOOD + '"two\nlines",0.2,0.8,0.4,0.5\n"vase', 5, "unexpected end of data"),
+        ('"name', 1, "unexpected end of data"),
+        ("n" * 131_073 + ",width [m]\n", 1, "field larger than field limit"),
+        ('"na"me,width [m]\n', 1, "',' expected after '\"'"),
     ],
 )
-def test_what_is_not_csv_is_refused_with_line_and_reason(rows, line, reason):
+def test_what_is_not_csv_is_refused_with_line_and_reason(text, line, reason):
     with pytest.raises(InvalidArgumentError, match=f"blocks, line {line}`") as refusal:
-        read_table(HEADER + rows, "sine")
+        read_table(text, "sine")
     assert reason in str(refusal.value.value)
-
-
-@pytest.mark.parametrize("header", ['"name', "n" * 131_073 + ",width [m]\n", '"na"me,width [m]\n'])
-def test_a_header_that_is_not_csv_is_refused_with_its_line(header):
-    with pytest.raises(InvalidArgumentError, match="blocks, line 1`"):
-        read_table(header, "sine")
 
 
 LAYOUTS = [
@@ -76,14 +73,11 @@ def test_layouts_have_the_same_block(text):
     assert (problem.peak_acceleration, problem.period) == pytest.approx((0.4 * 9.80665, 0.5), rel=1e-15)
     assert table.names == ["vase"]
     assert table.read.bad_rows == []
-
-
-def test_columns_that_are_not_read_and_units_are_kept():
-    table = read_table(LAYOUTS[1], "sine").read
-    assert table.cells["Material"] == ["clay"]
-    assert list(table.columns) == ["Name", "Breite", "Höhe", "Peak Acceleration", "Period"]
-    assert list(table.columns.values()) == ["name", "width", "height", "peak_acceleration", "period"]
-    assert table.units == {"name": "", "width": "cm", "height": "m", "peak_acceleration": "g", "period": "ms"}
+    if "Material" in text:  # columns that are not read, and units, are kept
+        assert table.read.cells["Material"] == ["clay"]
+        assert list(table.read.columns) == ["Name", "Breite", "Höhe", "Peak Acceleration", "Period"]
+        assert list(table.read.columns.values()) == list(table.read.units)
+        assert list(table.read.units.values()) == ["", "cm", "m", "g", "ms"]
 
 
 def test_each_row_that_is_not_read_is_named_and_the_others_are_kept():
@@ -105,10 +99,8 @@ def test_values_for_all_rows_stand_for_columns_that_the_table_lacks(tmp_path):
     with pytest.raises(InvalidArgumentError, match="missing: peak_acceleration, period"):
         read_blocks(path, "sine")
     table = read_blocks(path, "sine", peak_acceleration=4.0, period=0.5)
-    assert [problem.groups["restitution"] for problem in table.problems] == [
-        0.9,
-        rocking.Block(0.2, 0.8).momentum_restitution,
-    ]
+    momentum = rocking.Block(0.2, 0.8).momentum_restitution
+    assert [problem.groups["restitution"] for problem in table.problems] == [0.9, momentum]
     assert {(problem.peak_acceleration, problem.period) for problem in table.problems} == {(4.0, 0.5)}
 
 

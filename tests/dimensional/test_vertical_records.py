@@ -37,20 +37,18 @@ def test_a_constant_vertical_acceleration_is_another_gravity(scale: float) -> No
 
 
 def test_the_scale_multiplies_both_components_under_any_gravity() -> None:
+    def motion(k: float) -> rocking.Record:
+        return rocking.Record(k * HORIZONTAL, 0.005, "g", vertical=k * VERTICAL)
+
     moon = rocking.Block(0.2, 1.0, gravity=1.62)
-    motion = rocking.Record(0.1 * HORIZONTAL, 0.005, "g", vertical=0.1 * VERTICAL)
-    twice = rocking.Record(0.2 * HORIZONTAL, 0.005, "g", vertical=0.2 * VERTICAL)
-    found, other = moon.response(motion, scale=2.0), moon.response(twice)
+    found, other = moon.response(motion(0.1), scale=2.0), moon.response(motion(0.2))
     assert found.outcome == other.outcome
     assert found.peak_rotation == pytest.approx(other.peak_rotation, rel=1e-10, nan_ok=True)
-    assert found.thresholds is not None
-    assert other.thresholds is not None
     np.testing.assert_allclose(found.thresholds.value, 2.0 * other.thresholds.value, rtol=1e-5)
     # lengths and accelerations divided by the same number leave the ratios
-    earth = rocking.Block(2 * (0.1 * STANDARD_GRAVITY / 1.62), STANDARD_GRAVITY / 1.62)
-    k = 0.1 * STANDARD_GRAVITY / 1.62
-    scaled = rocking.Record(k * HORIZONTAL, 0.005, "g", vertical=k * VERTICAL)
-    assert earth.response(scaled, scale=2.0).peak_rotation == pytest.approx(found.peak_rotation, rel=1e-9, nan_ok=True)
+    k = STANDARD_GRAVITY / 1.62
+    earth = rocking.Block(0.2 * k, k).response(motion(0.1 * k), scale=2.0)
+    assert earth.peak_rotation == pytest.approx(found.peak_rotation, rel=1e-9, nan_ok=True)
 
 
 def test_uplift_depends_on_both_components() -> None:
@@ -64,11 +62,11 @@ def test_uplift_depends_on_both_components() -> None:
     assert math.isnan(overturning_scale(held, BLOCK))
 
 
-def test_a_search_ends_where_the_body_would_fly() -> None:
+@pytest.mark.parametrize("heavy", [rocking.Block(4.0, 8.0), rocking.RigidBody(2.0, 2.1, 4.0)])
+def test_a_search_ends_where_the_body_would_fly(heavy: rocking.Block | rocking.RigidBody) -> None:
     record = noise(1)
     motion = rocking.Record(record.acceleration, record.time_step, "m/s2", vertical=-3.0 * record.acceleration)
     limit = -STANDARD_GRAVITY / float(motion.vertical.min())
-    heavy = rocking.Block(4.0, 8.0)
     found = heavy.thresholds(motion)
     assert found.ends_in_flight
     assert limit * (1.0 - 1e-8) < found.searched[1] < limit
@@ -84,9 +82,8 @@ def test_a_search_ends_where_the_body_would_fly() -> None:
 
 def test_thresholds_are_those_of_the_responses() -> None:
     record = noise(2)
-    motion = rocking.Record(
-        record.acceleration, record.time_step, "m/s2", vertical=0.6 * np.roll(record.acceleration, 9)
-    )
+    upwards = 0.6 * np.roll(record.acceleration, 9)
+    motion = rocking.Record(record.acceleration, record.time_step, "m/s2", vertical=upwards)
     found = BLOCK.thresholds(motion)
     assert found.value.size
     assert overturning_scale(motion, BLOCK) == found.value[0]
@@ -106,13 +103,8 @@ def test_structures_take_the_vertical_component() -> None:
     assert found.peak_rotation == pytest.approx(block.peak_rotation, rel=1e-9, nan_ok=True)
     linear = rocking.EquivalentBlock(0.3, 3.0, restitution=0.9, uplift_acceleration=2.5)
     mechanism = linear.response(MOTION, scale=1.2)
-    slender = rocking.peak_response(
-        MOTION,
-        frequency_parameter=3.0,
-        slenderness=2.5 / (1.2 * MOTION.peak_acceleration),
-        restitution=0.9,
-        vertical_scale=1.2,
-    )
+    groups = {"frequency_parameter": 3.0, "slenderness": 2.5 / (1.2 * MOTION.peak_acceleration), "restitution": 0.9}
+    slender = rocking.peak_response(MOTION, **groups, vertical_scale=1.2)
     assert mechanism.outcome == slender.outcome
     assert mechanism.peak_rotation == pytest.approx(float(slender.peak_rotation), rel=1e-12, nan_ok=True)
     assert mechanism.thresholds is not None

@@ -9,11 +9,8 @@ from rocking._base.errors import InvalidArgumentError
 from rocking._evidence.calibration import calibrate
 from tests.suites.motions import noise
 
-RANGES = {
-    "alpha": (0.1, 0.4),
-    "half_diagonal": (0.2, 2.0),
-    "restitution": (0.72, 0.99),
-}  # the block is a point of the grid of 7
+# the block is a point of the grid of 7
+RANGES = {"alpha": (0.1, 0.4), "half_diagonal": (0.2, 2.0), "restitution": (0.72, 0.99)}
 BLOCK = rocking.Block.from_slenderness_angle(0.25, 0.8)
 SCALES = np.random.default_rng(1).uniform(1.0, 4.0, 60)
 

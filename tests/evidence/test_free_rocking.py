@@ -81,9 +81,8 @@ def test_two_edges_of_a_body_after_a_pulse():
     inertia = body.gyration.item() ** 2 + height**2  # about the middle of the ground, over the mass
     own, other = np.array([right, left]), np.array([left, right])
     np.testing.assert_allclose(found["alpha"], np.arctan(own / height), rtol=1e-6)
-    np.testing.assert_allclose(
-        found["frequency_parameter"], np.sqrt(9.80665 * np.hypot(own, height) / (inertia + own**2)), rtol=1e-6
-    )
+    p = np.sqrt(9.80665 * np.hypot(own, height) / (inertia + own**2))
+    np.testing.assert_allclose(found["frequency_parameter"], p, rtol=1e-6)
     np.testing.assert_allclose(found["restitution"], (inertia - own * other) / (inertia + own**2), rtol=1e-6)
 
 

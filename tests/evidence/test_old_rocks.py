@@ -28,24 +28,19 @@ def test_a_rock_that_falls_above_an_intensity_worked_by_hand():
 
 
 def test_hazard_files_are_branches(tmp_path):
-    x, rate = np.array([1.0, 2.0, 5.0, 20.0]), 1e-3 * (2.0 / np.array([1.0, 2.0, 5.0, 20.0])) ** 2
-    files = []
-    for name, factor in (("mild", 0.1), ("strong", 1.0)):
-        rows = "".join(f"{a!r},{factor * r!r}\n" for a, r in zip(x.tolist(), rate.tolist(), strict=True))
-        files.append(tmp_path / f"{name}.csv")
-        files[-1].write_text("pga [m/s2],annual rate [1/year]\n" + rows)
+    x = np.array([1.0, 2.0, 5.0, 20.0])
+    rates = 1e-3 * (2.0 / x) ** 2 * np.array([[0.1], [1.0]])
+    files = [tmp_path / "mild.csv", tmp_path / "strong.csv"]
+    for file, rate in zip(files, rates, strict=True):
+        rows = "".join(f"{a!r},{r!r}\n" for a, r in zip(x.tolist(), rate.tolist(), strict=True))
+        file.write_text("pga [m/s2],annual rate [1/year]\n" + rows)
     curve = STEP.assign_attrs(measure="pga")
-    expected = survival(curve, (x, [0.1 * rate, rate]), years=1e4)
+    expected = survival(curve, (x, rates), years=1e4)
     xr.testing.assert_allclose(survival(curve, files, years=1e4), expected)
     xr.testing.assert_allclose(survival(curve, str(files[1]), years=1e4), expected.isel(branch=1))
     xr.testing.assert_allclose(rocking.suites.annual_rate(curve, files[1])["annual_rate"], expected.annual_rate[1])
     site = rocking.Site(records=[noise(0)], hazard=files[1])
-    np.testing.assert_allclose(site.hazard, (x, rate))
-    with pytest.raises(InvalidArgumentError, match=r"none\.csv"):
-        survival(curve, "none.csv", years=1.0)
-    for wrong in (5, None, {"a": 1}, [1.0, 2.0, 3.0]):
-        with pytest.raises(InvalidArgumentError, match="hazard"):
-            survival(curve, wrong, years=1.0)
+    np.testing.assert_allclose(site.hazard, (x, rates[1]))
 
 
 def test_pairs_that_overturn_are_those_of_the_thresholds():
@@ -63,9 +58,14 @@ def test_pairs_that_overturn_are_those_of_the_thresholds():
 
 
 def test_refusals():
-    with pytest.raises(InvalidArgumentError, match="years"):
-        survival(STEP, ([1.0, 2.0], [1e-2, 1e-3]), years=-1.0)
-    with pytest.raises(InvalidArgumentError, match="hazard rate"):
-        survival(STEP, ([1.0, 2.0], [1e-2, math.nan]), years=1.0)
+    curve = [1.0, 2.0], [1e-2, 1e-3]
+    for hazard, years, said in (
+        (curve, -1.0, "years"),
+        (([1.0, 2.0], [1e-2, math.nan]), 1.0, "hazard rate"),
+        ("none.csv", 1.0, r"none\.csv"),
+        *((wrong, 1.0, "hazard") for wrong in (5, None, {"a": 1}, [1.0, 2.0, 3.0])),
+    ):
+        with pytest.raises(InvalidArgumentError, match=said):
+            survival(STEP.assign_attrs(measure="pga"), hazard, years=years)
     with pytest.raises(InvalidArgumentError, match="four records"):
         unexceeded(rocking.Block(0.4, 1.6), [noise(1), noise(2)])

@@ -89,9 +89,8 @@ def make(dice: random.Random) -> Case:
 
     def motion() -> np.ndarray:
         wave = np.sin(0.4 * k * rng.uniform(0.5, 1.2) + rng.uniform(0.3, 6.0)) * np.exp(-k / n)
-        return (
-            size[unit] * rng.uniform(0.5, 1.2) * (wave + 0.05 * rng.standard_normal(n)) * np.minimum(1.0, 0.1 + k / 8.0)
-        )
+        rising = np.minimum(1.0, 0.1 + k / 8.0)
+        return size[unit] * rng.uniform(0.5, 1.2) * (wave + 0.05 * rng.standard_normal(n)) * rising
 
     comma = dice.random() < 0.2
     separator = dice.choice([";", "\t", "  "]) if comma else dice.choice([",", ", ", ";", "\t", " ", "   "])
@@ -102,7 +101,6 @@ def make(dice: random.Random) -> Case:
     shape = dice.choice(["one", "pair", "pair", "counter", "both", "components", "no time", "each", "wrapped", "more"])
     if trace:
         shape = dice.choice(["pair", "pair", "counter", "both"])
-    columns: list[tuple[str, str, list[str]]] = []  # name, unit of its own, texts
     time_unit = dice.choice(["s", "s", "s", "" if trace else "ms", ""])
     scale = 1000.0 if time_unit == "ms" else 1.0
     times = [f"{scale * step * j:.{2 if scale > 1 else 7}f}" for j in k]
@@ -118,29 +116,22 @@ def make(dice: random.Random) -> Case:
     others = [(one, unit, [form.format(value) for value in motion()]) for one in spare]
     time = dice.choice(TIMES), time_unit, times
     counter = dice.choice(COUNTERS), "", [str(start + j) for j in k]
-    if shape == "one":
-        columns = [own]
-    elif shape == "pair":
-        columns = [time, own]
-    elif shape == "counter":
-        columns = [counter, own]
-    elif shape == "both":
-        columns = [counter, time, own]
-    elif shape == "components":
-        columns = [time, own, *others]
-    elif shape == "no time":
-        columns = [own, *others]
-    elif shape == "each":
-        columns = [time, own, time, others[0]]
-    elif shape == "more":
-        columns = [time, own, ("vel", "cm/s" if unit != "m/s2" else "m/s", [form.format(v / 9.0) for v in motion()])]
+    velocity = "vel", "cm/s" if unit != "m/s2" else "m/s", [form.format(v / 9.0) for v in motion()]
+    columns: list[tuple[str, str, list[str]]] = {  # name, unit of its own, texts
+        "one": [own],
+        "pair": [time, own],
+        "counter": [counter, own],
+        "both": [counter, time, own],
+        "components": [time, own, *others],
+        "no time": [own, *others],
+        "each": [time, own, time, others[0]],
+        "more": [time, own, velocity],
+    }.get(shape, [])
 
     named = shape != "wrapped" and dice.random() < (0.9 if shape in ("both", "each", "more", "counter") else 0.7)
     where = dice.choice(["name", "name", "row", "line", "none"]) if named else dice.choice(["line", "none"])
     if trace:
-        where = (
-            "name" if named and unit != "rad" else dice.choice(["name", "none"]) if unit == "rad" and named else "none"
-        )
+        where = ("name" if unit != "rad" else dice.choice(["name", "none"])) if named else "none"
         unit = unit if where == "name" else dice.choice(["rad", "deg"])
     spelt = dice.choice(SPELLINGS.get(unit, [unit]))
     has_time = any(one is time for one in columns)
@@ -166,12 +157,9 @@ def make(dice: random.Random) -> Case:
         names = [_named(dice, one, where, spelt if one is not time else one[1], mark) for one in columns]
         header.append(dice.choice(["", prefix]) + mark.join(names))
         if where == "row":
-            units = [
-                f"[{spelt if one is not time else one[1] or 's'}]" if one[1] or one is time else "[-]"
-                for one in columns
-            ]
-            units = [f"[{one[1]}]" if one[0] == "vel" else text for one, text in zip(columns, units, strict=True)]
-            header.append(mark.join(units))
+            own_unit = {id(time): time[1] or "s", id(velocity): velocity[1]}
+            units = [own_unit.get(id(one)) or (spelt if one[1] else "-") for one in columns]
+            header.append(mark.join(f"[{text}]" for text in units))
     if dice.random() < 0.1:
         header.append("-" * 30)
     leading: list[str] = []
@@ -181,7 +169,6 @@ def make(dice: random.Random) -> Case:
         )
     if shape == "wrapped":
         width = dice.choice([4, 5, 8])
-        columns = []
         body = [separator.join(written[j : j + width]) for j in range(0, n, width)]
     else:
         body = [separator.join(texts) for texts in zip(*(one[2] for one in columns), strict=True)]
@@ -194,17 +181,14 @@ def make(dice: random.Random) -> Case:
     content = (end.join(lines) + end).encode(dice.choice(["utf-8", "utf-8", "utf-8-sig", "utf-16"]))
 
     needed: dict[str, Any] = {}
-    stated: dict[str, Any] = {}
     if trace:
-        stated = {"degrees": unit == "deg"} if where == "none" else {}
+        stated: dict[str, Any] = {"degrees": unit == "deg"} if where == "none" else {}
         needed = stated if unit == "deg" else {}
         if not has_time or not named:
             stated = {**stated, "time_step": step}
     else:
         stated = {"unit": unit}
-        if not has_time or not named:
-            stated["time_step"] = step
-        if time_unit == "ms" and where not in ("name", "row"):
+        if not has_time or not named or (time_unit == "ms" and where not in ("name", "row")):
             stated["time_step"] = step
         if len(columns) > 1:
             stated["component"] = name if named else f"column {columns.index(own) + 1}"

@@ -70,6 +70,12 @@ KNET_HEADER = (
     "Last Correction   1990/05/05 12:00:00\nMemo.\n"
 )
 KNET_ROWS = "\n".join("".join(f"{int(v):9d}" for v in COUNTS[k : k + 8]) for k in range(0, COUNT, 8)) + "\n"
+
+
+def knet(old: str, new: str) -> str:
+    return KNET_HEADER.replace(old, new) + KNET_ROWS
+
+
 KNET_VALUES = (COUNTS - COUNTS.mean()) * 2000 / 8388608
 
 
@@ -93,6 +99,9 @@ def replaced(text: str, old: str, new: str) -> str:
 
 
 THREE = "time_s,NS_g,EW_g\n" + "".join(f"{k * STEP:.2f},{v:.6f},{-2 * v:.6f}\n" for k, v in enumerate(values()))
+
+THREE_ROWS = THREE.split("\n", 1)[1]
+KNOWN, IN_GAL = ({"unit": unit, "time_step": STEP} for unit in ("g", "gal"))
 
 
 def clock(form: str = "{:06.3f}", header: str = "Time,a [g]\n", before: str = "", start: float = 43200.0) -> str:
@@ -121,9 +130,7 @@ GOOD = {
     "esm in m/s^2": File(esm({"UNITS": "m/s^2"}), unit="m/s2"),
     "knet": File(KNET_HEADER + KNET_ROWS, unit="gal", samples=KNET_VALUES),
     "csv": File(pairs()),
-    "one column of a square wave": File(
-        "a [g]\n" + "0.1\n-0.3\n" * 12, {"time_step": STEP}, samples=np.tile([0.1, -0.3], 12)
-    ),
+    "a square wave": File("a [g]\n" + "0.1\n-0.3\n" * 12, {"time_step": STEP}, samples=np.tile([0.1, -0.3], 12)),
     "csv, unit in brackets": File(pairs(header="Time [s],Acceleration [cm/s2]\n"), unit="cm/s2"),
     "csv, unit as argument": File(pairs(header="t,a\n"), {"unit": "m/s2"}, unit="m/s2"),
     "csv without names": File(pairs(header=""), {"unit": "g"}),
@@ -158,22 +165,18 @@ ODD = {
     "at2 with another line in the header": File("COMMENT\n" + at2()),
     "at2 with a byte order mark": File(b"\xef\xbb\xbf" + at2().encode()),
     "at2 with Latin-1 text": File(at2().replace("VALLEY", "VALLÉE").encode("latin-1")),
-    "at2 that states the unit given": File(at2(), {"unit": "g", "time_step": 0.01}),
+    "at2 that states the unit given": File(at2(), KNOWN),
     "esm with 60 header lines": File(esm().replace("USER0: \nUSER1: \nUSER2: \nUSER3: \n", ""), unit="cm/s2"),
     "esm with CRLF": File(esm().replace("\n", "\r\n"), unit="cm/s2"),
     "esm without data type": File(esm({"DATA_TYPE": None}), unit="cm/s2"),
     "esm without unit": File(esm({"UNITS": ""}), {"unit": "gal"}, unit="gal"),
-    "knet with a scale of 3920": File(
-        KNET_HEADER.replace("2000(gal)", "3920(gal)") + KNET_ROWS, unit="gal", samples=KNET_VALUES * 3920 / 2000
-    ),
+    "knet with a scale of 3920": File(knet("2000(gal)", "3920(gal)"), unit="gal", samples=KNET_VALUES * 3920 / 2000),
     "csv with semicolons and decimal commas": File(pairs(";", "Zeit (s);a (g)\n").replace(".", ",")),
     "csv with a trailing comma": File(pairs().replace("\n", ",\n").replace("acceleration_g,", "acceleration_g")),
     "csv with comments": File("# station ABC\n# unit: cm/s2\n" + pairs(header="time,acceleration\n"), unit="cm/s2"),
     "csv with a title that begins like SMC": File("2 BLOCKS\n" + pairs()),
     "csv with quotes": File(pairs(header='"sec","acceleration (g)"\n')),
-    "csv that starts at 10 s": File(
-        "t_s,a_g\n" + "".join(f"{10 + k * STEP:.2f},{v:.6f}\n" for k, v in enumerate(values()))
-    ),
+    "times from 10 s": File("t_s,a_g\n" + "".join(f"{10 + k * STEP:.2f},{v:.6f}\n" for k, v in enumerate(values()))),
     "csv with rounded times": File(pairs(step=0.0078125, digits=4), step=0.0078125),
     "csv with times in ms": File("time_ms,a_g\n" + "".join(f"{10 * k},{v:.6f}\n" for k, v in enumerate(values()))),
     "csv with blank lines between the rows": File(pairs().replace("\n", "\n\n")),
@@ -181,9 +184,7 @@ ODD = {
     "csv with units after slashes": File(times_in("Zeit / ms", 1e3).replace("a_g", "a/g")),
     "csv with other words before the unit": File(times_in("Time (since trigger) [msec]", 1e3)),
     "csv with a line of units": File("time,acc\n" + times_in("[ms]", 1e3).replace("a_g", "[g]")),
-    "blanks, with blanks before the units": File(
-        times_in("t [ms]", 1e3).replace("a_g", "acc (m / s2)").replace(",", " "), unit="m/s2"
-    ),
+    "blanks before units": File(times_in("t [ms]", 1e3).replace("a_g", "acc (m / s2)").replace(",", " "), unit="m/s2"),
     "tabs and decimal commas": File(pairs("\t", "Zeit\ta (g)\n").replace(".", ",")),
     "UTF-16": File(pairs("\t").encode("utf-16")),
     "UTF-16 of the other order": File(b"\xfe\xff" + at2().encode("utf-16-be")),
@@ -201,14 +202,10 @@ ODD = {
     "times of day beside a counter": File(clock(header="no,UTC,a [g]\n", before="1,")),
     "times of day without names": File(clock(header="").replace(",", " "), {"unit": "g"}),
     "times of day with dates": File(clock("{:05.2f}Z", "timestamp,a [g]\n", "2019-02-03T")),
-    "times of day with decimal commas": File(
-        clock("{:07.4f}", "Datum Zeit,a [g]\n", "2019/02/03 ").replace(",", ";").replace(".", ",")
-    ),
+    "day with commas": File(clock("{:07.4f}", "Datum Zeit,a [g]\n", "2019/02/03 ").replace(",", ";").replace(".", ",")),
     "times with an exponent": File(rounded("{:.3E}", 0.00244), samples=values(400), step=0.00244),
     "times of three digits": File(rounded("{:.3e}", 0.0078125), samples=values(400), step=0.0078125),
-    "times since an epoch": File(
-        "time,a [g]\n" + "".join(f"{1549195200 + k * STEP:.3f},{v:.6f}\n" for k, v in enumerate(values()))
-    ),
+    "epoch": File("time,a [g]\n" + "".join(f"{1549195200 + k * STEP:.3f},{v:.6f}\n" for k, v in enumerate(values()))),
     "few rounded times and a step": File("dt = 0.0078125 s\n" + pairs(step=0.0078125), step=0.0078125),
     **{
         f"one column with {line}": File(single(f"{line}\n"), {"unit": "g"})
@@ -223,19 +220,11 @@ ODD = {
     "at2 with a blank line below its header": File(at2(body="\n" + rows())),
     "at2 with names above count and step": File("shock\nnpts dt\n24 0.01\n" + single(), {"unit": "g"}),
     "csv of E, N, Z": File(THREE.replace("NS_g,EW_g", "N,E"), {"unit": "g", "component": "N"}),
-    "csv of T, L": File(
-        "T,L\n" + "".join(f"{v:.6f},1\n" for v in values()), {"unit": "g", "time_step": 0.01, "component": "T"}
-    ),
-    "blanks, with azimuths for names": File(
-        "time N00E V\n" + THREE.split("\n", 1)[1].replace(",", " "), {"unit": "g", "component": "n00e"}
-    ),
-    "csv of a, v, d without units": File(
-        "t,a,v,d\n" + "".join(f"{line},0.5\n" for line in THREE.splitlines()[1:]), {"unit": "g"}
-    ),
-    "csv with a row of units without brackets": File("t,a,v\ns,g,cm/s\n" + THREE.split("\n", 1)[1]),
-    "csv of pandas": File(
-        ",time_s,acc_g\n" + "".join(f"{k},{line}\n" for k, line in enumerate(pairs(header="").split()))
-    ),
+    "csv of T, L": File("T,L\n" + "".join(f"{v:.6f},1\n" for v in values()), KNOWN | {"component": "T"}),
+    "azimuths for names": File("time N00E V\n" + THREE_ROWS.replace(",", " "), {"unit": "g", "component": "n00e"}),
+    "a, v, d": File("t,a,v,d\n" + "".join(f"{line},0.5\n" for line in THREE.splitlines()[1:]), {"unit": "g"}),
+    "csv with a row of units without brackets": File("t,a,v\ns,g,cm/s\n" + THREE_ROWS),
+    "pandas": File(",time_s,acc_g\n" + "".join(f"{k},{line}\n" for k, line in enumerate(pairs(header="").split()))),
     "csv of a telephone": File(
         "time,seconds_elapsed,x\n"
         + "".join(f"{10**18 + k * 10**7},{line}\n" for k, line in enumerate(pairs(header="").split())),
@@ -255,13 +244,11 @@ ODD = {
     "times in another unit and a step": File(times_in("t (10 ms)", 100.0), {"time_step": 0.01}),
     "times rounded to the same and a step": File(pairs(step=0.005, digits=2), {"time_step": 0.005}, step=0.005),
     "times of day below a title of numbers": File("35.1, 139.2\n" + clock(header=""), {"unit": "g"}),
-    "a title in two numbers above rows of two": File(
-        "24 0.01\n" + rows(2, "{:10.6f}"), {"unit": "g", "component": "rows"}
-    ),
+    "two numbers above rows of two": File("24 0.01\n" + rows(2, "{:10.6f}"), {"unit": "g", "component": "rows"}),
     **{
         f"rows of one series with their {name}": File(
             "".join(form.format(k + 1, line) for k, line in enumerate(rows(4, "{:10.6f}").splitlines())),
-            {"unit": "g", "time_step": 0.01, "component": "rows"},
+            KNOWN | {"component": "rows"},
         )
         for name, form in (("numbers first", "{:5d}{}\n"), ("numbers last", "{1}{0:7d}\n"))
     },
@@ -280,9 +267,7 @@ DAMAGED = {
     "prose": File("This is no record.\n", error="found This is no record"),
     "zeros in bytes": File(b"1\n2\n\0\0", error="binary content"),
     "at2 cut off": File(at2("NPTS=  4000, DT= .01 SEC"), error="line 4: found 4000 stated, 24 values"),
-    "at2 with two of ten values": File(
-        at2("NPTS= 10, DT= .01 SEC", body="0.1 0.2\n"), error="line 4: found 10 stated, 2 values"
-    ),
+    "at2 cut short": File(at2("NPTS= 10, DT= .01 SEC", body="0.1 0.2\n"), error="line 4: found 10 stated, 2 values"),
     "at2 with one of 25 values missing": File(at2("NPTS= 25, DT= .01 SEC"), error="line 4: found 25 stated, 24 values"),
     "at2 with header only": File(at2(body=""), error="0 acceleration values"),
     "at2 with a word": File(replaced(at2(), "E-01", "E-0l"), error="expected a number"),
@@ -308,79 +293,54 @@ DAMAGED = {
     "esm with a word": File(esm(body=rows(1) + "end\n"), error="line 89: found end"),
     "knet cut in the header": File(KNET_HEADER[:300], error="found"),
     "knet without counts": File(KNET_HEADER, error="found"),
-    "knet with a damaged scale": File(
-        KNET_HEADER.replace("2000(gal)/8388608", "2000(gal)") + KNET_ROWS, error="line 14: found 2000"
-    ),
-    "knet with a scale of zero": File(
-        KNET_HEADER.replace("2000(gal)", "0(gal)") + KNET_ROWS, error="line 14: found 0; expected a positive"
-    ),
-    "knet with an infinite number of values": File(
-        KNET_HEADER.replace("0.24", "1e308") + KNET_ROWS, error="line 12: found 1e308; expected a duration"
-    ),
-    "knet with an infinite scale": File(
-        KNET_HEADER.replace("2000(gal)", "1e308(gal)").replace("8388608", "1e-9") + KNET_ROWS,
-        error="line 14: found 1e308",
-    ),
-    "knet that is too short": File(
-        KNET_HEADER.replace("0.24", "300") + KNET_ROWS, error="line 12: found 30000 stated, 24 values"
-    ),
-    "knet with one of 25 values missing": File(
-        KNET_HEADER.replace("0.24", "0.25") + KNET_ROWS, error="line 12: found 25 stated, 24 values"
-    ),
+    "knet with a damaged scale": File(knet("2000(gal)/8388608", "2000(gal)"), error="line 14: found 2000"),
+    "knet with a scale of zero": File(knet("2000(gal)", "0(gal)"), error="line 14: found 0; expected a positive"),
+    "knet of infinite length": File(knet("0.24", "1e308"), error="line 12: found 1e308; expected a duration"),
+    "knet with an infinite scale": File(knet("2000(gal)/8388608", "1e308(gal)/1e-9"), error="line 14: found 1e308"),
+    "knet that is too short": File(knet("0.24", "300"), error="line 12: found 30000 stated, 24 values"),
+    "knet with one of 25 values missing": File(knet("0.24", "0.25"), error="line 12: found 25 stated, 24 values"),
     "csv with -999 for a missing value": File(replaced(pairs(), "0.122560", "-999.0"), error="the value -999, as for"),
     "csv with n/a for the first value": File(replaced(pairs(), "0.000000", "n/a"), error="line 2: found 0.000,n/a"),
     "tabs and thousands": File(
         "t [s]\ta [mm/s2]\n0.00\t0\n0.01\t-35\n0.02\t1,104\n", error="found 1,104, whose , may separate thousands"
     ),
-    "one column with its number of values at the end": File(
-        single("unit: g\ndt: 0.01\n") + "24\n", error="24 behind as many values; .*`skip`: 0"
-    ),
-    "one column with its peak first": File(
-        f"{max(values())}\n" + single(), {"unit": "g", "time_step": 0.01}, error="before 0.000000; .*`skip`: 1"
-    ),
-    "one column with a factor of other decimals": File(
-        "1.5\n" + single().replace("0.", "9."), {"unit": "gal", "time_step": 0.01}, error="1.5 before .*`skip`: 1"
-    ),
+    "the count at the end": File(single("unit: g\ndt: 0.01\n") + "24\n", error="24 behind as many values; .*`skip`: 0"),
+    "its peak first": File(f"{max(values())}\n" + single(), KNOWN, error="before 0.000000; .*`skip`: 1"),
+    "a factor of other decimals": File("1.5\n" + single().replace("0.", "9."), IN_GAL, error="1.5 before .*`skip`: 1"),
     "csv with factors below the names": File(
         "NS,EW\n1.0,1.0\n" + pairs(header=""),
-        {"unit": "g", "time_step": 0.01, "component": "EW"},
+        KNOWN | {"component": "EW"},
         error="1.0 before 0.000000; .*`skip`: 1",
     ),
     "components one below the other": File(
         single("unit: g\ndt: 0.01\nNPTS: 24\n") + single(), error="line 3: found NPTS: 24, and 48 values; .*`skip`"
     ),
-    "one column of displacements": File(
-        single("DISPLACEMENT TIME SERIES IN UNITS OF CM\n"), {"unit": "gal", "time_step": 0.01}, error="line 1"
-    ),
-    "one column with a factor of MATLAB": File(
-        single("a =\n\n   1.0e+02 *\n\n"), {"unit": "gal", "time_step": 0.01}, error="line 3: found a factor"
-    ),
+    "one column of displacements": File(single("DISPLACEMENT TIME SERIES IN UNITS OF CM\n"), IN_GAL, error="line 1"),
+    "a factor of MATLAB": File(single("a =\n\n   1.0e+02 *\n\n"), IN_GAL, error="line 3: found a factor"),
     "one column with a distance named delta": File(single("unit: g\nDelta: 5\n"), error="line 2: found Delta: 5"),
     "one column with the rate of raw data": File(single("unit: g\nsps: 200 (raw)\n"), error="no time step"),
     **{
         f"csv of a spectrum, {names}": File(pairs(header=f"{title}{names}\n"), {"unit": "g"}, error="found a spectrum")
         for title, names in (("", "T (s),Sa (g)"), ("", "T1 (s),Se(T1)"), ("EC8 spectrum\n", "T (s),a (g)"))
     },
-    "csv of times named acc": File(pairs(" ", "acc vel\n"), {"unit": "g", "time_step": 0.01}, error="acc, which rises"),
+    "csv of times named acc": File(pairs(" ", "acc vel\n"), KNOWN, error="acc, which rises"),
     "pairs of times and values in one series": File(
         "\n".join(" ".join(pairs(" ", "").splitlines()[k : k + 2]) for k in range(0, 24, 2)),
-        {"unit": "g", "time_step": 0.01, "component": "rows"},
+        KNOWN | {"component": "rows"},
         error="column 1, column 3, which rise uniformly",
     ),
     "rows of one series with their times": File(
         "".join(f"{k / 25:.2f} {line}\n" for k, line in enumerate(rows(4).splitlines())),
-        {"unit": "g", "time_step": 0.01},
+        KNOWN,
         error="column 5; expected the argument `component`: one of them, or rows for one series",
     ),
     "three components of noise": File(
         "".join(f"{a:.4f} {b:.4f} {c:.4f}\n" for a, b, c in NOISE),
-        {"unit": "g", "time_step": 0.01},
+        KNOWN,
         error="components|3 columns without names",
     ),
     "csv without unit": File(pairs(header="time,acceleration\n"), error="no unit of acceleration"),
-    "csv with whole numbers for times without a name": File(
-        "Record\n0,1\n1,-2\n", {"unit": "g"}, error="column 1, a counter or times .*time_step"
-    ),
+    "counts for times": File("Record\n0,1\n1,-2\n", {"unit": "g"}, error="column 1, a counter or times .*time_step"),
     "csv with two units": File("unit: gal\n" + pairs(), error="the unit g in a column name; expected gal"),
     "csv of velocity": File(pairs(header="time (s),velocity (m/s)\n"), {"unit": "g"}, error="velocity"),
     "csv with a missing row": File(replaced(pairs(), "0.010,0.122560\n", ""), error="uniform steps"),
@@ -391,9 +351,7 @@ DAMAGED = {
     "csv with a name too many": File(
         times_in("t [ms],no", 1e3), {"unit": "g"}, error="line 1: found t .*names of 2 columns, as in line 2"
     ),
-    "one column with decimal commas": File(
-        "a [g]\n0,1\n1,2\n2,5\n", {"unit": "g"}, error="line 2: found 0,1; expected semicolons or tabs"
-    ),
+    "commas": File("a [g]\n0,1\n1,2\n2,5\n", {"unit": "g"}, error="line 2: found 0,1; expected semicolons or tabs"),
     "csv with a comment between the rows": File(
         replaced(pairs(), "0.010,", "# gap\n0.010,"), error="line 3: found the comment # gap; .* above the first row"
     ),
@@ -418,15 +376,9 @@ DAMAGED = {
     "csv of one row": File("time_s,a_g\n0,1\n", error="one row"),
     "csv of times only": File("time_s\n0.00\n0.01\n", {"unit": "g"}, error="a column of times only"),
     "one column without step": File(single("unit: g\n"), error="no time step"),
-    "one column with a step of zero": File(
-        single("unit: g\ndt: 0\n"), error="line 2: found dt: 0; expected a time step"
-    ),
-    "one column with an unknown unit": File(
-        single("unit: stones\n"), {"time_step": 0.01}, error="line 1: found unit: stones"
-    ),
-    "one column with a blank line": File(
-        replaced(single("acceleration_g\n"), "0.122560\n", "\n"), {"time_step": 0.01}, error="line 3"
-    ),
+    "one column, step zero": File(single("unit: g\ndt: 0\n"), error="line 2: found dt: 0; expected a time step"),
+    "an unknown unit": File(single("unit: stones\n"), {"time_step": 0.01}, error="line 1: found unit: stones"),
+    "a blank line": File(replaced(single("acceleration_g\n"), "0.122560\n", "\n"), {"time_step": 0.01}, error="line 3"),
     "a header of one long line": File("a" * 9000 + "\n" + pairs(), error="line 1: found aaa.*at most 8192 bytes"),
     "a row of one long line": File(pairs() + "1," * 9000 + "\n", error="line 26: found 1,1.*at most 8192 bytes"),
     "numbers of another alphabet": File(pairs().replace("0", "٠"), error="found"),

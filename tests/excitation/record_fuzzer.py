@@ -1,8 +1,7 @@
 """Random mutations of accelerogram files for the readers.
 
-A reader returns a record or raises `RecordFileError`; anything else is a defect, and so is a file that takes long. A
-file that states its unit is never read with another one without a remark. What a mutation of a digit does cannot be
-noticed; lines that are missing or repeated in a file with times can, and are.
+A reader returns a record or raises `RecordFileError`; anything else is a defect, and so is a file that takes long.
+What a mutation of a digit does cannot be noticed; lines that are missing or repeated in a file with times can, and are.
 """
 
 from __future__ import annotations
@@ -87,18 +86,7 @@ def remove_or_repeat_a_row(dice: random.Random) -> None:
     assert any(np.array_equal(part, record.acceleration) for part in (known[1:], known[:-1])), lines
 
 
-def state_another_unit(dice: random.Random) -> None:
-    """Read a good file, whose unit is stated, as another unit: a remark names both."""
-    file = dice.choice([file for file in GOOD.values() if "unit" not in file.arguments])
-    wrong = dice.choice([unit for unit in UNITS if UNITS[unit] != UNITS[file.unit]])
-    record = parse_record(file.data, "units", **(file.arguments | {"unit": wrong}))
-    known = parse_record(file.data, "units", **file.arguments).acceleration
-    np.testing.assert_allclose(record.acceleration, known / UNITS[file.unit] * UNITS[wrong], rtol=1e-9)
-    assert any(f"{wrong} is used, as the argument `unit` says" in remark for remark in record.remarks), record.remarks
-
-
 def fuzz(dice: random.Random) -> bool:
     """One round of all kinds; returns whether the mutated file was read."""
     remove_or_repeat_a_row(dice)
-    state_another_unit(dice)
     return read_mutation(dice)

@@ -5,14 +5,23 @@ import math
 
 import numpy as np
 import pytest
+from fastapi.testclient import TestClient
+from rocking_api.app import create_app
+from rocking_api.settings import Settings
 from typer.testing import CliRunner
 
 import rocking
-from rocking._base.errors import InvalidArgumentError
+from rocking import precompile
+from rocking._base.errors import DatasetError, InvalidArgumentError
 from rocking._cli.app import app
+from rocking._datasets.cube import write_dataset
 from rocking._excitation import pulses
-from rocking._excitation.pulses import SinusoidalPulse, register
+from rocking._excitation.pulses import PULSE_NAMES, SinusoidalPulse, pulse_number, register
 from rocking._excitation.shapes import AbstractPulse
+from rocking._lookup.collection import CubeCollection
+from rocking._lookup.cube import open_cube
+from rocking._spectra.cubes import spectrum
+from tests.direct_integration import integrate
 from tests.excitation.test_smooth_pulse import CHIRP
 
 GROUPS = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
@@ -53,8 +62,13 @@ def test_a_name_stands_for_its_pulse_in_every_function(own):
     printed = CliRunner().invoke(app, ["response", "--pulse", own.name, "--format=json", *options])
     peak = float(rocking.peak_response(own, **GROUPS).peak_rotation)
     assert json.loads(printed.stdout)["peak_rotation"] == (None if math.isnan(peak) else peak)
-    with pytest.raises(InvalidArgumentError, match=r"^`name` = "):
-        register(own)
+    for wrong in (own, own.mirrored(), rocking.pulse("sine")):
+        with pytest.raises(InvalidArgumentError, match=r"^`name` = "):
+            register(wrong)
+    with pytest.raises(InvalidArgumentError, match=r"^`pulse` = "):
+        register(own.name)
+    with pytest.raises(InvalidArgumentError, match=rf"^`pulse` = .*{own.name}"):
+        rocking.pulse("four_sines")
 
 
 @every_family
@@ -74,3 +88,64 @@ def test_functions_agree_about_the_pulse(own):
     curves = rocking.overturning_boundary(own, restitution=0.85, frequency_ratio=(1.0, 4.0), nodes=61)
     nearest = np.abs(curves.frequency_ratio.values - 3.0).argmin()
     assert 1.0 / curves.slenderness.values[nearest] == pytest.approx(threshold, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "terms", "parameter"),
+    [
+        (0.0, 7.0, ((1.0, 2.0), (3.0, 4.0)), "terms"),
+        (0.0, 7.0, ((0.0, 2.0, 0.0),), "terms"),
+        (7.0, 0.0, ((1.0, 2.0, 0.0),), "end"),
+        ("now", 7.0, ((1.0, 2.0, 0.0),), "start"),
+    ],
+)
+def test_sums_without_a_peak_are_refused(start, end, terms, parameter):
+    with pytest.raises(InvalidArgumentError, match=f"`{parameter}`"):
+        SinusoidalPulse.of_unit_peak("burst", start, end, terms)
+
+
+def test_response_is_that_of_direct_integration():
+    pulse, (amplitude, omega, eta) = OWN[1], (1.0 / 0.6, 3.0, 0.85)
+    found = rocking.peak_response(pulse, slenderness=0.6, **OF_CELL)
+    start = rocking.paper.first_uplift_phase(pulse, amplitude)
+    motion = integrate(amplitude, omega, eta, shape=pulse.shape, start=start, end=pulse.end)
+    assert len(motion.impact_times) == found.impacts > 0
+    assert float(found.first_impact_time) == pytest.approx(motion.impact_times[0], abs=1e-8)
+    assert float(found.end_rotation) == pytest.approx(abs(motion.rotation), abs=1e-8)
+
+
+def test_numbers_in_files_never_change():
+    stored = ("sine", "cosine", "half_sine", "rectangular", "c1", "c2", "ricker", "ricker_antisymmetric")
+    stored += ("mavroeidis_papageorgiou",)
+    assert PULSE_NAMES[: len(stored)] == stored
+    assert [pulse_number(name) for name in stored] == list(range(9))
+
+
+def test_a_cube_of_a_sampled_pulse_and_http_by_its_name(tmp_path, monkeypatch):
+    monkeypatch.setattr(pulses, "_REGISTERED", {})
+    ramp, groups = OWN[0], GROUPS | {"slenderness": 0.6}
+    register(ramp)
+    axes = {"slenderness": np.linspace(0.55, 0.65, 21), "frequency_ratio": np.geomspace(2.8, 3.2, 21)}
+    path = tmp_path / "spectra" / "ramp" / "eta-0.85.nc"
+    write_dataset(spectrum("ramp", restitution=0.85, **axes), path)
+    solved = float(rocking.peak_response(ramp, **groups).peak_rotation)
+    precompile.main()
+    with TestClient(create_app(Settings(results=tmp_path))) as client:
+        listed = client.get("/v1/pulses").json()["pulses"][-1]
+        assert (listed["name"], listed["duration"]) == ("ramp", 1.0)
+        found = client.get("/v1/response", params=groups | {"pulse": "ramp", "absolute_tolerance": 1e-2}).json()
+        assert found["source"] == "cube"
+        assert found["peak_rotation"] == pytest.approx(solved, abs=found["error_bound"])
+        for end in ("", ".nc", "/subset", ".zarr/zarr.json", ".zarr/.zmetadata"):
+            response = client.get(f"/v1/datasets/spectra/ramp/eta-0.85{end}")
+            assert response.status_code == 200 or ".zarr" in end, response.text
+        assert client.get("/health").json()["problems"] == {}
+    monkeypatch.setattr(pulses, "_REGISTERED", {})  # as in another process
+    cube = open_cube(path)
+    assert cube.pulse == ramp
+    assert float(cube.response(**groups, method="solver").peak_rotation) == solved
+    register(rocking.SampledPulse([0.0, 1.0, 0.0], name="ramp"))
+    with pytest.raises(DatasetError, match="other samples"):
+        CubeCollection(tmp_path).response("ramp", **groups, method="cube")
+    found, used = CubeCollection(tmp_path).response("ramp", **groups)
+    assert (found.source.item(), used) == ("solver", ())

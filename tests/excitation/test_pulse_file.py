@@ -26,9 +26,9 @@ TEXTS = {
 }
 
 
-def written(folder: Path, text: str, name: str = "ramp.csv") -> Path:
-    path = folder / name
-    path.write_text(text, encoding="utf-8")
+def written(folder: Path, text: str, encoding: str = "utf-8") -> Path:
+    path = folder / "ramp.csv"
+    path.write_text(text, encoding=encoding)
     return path
 
 
@@ -37,13 +37,8 @@ def test_every_form_holds_the_pulse(form: str, tmp_path: Path) -> None:
     text = TEXTS[form]
     timed = "0.75" in text or "0,75" in text
     expected = rocking.SampledPulse(VALUES, TIMES if timed else None, name="ramp")
-    assert rocking.SampledPulse.from_file(written(tmp_path, text)) == expected
-
-
-def test_a_pulse_in_utf_16(tmp_path: Path) -> None:
-    path = tmp_path / "ramp.csv"
-    path.write_text(TEXTS["commas"], encoding="utf-16")
-    assert rocking.SampledPulse.from_file(path) == rocking.SampledPulse(VALUES, TIMES, name="ramp")
+    for encoding in ("utf-8", "utf-16"):
+        assert rocking.SampledPulse.from_file(written(tmp_path, text, encoding)) == expected
 
 
 def test_period_and_name_of_a_file(tmp_path: Path) -> None:
@@ -92,14 +87,6 @@ def test_errors_name_the_file_and_the_line(text: str, value: str, allowed: str, 
     assert len(str(caught.value)) < 400
 
 
-@pytest.mark.parametrize("period", [0.0, -1.0, float("nan"), "a", 1e300])
-def test_a_wrong_period_is_named(period: float, tmp_path: Path) -> None:
-    with pytest.raises(InvalidArgumentError) as caught:
-        rocking.SampledPulse.from_file(written(tmp_path, TEXTS["commas"]), period)
-    assert caught.value.parameter == "period"
-
-
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(InvalidArgumentError, match="no such file") as caught:
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InvalidArgumentError, match=r"`path` = .*no such file"):
         rocking.SampledPulse.from_file(tmp_path / "none.csv")
-    assert caught.value.parameter == "path"

@@ -29,8 +29,6 @@ def sine_record(step: float = 0.005, cycles: int = 10, period: float = 0.5, peak
         ({"acceleration": [0.0, 0.0, 0.0]}, "all samples 0"),
         ({"acceleration": [1.0, math.nan]}, "nan"),
         ({"acceleration": [1.0, 1e9]}, "acceleration"),
-        ({"time_step": 0.0}, "time_step"),
-        ({"time_step": -0.01}, "time_step"),
         ({"time_step": [0.01, 0.02]}, "one number"),
         ({"unit": "m/s"}, "unit"),
         ({"vertical": [0.0, 1.0, 2.0]}, r"shape \(3,\).* 2 samples"),
@@ -67,26 +65,19 @@ def test_digest_and_equality_depend_on_samples_and_step_only() -> None:
 
 def test_a_vertical_component_belongs_to_the_record() -> None:
     upwards = np.array([0.1, -0.2, 0.0])
-    record = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=upwards)
+    given = {"acceleration": [0.0, 1.0, 0.5], "time_step": 0.01, "unit": "g"}
+    record, plain = rocking.Record(**given, vertical=upwards), rocking.Record(**given)
     upwards[0] = 5.0
     np.testing.assert_allclose(record.vertical, np.array([0.1, -0.2, 0.0]) * STANDARD_GRAVITY, rtol=1e-15)
-    assert record.vertical is not None
     with pytest.raises(ValueError, match="read-only"):
-        record.vertical[0] = 1.0
+        record.vertical[0] = 1.0  # type: ignore[index]
     assert record.peak_vertical_acceleration == pytest.approx(0.2 * STANDARD_GRAVITY)
     assert repr(record) == "<rocking.Record: 3 samples at 0.01 s, PGA 1 g, with vertical, 0.2 g>"
-    plain = rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g")
-    assert plain.vertical is None
-    assert plain.peak_vertical_acceleration == 0.0
-    others = [
-        plain,
-        rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=np.zeros(3)),
-        rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=[0.1, -0.2, 0.01]),
-        rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"),
-    ]
-    assert len({record.digest, *(other.digest for other in others)}) == 5
-    assert record == rocking.Record([0.0, 1.0, 0.5], 0.01, unit="g", vertical=[0.1, -0.2, 0.0], name="other")
-    assert record != plain
+    assert (plain.vertical, plain.peak_vertical_acceleration) == (None, 0.0)
+    others = [rocking.Record(**given, vertical=other) for other in (np.zeros(3), [0.1, -0.2, 0.01])]
+    others.append(rocking.Record([0.0, 1.0, 0.5, 0.1, -0.2, 0.0], 0.01, unit="g"))
+    assert len({record.digest, plain.digest, *(other.digest for other in others)}) == 5
+    assert record == rocking.Record(**given, vertical=[0.1, -0.2, 0.0], name="other") != plain
     assert record.arias_intensity == plain.arias_intensity
 
 
@@ -95,10 +86,7 @@ def test_processing_treats_both_components_alike() -> None:
     a = horizontal.acceleration
     record = rocking.Record(a, horizontal.time_step, "m/s2", vertical=-2.0 * a + 0.1)
     alone = rocking.Record(-2.0 * a + 0.1, horizontal.time_step, "m/s2")
-    for process in (
-        lambda motion: motion.resampled(0.002),
-        lambda motion: motion.baseline_corrected(order=2),
-    ):
+    for process in (lambda motion: motion.resampled(0.002), lambda motion: motion.baseline_corrected(order=2)):
         found = process(record)
         np.testing.assert_array_equal(found.acceleration, process(horizontal).acceleration)
         np.testing.assert_array_equal(found.vertical, process(alone).acceleration)
@@ -147,13 +135,6 @@ def test_the_mean_period_needs_no_more_memory_than_the_record() -> None:
         tracemalloc.stop()
 
 
-@pytest.mark.parametrize("step", [1e-300, 1e-12, 9e-7, 10.1, 1e300, math.nan, -0.01])
-def test_time_steps_out_of_range_are_rejected(step: float) -> None:
-    for make in (lambda: rocking.Record([0.0, 1.0], step, "g"), lambda: sine_record().resampled(step)):
-        with pytest.raises(InvalidArgumentError, match=r"`time_step` = .*\[1e-06, 10\] \[s\]"):
-            make()
-
-
 def test_records_that_are_too_long_are_rejected() -> None:
     assert rocking.Record(np.ones(10_001), 10.0, "g").duration == 1e5
     with pytest.raises(InvalidArgumentError, match="at most 100000 s, with 10002 samples"):
@@ -170,17 +151,10 @@ def test_baseline_correction_removes_a_polynomial_of_its_order(order: int) -> No
     record = rocking.Record(clean + drift, 0.005, unit="m/s2")
     corrected = record.baseline_corrected(order=order)
     left = rocking.Record(clean, 0.005, unit="m/s2").baseline_corrected(order=order)
-    np.testing.assert_allclose(
-        corrected.acceleration, left.acceleration, atol=1e-6
-    )  # the drift is linear between samples
+    # the drift is linear between samples
+    np.testing.assert_allclose(corrected.acceleration, left.acceleration, atol=1e-6)
     assert abs(corrected.final_velocity) < 0.2 * abs(record.final_velocity)
     assert record.mean_acceleration == pytest.approx(record.final_velocity / record.duration)
-
-
-@pytest.mark.parametrize("order", [-1, 7, 1.5])
-def test_baseline_orders_out_of_range_are_rejected(order: float) -> None:
-    with pytest.raises(InvalidArgumentError, match="order"):
-        sine_record().baseline_corrected(order=order)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -193,8 +167,11 @@ def test_resampling_is_the_polyphase_filter_of_scipy(up: int, down: int, samples
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * record.peak_acceleration)
 
 
-def test_steps_that_are_no_fraction_are_rejected() -> None:
+def test_what_a_record_cannot_become_is_rejected() -> None:
     with pytest.raises(InvalidArgumentError, match="fraction"):
         sine_record().resampled(0.005 * math.pi)
     with pytest.raises(InvalidArgumentError, match="duration"):
         sine_record(cycles=1).resampled(2.0)
+    for order in (-1, 7, 1.5):
+        with pytest.raises(InvalidArgumentError, match="order"):
+            sine_record().baseline_corrected(order=order)  # type: ignore[arg-type]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
 from rocking._excitation.records.readers import layout
 from rocking._excitation.records.readers.columns import read_rotations
@@ -17,9 +18,10 @@ from rocking._excitation.records.readers.lines import TextFile
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import UNITS
 from rocking._numba.cancellation import StopFlag
+from tests.excitation import dialects
 from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, THREE, File, at2, esm, pairs, rows
 from tests.excitation.record_fuzzer import fuzz
-from tests.sampling import number
+from tests.sampling import SEED, number
 
 
 @pytest.mark.parametrize("file", [*GOOD.values(), *ODD.values()], ids=[*GOOD, *ODD])
@@ -119,12 +121,9 @@ def test_reading_takes_at_most_four_times_the_memory_of_the_file(header: str, ro
     assert 1024 * int(grown) < 4 * path.stat().st_size
 
 
-def test_a_missing_file_is_an_invalid_argument(tmp_path) -> None:
+def test_errors_can_be_sent_between_processes(tmp_path) -> None:
     with pytest.raises(InvalidArgumentError, match="no such file"):
         rocking.read_record(tmp_path / "none.at2")
-
-
-def test_errors_can_be_sent_between_processes() -> None:
     error = RecordFileError("a.at2", 3, "x", "a number")
     copy = pickle.loads(pickle.dumps(error))
     assert str(copy) == str(error) == "a.at2, line 3: found x; expected a number"
@@ -165,6 +164,13 @@ def test_words_of_long_lines_are_not_looked_up(rows: str, monkeypatch) -> None:
     assert len(words) < 100
 
 
+@pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds
+def test_no_random_layout_is_read_as_another_motion(seed: int) -> None:
+    """With all that a person who knows the file may state, most are read; the seed is in a failure."""
+    count = number(100, 10_000)
+    assert dialects.run(count, seed) > 0.9 * count
+
+
 def test_mutated_files_are_read_or_refused() -> None:
     count, dice = number(500, 100_000), random.Random(0)
     read = sum(fuzz(dice) for _ in range(count))
@@ -180,20 +186,17 @@ def test_the_vertical_component_of_a_second_file(tmp_path) -> None:
     np.testing.assert_array_equal(found.acceleration, horizontal.acceleration)
     np.testing.assert_allclose(found.vertical, 0.1 * np.arange(100.0), rtol=1e-14)
     assert found.remarks == horizontal.remarks != ()
-    assert found.name == horizontal.name
-    assert found.source == f"{horizontal.source}; vertical: up, up.csv (columns)"
-    assert found == rocking.read_record(paths[0], vertical=str(paths[1]))
+    assert (found.name, found.source) == (horizontal.name, f"{horizontal.source}; vertical: up, up.csv (columns)")
 
 
-@pytest.mark.parametrize(("count", "done"), [(95, "continued by zeros"), (104, "cut")])
-def test_a_vertical_component_of_another_length_never_changes_the_horizontal_one(count, done, tmp_path) -> None:
+@pytest.mark.parametrize(("count", "done", "at_95"), [(95, "continued by zeros", 0.0), (104, "cut", 0.96)])
+def test_a_vertical_component_of_another_length_never_changes_the_horizontal_one(count, done, at_95, tmp_path) -> None:
     paths = [tmp_path / name for name in ("h.csv", "up.csv")]
     for path, size in zip(paths, (100, count), strict=True):
-        path.write_text("unit: m/s2\ndt: 0.01\n" + "".join(f"{1.0 + k}\n" for k in range(size)))
+        path.write_text("unit: gal\ndt: 0.01\n" + "".join(f"{1 + k}\n" for k in range(size)))
     found = rocking.read_record(paths[0], vertical=paths[1])
     assert found.samples == found.vertical.size == 100
-    np.testing.assert_array_equal(found.vertical[:95], 1.0 + np.arange(95))
-    assert found.vertical[95] == (0.0 if count == 95 else 96.0)
+    np.testing.assert_allclose(found.vertical[:96], [*found.acceleration[:95], at_95], rtol=1e-14)
     said = f"the vertical component has {count} samples and the horizontal one 100: it is {done}"
     assert found.remarks == (said,)
 
@@ -222,12 +225,13 @@ def test_the_vertical_component_of_another_column(tmp_path) -> None:
     found = rocking.read_record(path, component="NS_g", vertical="ew")
     np.testing.assert_array_equal(found.vertical, rocking.read_record(path, component="ew").acceleration)
     assert found == parse_record(THREE.encode(), "motion.csv", component="NS_g", vertical="EW_g")
-    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a component of motion.csv .*NS_g, EW_g"):
-        rocking.read_record(path, component="NS_g", vertical="up")
-    with pytest.raises(RecordFileError, match="argument `component`"):
-        rocking.read_record(path, vertical="EW_g")
-    with pytest.raises(InvalidArgumentError, match=r"`vertical` = .*: no such file"):
-        rocking.read_record(path, component="NS_g", vertical=tmp_path / "none.at2")
+    for given, said in (
+        ({"component": "NS_g", "vertical": "up"}, r"`vertical` = 'up' .* a component of motion.csv .*NS_g, EW_g"),
+        ({"vertical": "EW_g"}, "argument `component`"),
+        ({"component": "NS_g", "vertical": tmp_path / "none.at2"}, r"`vertical` = .*: no such file"),
+    ):
+        with pytest.raises(InvalidArgumentError, match=said):
+            rocking.read_record(path, **given)
     path.write_text(at2())
     with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):
         rocking.read_record(path, vertical="up")
@@ -263,9 +267,82 @@ def test_rotations_are_in_the_units_of_the_header(header: str, degrees: bool | N
         ("t,rotation [mrad]", True, "expected rotations in deg"),
         ("t,rotation [rad/s]", None, "a column of rotations"),
         ("t,top [mm]", None, "a column of rotations"),
+        ("t,acceleration", None, "a column of rotations"),
+        ("t,theta x 1e3", None, "a column of rotations"),
+        ("t,angleDeg", None, "units rad, deg, mrad"),
         ("t [foo],rotation", None, "one of the units s, ms, us, min"),
     ],
 )
 def test_rotations_in_other_units_are_refused(header: str, degrees: bool | None, said: str) -> None:
     with pytest.raises(RecordFileError, match=f"trace, line 1: found the column .*{said}"):
         read_rotations(TextFile("trace", f"{header}\n0,1\n5,2\n".encode()), 9, degrees)
+
+
+FOLDER = Path(__file__).parents[1] / "data" / "field"
+
+PEAK = 0.29188
+"""Of the 40 values of most files, in their unit."""
+
+READ = [  # file, arguments, samples, time step [s], PGA [m/s2]
+    ("knet_offset.NS", {}, 160, 0.01, 0.470458),
+    ("title_sets_unit.dat", {}, 40, 0.01, PEAK),
+    ("title_with_brackets.dat", {}, 40, 0.01, PEAK),
+    ("names_blank_rows_tab.dat", {}, 40, 0.01, PEAK * STANDARD_GRAVITY),
+    ("corner_frequency_as_rate.txt", {"time_step": 0.02}, 40, 0.02, PEAK * STANDARD_GRAVITY),
+    ("frequency_range.dat", {}, 40, 0.01, PEAK * STANDARD_GRAVITY),
+    ("factor_and_step_first.txt", {"unit": "g", "skip": 2, "time_step": 0.01}, 40, 0.01, PEAK * STANDARD_GRAVITY),
+    ("factor_and_step_first.txt", {"unit": "g", "skip": 0, "time_step": 0.01}, 42, 0.01, STANDARD_GRAVITY),
+    ("count_and_step_line2.txt", {"unit": "g"}, 40, 0.01, PEAK * STANDARD_GRAVITY),
+    ("wrapped_no_header.txt", {"unit": "g", "time_step": 0.01}, 40, 0.01, PEAK * STANDARD_GRAVITY),
+    ("wrapped_interval_stated.dat", {}, 40, 0.005, PEAK / 100.0),
+    ("at2_units_are.at2", {}, 40, 0.02, PEAK * STANDARD_GRAVITY),
+    ("at2_double_cr.at2", {}, 40, 0.02, PEAK * STANDARD_GRAVITY),
+    ("component_underscore.csv", {"component": "acc_NS"}, 40, 0.01, PEAK),
+    ("component_underscore.csv", {"component": "EW"}, 40, 0.01, 0.6 * PEAK),
+    ("three_components_no_time.txt", {"unit": "gal", "component": "N-S"}, 40, 0.01, PEAK),
+    ("csmip_volume1.v1", {}, 40, 0.01, PEAK / 10.0 * STANDARD_GRAVITY),
+    ("cosmos_volume2.v2", {"time_step": 0.025}, 40, 0.025, PEAK / 100.0),
+    ("jma_unit_two_names.csv", {"component": "NS"}, 13, 0.01, 0.27682),
+    ("jma_unit_two_names.csv", {"component": "NS", "unit": "gal"}, 13, 0.01, 0.27682),
+    ("sample_counter.csv", {"time_step": 0.01}, 120, 0.01, 2.861360),
+]
+
+REFUSED = [  # file, arguments, what the message names
+    ("corner_frequency_as_rate.txt", {}, "no time step; .*`time_step`"),
+    ("factor_and_step_first.txt", {"unit": "g"}, "line 1: found 1, 0.01 before 6.159000e-02; .*`skip`: 2"),
+    ("component_underscore.csv", {}, r"components acc_NS\(gal\), acc_EW\(gal\); .*`component`"),
+    ("three_components_no_time.txt", {"unit": "gal"}, "components N-S, E-W, U-D; .*`component`"),
+    ("cosmos_volume2.v2", {}, "COSMOS file that states no time step; .*`time_step`"),
+    ("jma_unit_two_names.csv", {}, "components NS, EW, UD; .*`component`"),
+    ("sample_counter.csv", {}, "the column sample, a counter.*`time_step`"),
+]
+
+
+@pytest.mark.parametrize(("file", "arguments", "samples", "step", "peak"), READ)
+def test_records_are_read(file, arguments, samples, step, peak):
+    found = parse_record((FOLDER / file).read_bytes(), file, **arguments)
+    assert (found.samples, found.time_step) == (samples, step)
+    assert found.peak_acceleration == pytest.approx(peak, rel=1e-5)
+
+
+@pytest.mark.parametrize(("file", "arguments", "said"), REFUSED)
+def test_what_is_not_stated_is_asked_for(file, arguments, said):
+    with pytest.raises(RecordFileError, match=said):
+        parse_record((FOLDER / file).read_bytes(), file, **arguments)
+
+
+def test_frames_are_no_seconds():
+    trace = TextFile("frame_counter.csv", (FOLDER / "frame_counter.csv").read_bytes())
+    with pytest.raises(RecordFileError, match=r"the column frame, a counter.*`time_step`"):
+        read_rotations(trace, 10_000, None)
+    time, rotation = read_rotations(trace, 10_000, None, 1.0 / 60.0)
+    np.testing.assert_allclose(time[:3], [0.0, 1.0 / 60.0, 2.0 / 60.0])
+    assert rotation[0] == pytest.approx(0.15, abs=1e-6)
+
+
+def test_the_offset_that_is_removed_is_stated():
+    found = parse_record((FOLDER / "knet_offset.NS").read_bytes(), "knet_offset.NS")
+    (remark,) = found.remarks
+    assert "mean of 95.002 gal, is removed" in remark
+    assert "largest acceleration about it is 47.046 gal" in remark  # Max. Acc. of the header
+    assert "95.002 gal, is removed" in found.source

@@ -85,6 +85,9 @@ def smc() -> str:
     return text + "|\n| 99 values in units of g\n" + rows(samples(1), "{:14.7E}", 5)
 
 
+TWO_CHANNELS = cosmos().replace("Chan   1:", "Cha:  1:") + cosmos().replace("Chan   1: 90", "Chan   2: 0")
+
+
 @pytest.mark.parametrize(
     ("text", "component", "channel", "step", "tolerance"),
     [
@@ -92,13 +95,7 @@ def smc() -> str:
         (csmip(), "chan 3: 90 deg", 3, 0.01, 1e-12),
         (csmip(), "2", 2, 0.01, 1e-12),
         (cosmos(), None, 2, 0.005, 1e-12),
-        (
-            cosmos().replace("Chan   1:", "Cha:  1:") + cosmos().replace("Chan   1: 90", "Chan   2: 0"),
-            "90 deg",
-            2,
-            0.005,
-            1e-12,
-        ),
+        (TWO_CHANNELS, "90 deg", 2, 0.005, 1e-12),
         (geonet(1), "N28W", 1, 0.02, 0.006),
         (geonet(2), "s62w", 2, 0.02, 0.006),
         (geonet(2), "Up", 3, 0.02, 0.006),
@@ -137,11 +134,7 @@ def test_volume_1_in_g():
         ("UNCORRECTED ACCELEROGRAM DATA\n\n\nRENADIC\n0.0 1.0\n", {}, "a RENADIC Volume 1 file"),
         ("FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\n0.0 1.0\n", {}, "a USC Volume 1 file, with a time"),
         ("CORRECTED ACCELEROGRAM OF SOMEBODY\n1 2 3\n", {}, "CORRECTED ACCELEROGRAM OF SOMEBODY; expected a Volume"),
-        (
-            smc().replace("2.0000000E+02", "1.7000000E+38"),
-            {},
-            "37 values at uneven intervals; expected uniform samples",
-        ),
+        (smc().replace("2.0000000E+02", "1.7000000E+38"), {}, "37 values at uneven intervals; expected uniform"),
         (smc().replace("CORRECTED ACCELEROGRAM", "VELOCITY"), {}, "2 VELOCITY; expected an accelerogram"),
     ],
 )

@@ -1,9 +1,10 @@
-"""Pictures hold what they are drawn from: curves, ranges, points, names and units of axes."""
+"""Pictures hold what they are drawn from, and labels of the default pictures of xarray fit into them."""
 
 import subprocess
 import sys
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 import rocking
 from rocking import plot
 from rocking._base.errors import InvalidArgumentError
+from rocking._spectra.cubes import spectrum
 from rocking.plot.output import new_figure, save_figure
 from tests.suites.motions import noise
 
@@ -27,9 +29,8 @@ def ax():
 
 def shaded(ax):
     """Ends of the shaded ranges."""
-    return [
-        (path.vertices[:, 0].min(), path.vertices[:, 0].max()) for part in ax.collections for path in part.get_paths()
-    ]
+    ends = [path.vertices[:, 0] for part in ax.collections for path in part.get_paths()]
+    return [(x.min(), x.max()) for x in ends]
 
 
 def test_history_of_a_block_in_degrees(ax):
@@ -77,14 +78,14 @@ def test_ground_acceleration_with_the_smallest_one_that_starts_rocking(ax):
 def test_pictures_of_a_body_with_two_edges(ax):
     body = rocking.RigidBody(0.12, 0.18, 0.4)
     data = body.history("sine", peak_acceleration=4.0, period=0.6)
-    plot.history(data, ax)
-    limits = {round(float(line.get_ydata()[0]), 6) for line in ax.lines if len(line.get_ydata()) == 2}
     right, left = np.degrees(float(body.right.alpha)), np.degrees(float(body.left.alpha))
-    assert {round(right, 6), round(-left, 6)} <= limits
+    for picture, expected in (
+        (plot.history(data, ax), {right, -left}),
+        (plot.ground_acceleration(data), {9.80665 * 0.12 / 0.4, -9.80665 * 0.18 / 0.4}),
+    ):
+        limits = {round(float(line.get_ydata()[0]), 6) for line in picture.lines if len(line.get_ydata()) == 2}
+        assert {round(value, 6) for value in expected} <= limits
     assert ax.get_xlim() == (0.0, float(data["time"][-1]))
-    ground = plot.ground_acceleration(data)
-    limits = {round(float(line.get_ydata()[0]), 6) for line in ground.lines if len(line.get_ydata()) == 2}
-    assert {round(9.80665 * 0.12 / 0.4, 6), round(-9.80665 * 0.18 / 0.4, 6)} <= limits
     assert "period" in plot.spectrum(body.spectrum("sine", peak_acceleration=4.0, period=[0.3, 0.6, 0.9])).get_xlabel()
     assert "period" in plot.boundary(body.boundary("sine", period=(0.4, 1.5))).get_xlabel()
 
@@ -97,25 +98,14 @@ def test_history_of_a_record_and_in_groups(ax):
     assert plot.history(history, color="k").get_xlabel() == r"time $\tau=p\,t$ [-]"
 
 
-def test_response_to_a_record_is_refused_as_a_curve_over_the_amplitude():
-    with pytest.raises(InvalidArgumentError, match=r"rocking\.plot\.history"):
-        plot.response(BLOCK.response(noise(3)))
-
-
 def test_response_between_its_thresholds(ax):
     found = BLOCK.response("sine", **PULSE)
     plot.response(found, ax)
     point = ax.lines[-1]
     assert (point.get_xdata()[0], point.get_ydata()[0]) == pytest.approx((4.0, np.degrees(found.rotation)))
-    ((low, high),) = shaded(ax)
-    assert low == pytest.approx(found.thresholds[0].value, rel=1e-6)
-    assert high == pytest.approx(8.0)
-
-
-def test_response_in_groups_shows_both_surviving_ranges(ax):
-    plot.response(rocking.peak_response("sine", **GROUPS), ax)
-    ((low, high),) = shaded(ax)
-    assert (low, high) == pytest.approx((3.980175, 5.356347), rel=1e-6)  # falls from, safe again
+    assert shaded(ax) == [pytest.approx((found.thresholds[0].value, 8.0), rel=1e-6)]
+    groups = plot.response(rocking.peak_response("sine", **GROUPS))
+    assert shaded(groups) == [pytest.approx((3.980175, 5.356347), rel=1e-6)]  # falls from, safe again
 
 
 def test_spectrum_is_interrupted_where_the_block_overturns(ax):
@@ -140,12 +130,6 @@ def test_a_lone_survivor_of_a_spectrum_is_a_dot(ax):
     assert dot.get_color() == line.get_color()
 
 
-def test_a_response_is_refused_with_what_to_type(ax):
-    response = rocking.peak_response("sine", slenderness=0.5, frequency_ratio=[3.0, 4.0], restitution=0.9)
-    with pytest.raises(rocking.InvalidArgumentError, match="to_xarray"):
-        plot.spectrum(response, ax)
-
-
 def test_boundary_in_groups_and_in_si_units(ax):
     window = 2 * np.pi / (np.array([4.0, 2.0]) * BLOCK.frequency_parameter)
     curves = BLOCK.boundary("sine", restitution=0.85, period=tuple(window))
@@ -159,13 +143,9 @@ def test_boundary_in_groups_and_in_si_units(ax):
 
 
 def test_cube_has_a_panel_for_each_angle(ax):
-    data = rocking.peak_response(
-        "sine",
-        alpha=np.array([0.0, 0.3])[:, None, None],
-        slenderness=np.linspace(0.2, 0.9, 5)[:, None],
-        frequency_ratio=np.linspace(1.0, 6.0, 6),
-        restitution=0.85,
-    ).to_xarray()
+    axes = {"alpha": np.array([0.0, 0.3])[:, None, None], "slenderness": np.linspace(0.2, 0.9, 5)[:, None]}
+    found = rocking.peak_response("sine", frequency_ratio=np.linspace(1.0, 6.0, 6), restitution=0.85, **axes)
+    data = found.to_xarray()
     panels = plot.cube(data)
     assert [one.get_title("right") for one in panels] == ["slender limit", "alpha = 17.2 deg"]
     with pytest.raises(InvalidArgumentError, match="one for each of 2 angles"):
@@ -187,8 +167,13 @@ def test_fragility_of_one_block(ax):
 def test_other_data_are_refused_by_name(picture, ax):
     with pytest.raises(InvalidArgumentError, match="`data` = "):
         picture(rocking.peak_response("sine", **GROUPS).to_xarray(), ax)
+    several = rocking.peak_response("sine", **GROUPS | {"slenderness": [0.3, 0.4]})
     with pytest.raises(InvalidArgumentError, match="`found` = "):
-        plot.response(rocking.peak_response("sine", **(GROUPS | {"slenderness": [0.3, 0.4]})), ax)
+        plot.response(several, ax)
+    with pytest.raises(InvalidArgumentError, match="to_xarray"):
+        plot.spectrum(several, ax)
+    with pytest.raises(InvalidArgumentError, match=r"rocking\.plot\.history"):
+        plot.response(BLOCK.response(noise(3), thresholds=False))
     assert not ax.has_data()
 
 
@@ -213,3 +198,63 @@ def test_without_matplotlib_the_extra_is_named():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert "pip install 'rocking[plot]'" in done.stdout
+
+
+def grid(**values):
+    return rocking.peak_response("sine", **(GROUPS | values)).to_xarray().peak_rotation
+
+
+def record_history():
+    return rocking.time_history(noise(3), frequency_parameter=3.0, slenderness=0.3, restitution=0.85)
+
+
+PICTURES = {
+    "history": lambda: rocking.time_history("sine", **GROUPS).rotation,
+    "ground": lambda: rocking.time_history("sine", **GROUPS).ground_acceleration,
+    "block velocity": lambda: BLOCK.history("sine", peak_acceleration=4.0, period=0.5).angular_velocity,
+    "record over tau": lambda: record_history().swap_dims(time="tau").rotation,
+    "spectrum": lambda: grid(frequency_ratio=np.linspace(1.0, 9.0, 20)),
+    "angles": lambda: grid(alpha=np.linspace(0.1, 0.4, 20)),
+    "map": lambda: grid(slenderness=np.linspace(0.1, 0.9, 9)[:, None], frequency_ratio=np.linspace(1.0, 9.0, 20)),
+    "block spectrum": lambda: BLOCK.spectrum("sine", peak_acceleration=4.0, period=PERIODS).top_displacement,
+    "fraction": lambda: rocking.fragility([noise(1), noise(2)], BLOCK, intensity=np.geomspace(1, 20, 6)).fraction,
+    "boundary": lambda: BLOCK.boundary("sine", period=(0.5, 0.8)).peak_acceleration,
+}
+PERIODS = np.linspace(0.1, 0.5, 9)
+
+
+@pytest.fixture(scope="module")
+def cube():
+    axes = {"slenderness": np.linspace(0.1, 0.9, 9), "frequency_ratio": np.geomspace(1.0, 9.0, 9)}
+    return spectrum("sine", restitution=0.85, alpha=np.array([0.0, 0.3]), **axes)
+
+
+def outside(picture):
+    """Labels of axes that reach beyond the figure."""
+    with plt.rc_context({"backend": "agg"}):
+        figure = plt.figure()
+        try:
+            picture.plot()
+            figure.canvas.draw()
+            frame = figure.bbox
+            return [
+                label.get_text()
+                for ax in figure.axes
+                for label in (ax.xaxis.label, ax.yaxis.label)
+                for box in [label.get_window_extent()]
+                if box.x0 < frame.x0 or box.y0 < frame.y0 or box.x1 > frame.x1 or box.y1 > frame.y1
+            ]
+        finally:
+            plt.close(figure)
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_labels_fit(name):
+    assert outside(PICTURES[name]()) == []
+
+
+@pytest.mark.parametrize("name", ["peak_rotation", "outcome", "impacts", "interpolation_error", "alpha_error"])
+def test_labels_of_a_cube_fit(cube, name):
+    layer = cube[name].isel(alpha=1)
+    for picture in (layer, layer.isel(slenderness=3), layer.isel(frequency_ratio=3), cube[name][:, 3, 3]):
+        assert outside(picture) == []

@@ -23,19 +23,12 @@ def test_of_a_suite_is_what_counting_gives() -> None:
     blocks = [rocking.Block(0.4, 1.6), rocking.Block(0.3, 1.8)]
     suite = rocking.fragility(MOTIONS, blocks, intensity=[3.0, 5.0])
     found = distribution(suite, rotation=[0.0, 0.2, 0.5, 1.0])
-    for block in range(2):
-        for level in range(2):
-            one = suite.isel(block=block, intensity=level)
-            peaks = [
-                np.inf if over else peak
-                for peak, over in zip(*(one[n].values for n in ("peak_rotation", "overturned")), strict=True)
-            ]
-            for at in found["rotation"].values:
-                here = found.isel(block=block, intensity=level).sel(rotation=at)
-                count = sum(peak <= at for peak in peaks)
-                ends = stats.binomtest(count, 8).proportion_ci(0.95, "exact")
-                assert here["probability"].item() == count / 8
-                assert (here["probability_lower"].item(), here["probability_upper"].item()) == pytest.approx(ends)
+    peaks = suite["peak_rotation"].where(suite["overturned"] == 0, np.inf)
+    count = (peaks <= found["rotation"]).sum("record")
+    for name, end in (("probability", lambda _: 0), ("probability_lower", min), ("probability_upper", max)):
+        for place, k in np.ndenumerate(count.transpose(*found[name].dims).values):
+            ends = stats.binomtest(int(k), 8).proportion_ci(0.95, "exact")
+            assert found[name].values[place] == pytest.approx(k / 8 if name == "probability" else end(ends))
     assert (found["overturned"].values == suite["fraction"].values).all()
     assert (found["overturned_upper"].values == suite["fraction_upper"].values).all()
     half = np.sqrt(np.log(2.0 / 0.05) / 16.0)
@@ -92,12 +85,15 @@ def test_command_and_picture(tmp_path: Path) -> None:
 def test_refused() -> None:
     block = rocking.Block(0.4, 1.6)
     suite = rocking.fragility(MOTIONS[:2], block, intensity=[3.0])
-    for wrong in ({"over": "block"}, {"rotation": [0.5, 0.1]}, {"rotation": [-1.0]}, {"confidence": 1.0}):
-        with pytest.raises(rocking.InvalidArgumentError, match=next(iter(wrong))):
-            distribution(suite, **wrong)
-    with pytest.raises(rocking.InvalidArgumentError, match="ensemble"):
-        distribution(suite[["fraction"]])
-    with pytest.raises(rocking.InvalidArgumentError, match="over"):
-        distribution(block.response(MOTIONS[0]), over="dim_0")
+    for data, wrong, said in (
+        (suite, {"over": "block"}, "over"),
+        (suite, {"rotation": [0.5, 0.1]}, "rotation"),
+        (suite, {"rotation": [-1.0]}, "rotation"),
+        (suite, {"confidence": 1.0}, "confidence"),
+        (suite[["fraction"]], {}, "ensemble"),
+        (block.response(MOTIONS[0]), {"over": "dim_0"}, "over"),
+    ):
+        with pytest.raises(rocking.InvalidArgumentError, match=said):
+            distribution(data, **wrong)
     with pytest.raises(rocking.InvalidArgumentError, match="data"):
         rocking.plot.distribution(distribution(suite))

@@ -1,6 +1,6 @@
-"""Fragility of suites with a known answer, and the contracts of `rocking.fragility`."""
+"""Fragility of suites with a known answer, its contracts, margins of records, vertical components."""
 
-import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +8,16 @@ import xarray as xr
 from scipy.stats import norm
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
 from rocking._base.errors import InvalidArgumentError
 from rocking._boundary.frequency import critical_frequency_ratio
+from rocking._dimensional.thresholds import overturning_scale
+from rocking.suites.configuration import RecordFiles
 from rocking.suites.fits import FitStatus, binomial_interval
+from rocking.suites.margins import with_margins
+from rocking.suites.outcomes import check_suite, suite_outcomes
+from rocking.suites.summary import record_margins
 from tests.suites.motions import BLOCK, noise, sampled
 
 MEDIAN, BETA = 6.0, 0.35  # PGA [m/s2] at which the synthetic suite overturns the block
@@ -25,13 +31,8 @@ def synthetic():
     records = []
     for k, acceleration in enumerate(capacity.tolist()):
         # under a half sine a plastic block (eta = 0) overturns above one acceleration, which falls with the duration
-        found = critical_frequency_ratio(
-            "half_sine",
-            slenderness=BLOCK.uplift_acceleration / acceleration,
-            restitution=0.0,
-            alpha=BLOCK.alpha,
-            window=(0.01, 100.0),
-        )
+        given = {"slenderness": BLOCK.uplift_acceleration / acceleration, "restitution": 0.0, "alpha": BLOCK.alpha}
+        found = critical_frequency_ratio("half_sine", **given, window=(0.01, 100.0))
         records.append(sampled("half_sine", float(found.frequency_ratio[-1]), name=f"half sine {k}"))
     return records, capacity
 
@@ -58,32 +59,10 @@ def test_lognormal_answer_is_recovered_within_its_intervals(synthetic):
     np.testing.assert_array_equal(found.first_exceedances, found.exceedances)
 
 
-def test_outcomes_are_those_of_the_pulse():
-    # a sine has a surviving band above its first overturning (3.31); the solver for pulses has other steps
-    ratios = [3.0, 4.0, 5.0]
-    records = [sampled("sine", ratio) for ratio in ratios]
-    levels = np.linspace(1.05, 8.0, 60)
-    found = rocking.fragility(records, BLOCK, intensity=levels, measure="pga_ratio")
-    exact = rocking.peak_response(
-        "sine",
-        slenderness=1.0 / levels[:, None],
-        frequency_ratio=np.array(ratios),
-        restitution=BLOCK.inelastic_restitution,
-        alpha=BLOCK.alpha,
-    )
-    agree = found.overturned.values == exact.overturned
-    assert agree.mean() > 0.98  # but for levels next to a change of outcome
-    survived = ~(found.overturned.values.astype(bool) | exact.overturned)
-    np.testing.assert_allclose(
-        found.peak_rotation.values[survived], exact.peak_rotation[survived], rtol=2e-3, atol=1e-6
-    )
-
-
 def test_records_that_survive_above_their_first_overturning_are_named():
     records = [sampled("sine", 4.0, name="sine"), sampled("half_sine", 1.0, name="half sine")]
-    found = rocking.fragility(
-        records, [BLOCK], intensity=np.linspace(1.05, 8.0, 100), measure="pga_ratio", demand=["overturning"]
-    )
+    options = {"measure": "pga_ratio", "demand": ["overturning"]}
+    found = rocking.fragility(records, [BLOCK], intensity=np.linspace(1.05, 8.0, 100), **options)
     assert found.survives_above_first.sel(record="sine").item() == 1
     assert found.survives_above_first.sel(record="half sine").item() == 0
     assert found.records_surviving_above_first.item() == "sine"
@@ -113,37 +92,6 @@ def test_measures_differ_by_the_factor_of_each_record(noisy):
             alone = rocking.fragility(record, BLOCK, intensity=levels * factor[k], measure="pga")
             np.testing.assert_allclose(found.scale[:, k], alone.scale[:, 0])
             np.testing.assert_allclose(found.peak_rotation[:, k], alone.peak_rotation[:, 0], rtol=1e-9)
-
-
-def test_frequency_ratio_changes_the_size_of_the_block(noisy):
-    levels = np.array([1.0, 3.0, 9.0])
-    found = rocking.fragility(noisy, BLOCK, intensity=levels, measure="frequency_ratio", restitution=0.9)
-    assert (found.scale == 1.0).all()
-    for k, record in enumerate(noisy):
-        for j, level in enumerate(levels.tolist()):
-            p = 2.0 * math.pi / record.mean_period / level
-            size = 0.75 * BLOCK.gravity / p**2
-            block = rocking.Block.from_slenderness_angle(BLOCK.alpha, size)
-            same = rocking.fragility(record, block, intensity=record.peak_acceleration, restitution=0.9)
-            np.testing.assert_allclose(found.peak_rotation[j, k], same.peak_rotation[0, 0], rtol=1e-9)
-
-
-def test_suites_without_a_curve_say_why(noisy):
-    none = rocking.fragility(noisy, BLOCK, intensity=[0.5, 1.0])
-    every = rocking.fragility(
-        [sampled("rectangular", 0.5, name=str(k)) for k in range(8)], BLOCK, intensity=[40.0, 60.0]
-    )
-    equal = [sampled("half_sine", 1.0, name=str(k)) for k in range(8)]
-    step = rocking.fragility(equal, BLOCK, intensity=[2.0, 2.5, 20.0], restitution=0.0)
-    for found, status in ((none, FitStatus.NONE_REACHES), (every, FitStatus.ALL_REACH), (step, FitStatus.SEPARATED)):
-        assert (found.fit_status == status).all()
-    assert none.median_intensity.isnull().all()
-    assert (none.median_intensity_lower == 1.0).all()
-    assert np.isinf(none.median_intensity_upper).all()
-    assert (every.median_intensity_upper == 40.0).all()
-    assert (step.dispersion == 0.0).all()
-    assert (step.median_intensity_lower == 2.5).all()
-    assert (step.median_intensity_upper == 20.0).all()
 
 
 def test_mirrored_record_and_order_of_records_do_not_matter(noisy):
@@ -191,12 +139,15 @@ def test_every_variable_has_unit_and_meaning(noisy):
         ({"blocks": []}, "blocks"),
         ({"blocks": [0.2]}, "blocks"),
         ({"blocks": [BLOCK, 0.2]}, "blocks"),
+        ({"blocks": [rocking.RigidBody(0.1, 0.1, 0.8)]}, "blocks"),
+        ({"blocks": rocking.RigidBody.from_size(xr.DataArray([0.4, 0.6], dims="record"), 1.6)}, "blocks"),
+        ({"blocks": rocking.RigidBody(0.1, 0.2, 0.8), "measure": "pgv_ratio"}, "measure"),
+        ({"blocks": rocking.RigidBody(0.1, 0.2, 0.8), "measure": "frequency_ratio"}, "measure"),
         ({"intensity": []}, "intensity"),
         ({"intensity": [2.0, 1.0]}, "intensity"),
         ({"intensity": [0.0, 1.0]}, "intensity"),
         ({"measure": "sa"}, "measure"),
         ({"restitution": "plastic"}, "restitution"),
-        ({"restitution": 1.2}, "restitution"),
         ({"demand": "sliding"}, "demand"),
         ({"demand": 0.0}, "demand"),
         ({"demand": []}, "demand"),
@@ -213,53 +164,47 @@ def test_invalid_arguments_are_named(noisy, arguments, name):
 
 WIDTH = xr.DataArray([0.4, 0.6], dims="w", coords={"w": [4, 6]})
 HEIGHT = xr.DataArray([1.6, 2.0, 2.4], dims="h")
+OPTIONS = {"intensity": np.geomspace(1.0, 40.0, 6), "demand": ["overturning", 0.5]}
 
 
-def test_an_array_of_bodies_has_the_fragility_of_each_block():
-    options = {"intensity": np.geomspace(1.0, 40.0, 6), "demand": ["overturning", 0.5]}
-    motions = [noise(seed) for seed in range(3)]
-    found = rocking.fragility(motions, rocking.RigidBody.from_size(WIDTH, HEIGHT), **options)
+@pytest.fixture(scope="module")
+def by_bodies(noisy):
+    return rocking.fragility(noisy[:3], rocking.RigidBody.from_size(WIDTH, HEIGHT), **OPTIONS)
+
+
+def test_an_array_of_bodies_has_the_fragility_of_each_block(noisy, by_bodies):
     blocks = [rocking.Block(w, h) for w in WIDTH.values for h in HEIGHT.values]
-    plain = rocking.fragility(motions, blocks, **options)
-    assert found.fraction.dims == ("demand", "w", "h", "intensity")
-    assert found.w.values.tolist() == [4, 6]
-    assert found.variables.keys() - {"w"} == plain.variables.keys()
+    plain = rocking.fragility(noisy[:3], blocks, **OPTIONS)
+    assert by_bodies.fraction.dims == ("demand", "w", "h", "intensity")
+    assert by_bodies.w.values.tolist() == [4, 6]
+    assert by_bodies.variables.keys() - {"w"} == plain.variables.keys()
     for name, values in plain.variables.items():
-        np.testing.assert_array_equal(found[name].values.reshape(values.shape), values.values, name)
-        assert equal_values(found[name].attrs, values.attrs), name
+        np.testing.assert_array_equal(by_bodies[name].values.reshape(values.shape), values.values, name)
+        assert equal_values(by_bodies[name].attrs, values.attrs), name
 
 
-def test_a_lazy_array_of_bodies_has_the_same_fragility():
-    options = {"intensity": np.geomspace(1.0, 40.0, 6)}
-    motions = [noise(seed) for seed in range(3)]
-    lazy = rocking.fragility(motions, rocking.RigidBody.from_size(WIDTH.chunk(w=1), HEIGHT), **options)
-    assert lazy.fraction.chunks == ((1, 1), (3,), (6,))
-    plain = rocking.fragility(motions, rocking.RigidBody.from_size(WIDTH, HEIGHT), **options)
+def test_a_lazy_array_of_bodies_has_the_same_fragility(noisy, by_bodies):
+    lazy = rocking.fragility(noisy[:3], rocking.RigidBody.from_size(WIDTH.chunk(w=1), HEIGHT), **OPTIONS)
+    assert lazy.fraction.chunks == ((2,), (1, 1), (3,), (6,))
     found = lazy.compute()
-    xr.testing.assert_allclose(found, plain, rtol=1e-11)  # bodies of a chunk share the sizes of their Taylor steps
-    np.testing.assert_array_equal(found.overturned, plain.overturned)
-    assert {name: equal_values(one.attrs, plain[name].attrs) for name, one in found.variables.items()} == dict.fromkeys(
-        plain.variables, True
-    )
+    xr.testing.assert_allclose(found, by_bodies, rtol=1e-11)  # bodies of a chunk share the sizes of their Taylor steps
+    np.testing.assert_array_equal(found.overturned, by_bodies.overturned)
+    assert all(equal_values(one.attrs, by_bodies[name].attrs) for name, one in found.variables.items())
 
 
-def test_bodies_of_another_inertia_are_blocks_of_the_same_alpha_and_p():
-    options = {"intensity": np.geomspace(1.0, 40.0, 6)}
-    motions = [noise(seed) for seed in range(3)]
+def test_bodies_of_another_inertia_are_blocks_of_the_same_alpha_and_p(noisy):
     body = rocking.RigidBody(0.2, 0.2, [0.8, 1.0], gyration=0.3)
-    found = rocking.fragility(motions, body, **options)
+    found = rocking.fragility(noisy[:3], body, **OPTIONS)
+    edge = body.right
     for k in range(2):
-        edge = body.right
-        block = rocking.EquivalentBlock(
-            float(edge.alpha[k]), float(edge.frequency_parameter[k]), restitution=float(edge.restitution[k])
-        )
-        one = rocking.fragility(motions, block, **options)
+        alpha, p, eta = (float(each[k]) for each in (edge.alpha, edge.frequency_parameter, edge.restitution))
+        one = rocking.fragility(noisy[:3], rocking.EquivalentBlock(alpha, p, restitution=eta), **OPTIONS)
         np.testing.assert_array_equal(found.overturned.isel(dim_0=k), one.overturned)
         np.testing.assert_allclose(found.peak_rotation.isel(dim_0=k), one.peak_rotation, rtol=1e-9)
 
 
-def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image():
-    motions, levels = [noise(seed) for seed in range(3)], np.geomspace(1.0, 40.0, 6)
+def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image(noisy):
+    motions, levels = noisy[:3], OPTIONS["intensity"]
     body = rocking.RigidBody([0.2, 0.3], [0.3, 0.2], 1.0)  # mirror images of each other
     found = rocking.fragility(motions, body, intensity=levels, restitution=0.9)
     assert found.record.values.tolist()[:2] == [motions[0].name, f"{motions[0].name}, mirrored"]
@@ -267,10 +212,10 @@ def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image(
         one = rocking.RigidBody(*((0.2, 0.3), (0.3, 0.2))[k], 1.0)
         for n, motion in enumerate(motions):
             scale = levels / motion.peak_acceleration
-            for sign in (0, 1):
-                given = motion if sign == 0 else rocking.Record(-motion.acceleration, motion.time_step, "m/s2")
+            for place, sign in enumerate((1.0, -1.0)):
+                given = rocking.Record(sign * motion.acceleration, motion.time_step, "m/s2")
                 outcome = one.response(given, scale=scale, restitution=0.9).outcome
-                np.testing.assert_array_equal(found.outcome.isel(dim_0=k, record=2 * n + sign), outcome)
+                np.testing.assert_array_equal(found.outcome.isel(dim_0=k, record=2 * n + place), outcome)
     # the mirror image of a body under that of a record
     np.testing.assert_array_equal(found.overturned[0, :, ::2], found.overturned[1, :, 1::2])
     np.testing.assert_allclose(found.fraction, found.overturned.mean("record"))
@@ -279,8 +224,8 @@ def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image(
     assert found.uplift_acceleration.values.tolist() == body.uplift_acceleration.tolist()
 
 
-def test_an_object_has_the_fragility_of_each_of_its_directions():
-    motions, levels = [noise(seed) for seed in range(3)], [2.0, 6.0, 18.0]
+def test_an_object_has_the_fragility_of_each_of_its_directions(noisy):
+    motions, levels = noisy[:3], [2.0, 6.0, 18.0]
     box = rocking.Object("box", width=0.4, depth=0.6, height=1.6, restitution=0.8)
     found = rocking.fragility(motions, box, intensity=levels)
     assert found.direction.values.tolist() == ["width", "depth"]
@@ -291,20 +236,100 @@ def test_an_object_has_the_fragility_of_each_of_its_directions():
     assert rocking.fragility(motions, leaning, intensity=levels).sizes["record"] == 6
 
 
-@pytest.mark.parametrize(
-    ("body", "allowed"),
-    [
-        (5, "rocking.Object"),
-        ([rocking.RigidBody(0.1, 0.1, 0.8)], "rocking.Object"),
-        (rocking.RigidBody.from_size(WIDTH.rename(w="record"), 1.6), "dimensions other than intensity, record"),
-    ],
-)
-def test_bodies_without_a_fragility_are_refused(body, allowed):
-    with pytest.raises(InvalidArgumentError, match=allowed):
-        rocking.fragility([noise(0)], body, intensity=[1.0, 2.0])
+MOTIONS = [noise(seed) for seed in range(3)]
+TWO = [BLOCK, rocking.Block(0.8, 4.0)]
 
 
-@pytest.mark.parametrize("measure", ["pgv_ratio", "frequency_ratio"])
-def test_measures_of_one_slenderness_angle_are_refused_for_two_edges(measure):
-    with pytest.raises(InvalidArgumentError, match="two different edges"):
-        rocking.fragility([noise(0)], rocking.RigidBody(0.1, 0.2, 0.8), intensity=[1.0], measure=measure)
+def outcomes_of(levels, measure="pga"):
+    suite = check_suite(MOTIONS, TWO, levels, measure, "momentum")
+    return with_margins(suite_outcomes(suite), suite)
+
+
+def test_margins_do_not_depend_on_the_levels_and_lie_below_those_that_overturn():
+    coarse, fine = (outcomes_of(np.geomspace(1.0, 40.0, points)) for points in (6, 20))
+    exact = [[overturning_scale(record, block) for record in MOTIONS] for block in TWO]
+    for outcomes in (coarse, fine):
+        overturned = outcomes["overturned"].values.astype(bool)
+        levels = np.where(overturned, outcomes["intensity"].values[:, None], np.inf).min(axis=1)
+        assert np.isfinite(levels).all()
+        assert (outcomes["overturning_intensity"].values < levels).all()
+        margins = record_margins(outcomes)
+        np.testing.assert_allclose(margins["overturning_scale"], exact, rtol=2e-6)
+        stronger = outcomes["intensity"] > outcomes["overturning_intensity"]
+        survived = ((outcomes["overturned"] == 0) & stronger).sum("intensity").transpose("block", "record")
+        np.testing.assert_array_equal(margins["levels_survived_above"], survived)
+        pga = [record.peak_acceleration for record in MOTIONS]
+        np.testing.assert_allclose(outcomes["overturning_intensity"], margins["overturning_scale"] * pga, rtol=1e-12)
+
+
+def test_a_block_that_survives_all_levels_has_no_margin():
+    outcomes = outcomes_of([0.5, 1.0])
+    assert outcomes["overturning_intensity"].isnull().all()
+    margins = record_margins(outcomes)
+    assert margins["overturning_scale"].isnull().all()
+    assert not margins["levels_survived_above"].any()
+
+
+def test_the_largest_frequency_ratio_at_which_it_overturns_is_the_mildest():
+    outcomes = outcomes_of(np.geomspace(0.3, 30.0, 8), "frequency_ratio")
+    margins = record_margins(outcomes)
+    found, overturned = outcomes["overturning_intensity"].values, outcomes["overturned"].values.astype(bool)
+    assert np.isfinite(found).any()
+    levels = outcomes["intensity"].values
+    for k, n in np.argwhere(np.isfinite(found)):
+        assert found[k, n] >= levels[overturned[k, :, n]].max()
+        around = found[k, n] * np.array([1.0 - 1e-7, 1.0 + 1e-5])
+        near = check_suite(MOTIONS[n], TWO[k], around, "frequency_ratio", "momentum")
+        assert suite_outcomes(near)["overturned"].values.ravel().tolist() == [1, 0]
+        assert margins["overturning_scale"][k, n] == 1.0
+        survived = ~overturned[k, :, n] & (levels < found[k, n])
+        assert margins["levels_survived_above"][k, n] == survived.sum()
+
+
+BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.2, 1.0, gravity=3.7)]
+FEW_LEVELS = np.array([1.0, 2.0, 3.0, 4.0])
+
+
+def with_vertical(seed: int, share: float = 0.5) -> rocking.Record:
+    record = noise(seed)
+    a = record.acceleration
+    return rocking.Record(a, record.time_step, "m/s2", name=f"noise {seed}", vertical=share * np.roll(a, 7))
+
+
+@pytest.mark.parametrize("measure", ["pga", "frequency_ratio"])
+def test_outcomes_are_those_of_the_single_blocks(measure: str) -> None:
+    records = [with_vertical(1), noise(2)]
+    found = rocking.fragility(records, BLOCKS, intensity=FEW_LEVELS, measure=measure)
+    for place in np.ndindex(2, 4, 2):
+        body, level, record = BLOCKS[place[0]], FEW_LEVELS[place[1]], records[place[2]]
+        eta = body.inelastic_restitution
+        if measure == "frequency_ratio":
+            own = 2.0 * np.pi / (record.mean_period * body.frequency_parameter)
+            size = body.half_diagonal * (level / own) ** 2
+            body = rocking.Block.from_slenderness_angle(body.alpha, size, gravity=body.gravity)
+        alone = body.response(record, scale=float(found["scale"].values[place]), restitution=eta, thresholds=False)
+        assert found["overturned"].values[place] == alone.overturned
+        assert found["peak_rotation"].values[place] == pytest.approx(alone.peak_rotation, rel=1e-6, nan_ok=True)
+
+
+def test_a_level_at_which_a_body_would_fly_is_refused() -> None:
+    record = with_vertical(1, share=-1.0)
+    flies = STANDARD_GRAVITY / -float(record.vertical.min()) * record.peak_acceleration
+    rocking.fragility(record, BLOCKS[0], intensity=[1.0, 0.999 * flies])
+    with pytest.raises(InvalidArgumentError, match=r"`intensity` = .* factor of noise 1 is below .* -g at .* s"):
+        rocking.fragility(record, BLOCKS[0], intensity=[1.0, 1.001 * flies])
+    with pytest.raises(InvalidArgumentError, match="`intensity`"):
+        rocking.suites.suite_sensitivity(record, BLOCKS[0], intensity=[1.001 * flies])
+
+
+def test_the_vertical_component_is_never_another_file(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.csv").write_text("time_s,NS_g,up\n0,1,4\n0.5,2,5\n1,3,6\n")
+    (tmp_path / "up").write_text("unit: g\ndt: 0.5\n7\n8\n9\n")
+    files = RecordFiles(tmp_path, "*.csv", "g", None, "NS_g", "up", None)
+    (path,) = files.paths()
+    np.testing.assert_allclose(files.read(path).vertical, STANDARD_GRAVITY * np.array([4.0, 5.0, 6.0]), rtol=1e-15)
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'a.csv' .* allowed: a component of a.csv"):
+        replace(files, vertical="a.csv").read(path)
+    with pytest.raises(InvalidArgumentError, match=r"`path` = .*none.csv.*: no such file"):
+        files.read(tmp_path / "none.csv")

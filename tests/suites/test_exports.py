@@ -1,11 +1,13 @@
-"""Fragility models in NRML 0.5, read with the rules of OpenQuake's reader."""
+"""A fragility in files: CSV, JSON, NRML 0.5 by the rules of OpenQuake's reader, components of pelicun."""
 
+import csv
 import io
+import json
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from scipy.stats import lognorm
+from scipy.stats import lognorm, norm
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
@@ -85,12 +87,49 @@ def test_below_the_lowest_level_a_probability_is_not_cut_off(found, tmp_path):
     assert curve(lowest) > 0.5
 
 
+def test_three_files_hold_the_fractions(found, tmp_path):
+    found = found.isel(block=1)
+    for ending in ("csv", "json", "xml"):
+        rocking.suites.write_fragility(found, tmp_path / f"curves.{ending}")
+    expected = found["fraction"].values
+    with (tmp_path / "curves.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["fraction"]) for row in rows] == expected.tolist()
+    assert {float(row["width"]) for row in rows} == {0.3}
+    content = json.loads((tmp_path / "curves.json").read_text(), parse_constant=pytest.fail)
+    assert content["levels"]["fraction"] == expected.tolist()
+    assert (content["measure"], content["unit"]) == ("pga", "m s-2")
+    assert content["curves"]["median_intensity"] == found["median_intensity"].values.tolist()
+    mild = rocking.fragility(noise(1), BLOCKS[1], intensity=[0.1, 0.2])
+    rocking.suites.write_fragility(mild, tmp_path / "mild.json")  # a curve that does not exist is null
+    assert json.loads((tmp_path / "mild.json").read_text())["curves"]["median_intensity"] == [None, None]
+    (curves,) = read(tmp_path / "curves.xml").values()
+    np.testing.assert_allclose(curves["overturns"](LEVELS / 9.80665), expected, atol=1e-8)
+
+
+def test_components_of_pelicun_are_the_fits_over_g(found, tmp_path):
+    rocking.suites.write_fragility(found, tmp_path / "blocks.pelicun.csv")
+    with (tmp_path / "blocks.pelicun.csv").open(newline="") as text:
+        rows = list(csv.DictReader(text))
+    fits = found["median_intensity"].sel(model="lognormal").values.ravel() / 9.80665
+    assert [row["ID"] for row in rows] == ["block.1", "block.2"]
+    assert {(row["Demand-Type"], row["Demand-Unit"]) for row in rows} == {("Peak Floor Acceleration", "g")}
+    np.testing.assert_allclose([float(row["LS2-Theta_0"]) for row in rows], fits, rtol=1e-9)
+    for row, block in zip(rows, BLOCKS, strict=True):
+        uplift = block.uplift_acceleration / 9.80665
+        assert float(row["LS1-Theta_0"]) == pytest.approx(uplift, rel=0.2)  # a step between two levels
+        assert float(row["LS1-Theta_1"]) == 0.001
+
+
 def test_refusals(found, tmp_path):
     strong = rocking.fragility(noise(1), BLOCKS, intensity=[100.0, 200.0])
     with pytest.raises(InvalidArgumentError, match="below the lowest level"):
         write_nrml(strong, tmp_path / "model.xml", format="lognormal")
-    with pytest.raises(InvalidArgumentError, match="pga or pgv"):
-        write_nrml(found.assign_attrs(measure="pga_ratio"), tmp_path / "model.xml")
+    for write in (write_nrml, rocking.suites.write_pelicun):
+        with pytest.raises(InvalidArgumentError, match="pga or pgv"):
+            write(found.assign_attrs(measure="pga_ratio"), tmp_path / "model.xml")
+    with pytest.raises(InvalidArgumentError, match=r"\.csv"):
+        rocking.suites.write_fragility(found, tmp_path / "curves.txt")
     with pytest.raises(InvalidArgumentError, match="format"):
         write_nrml(found, tmp_path / "model.xml", format="logistic")
 
@@ -102,3 +141,31 @@ def test_a_fitted_curve_that_is_not_small_at_its_lowest_level_warns(found):
     with pytest.warns(UserWarning, match="at noDamageLimit, the lowest level, the fitted") as warned:
         write_nrml(weak, io.BytesIO(), format="lognormal")
     assert {str(one.message).partition(":")[0] for one in warned} == {"block-1 rocks", "block-1 overturns"}
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_pelicun_damages_the_shares_of_the_curves(found, tmp_path):
+    """Under a floor whose acceleration has a median of 0.5 g and a dispersion of 0.4."""
+    path, median, beta = tmp_path / "blocks.pelicun.csv", 0.5, 0.4
+    rocking.suites.write_pelicun(found, path)
+    pd = pytest.importorskip("pandas")
+    assessment = pytest.importorskip("pelicun.assessment")
+    file_io = pytest.importorskip("pelicun.file_io")
+    one = assessment.Assessment({"PrintLog": False, "Seed": 1})
+    demand = {"Theta_0": [median], "Theta_1": [beta], "Family": ["lognormal"], "Units": ["g"]}
+    marginals = pd.DataFrame(demand, index=pd.MultiIndex.from_tuples([("PFA", "0", "1")]))
+    one.demand.load_model({"marginals": marginals})
+    one.demand.generate_sample({"SampleSize": 20_000})
+    one.stories = 1
+    place = {"Units": "ea", "Location": "1", "Direction": "1", "Theta_0": 1.0, "Blocks": 1}
+    one.asset.load_cmp_model({"marginals": pd.DataFrame([place] * 2, index=["block.1", "block.2"])})
+    one.asset.generate_cmp_sample(20_000)
+    read = file_io.load_data(str(path), reindex=False, unit_conversion_factors=one.unit_conversion_factors)
+    one.damage.load_model_parameters([read], {"block.1", "block.2"})
+    one.damage.calculate()
+    shares = one.damage.ds_model.probabilities()
+    with path.open(newline="") as text:
+        for row in csv.DictReader(text):
+            ratio, spread = median / float(row["LS2-Theta_0"]), np.hypot(beta, float(row["LS2-Theta_1"]))
+            share = shares.loc[(row["ID"], "1", "1", "0", "1"), 2]
+            assert share == pytest.approx(norm.cdf(np.log(ratio) / spread), abs=0.015)
