@@ -3,6 +3,7 @@
 import shutil
 import time
 from pathlib import Path
+from urllib.parse import urlencode
 
 import numpy as np
 import pytest
@@ -30,8 +31,31 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
 """Names of the data sets in the results."""
 
 
+JSON, CSV, NC = "application/json", "text/csv", "application/x-netcdf"
+
 NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
 """A record of the workflow."""
+
+
+POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+BLOCK = {"pulse": "sine", "width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
+
+
+def of_point(*left_out, **more):
+    """The parameters of the point but some, and others."""
+    return {name: value for name, value in POINT.items() if name not in left_out} | more
+
+
+QUERIES = {
+    "/v1/response": POINT,
+    "/v1/blocks/response": BLOCK | {"method": "solver"},
+    "/v1/thresholds": of_point("slenderness"),
+    "/v1/spectrum": of_point("frequency_ratio", points=20),
+    "/v1/history": of_point(samples=20, duration=9.0),
+    "/v1/overturning": of_point("slenderness", "frequency_ratio"),
+    "/v1/map": of_point("slenderness", "frequency_ratio", columns=3, rows=3),
+}
+"""An ordinary query of each route that computes the response to a pulse."""
 
 
 @pytest.fixture(scope="session")
@@ -78,6 +102,14 @@ def own_results(results, tmp_path):
     return shutil.copytree(results, tmp_path / "results")
 
 
+def until(condition, seconds=20):
+    """Wait for what another thread does."""
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert condition()
+
+
 def client_of(results, **settings):
     """A client of another service."""
     return TestClient(create_app(Settings(results=results, **settings)), raise_server_exceptions=False)
@@ -89,6 +121,12 @@ def health_of(client):
     while (health := client.get("/health").json())["unchecked"] and time.monotonic() < deadline:
         time.sleep(0.01)
     return health
+
+
+def post(client, route, content, media_type=JSON, **query):
+    """The response to a body; the route may have a query of its own."""
+    address = f"{route}{'&' if '?' in route else '?'}{urlencode(query)}"
+    return client.post(address, content=content, headers={"content-type": media_type})
 
 
 def metrics_of(client):

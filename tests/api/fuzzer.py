@@ -12,7 +12,7 @@ import random
 import time
 from collections import Counter
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from urllib.parse import quote, unquote_to_bytes, urlencode
 
 import numpy as np
@@ -21,6 +21,7 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 from rocking._excitation.pulses import PULSE_NAMES
+from tests.api.conftest import POINT, QUERIES
 from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0
@@ -38,52 +39,9 @@ KINDS = {"curve": 55, "overturning": 1, "post": 16, "dataset": 20, "page": 6, "n
 EXTREME_KINDS = {"table": 1, "step": 1}
 """Tables of blocks with long headers and arithmetic in units, and records with extreme steps."""
 
-NUMBERS = {
-    "slenderness": (1e-9, 3.0),
-    "frequency_ratio": (1e-6, 1e6),
-    "frequency_ratio_min": (0.1, 3.0),
-    "frequency_ratio_max": (3.0, 30.0),
-    "slenderness_min": (0.01, 0.4),
-    "slenderness_max": (0.5, 1.5),
-    "restitution": (0.5, 1.0),
-    "alpha_deg": (1e-6, 89.9),
-    "absolute_tolerance": (1e-9, 1.0),
-    "highest": (1.1, 100.0),
-    "duration": (0.1, 200.0),
-    "width": (1e-2, 10.0),
-    "height": (1e-2, 10.0),
-    "offset": (1e-3, 0.1),
-    "mass_height": (1e-2, 10.0),
-    "peak_acceleration": (1e-2, 100.0),
-    "period": (1e-2, 10.0),
-    "gravity": (1.0, 30.0),
-}
-COUNTS = {"points": 200, "samples": 200, "columns": 30, "rows": 30}
-WORDS = {
-    "pulse": [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)],
-    "method": ["auto", "cube", "solver"],
-    "format": ["json", "csv", "nc"],
-    "contact": ["true", "false"],
-}
-GROUPS = ["pulse", "slenderness", "frequency_ratio", "restitution"]
-ROUTES = {
-    "/v1/response": (GROUPS, ["alpha_deg", "method", "absolute_tolerance"]),
-    "/v1/blocks/response": (
-        ["pulse", "width", "height", "peak_acceleration", "period"],
-        ["restitution", "gravity", "method", "absolute_tolerance", "offset", "mass_height"],
-    ),
-    "/v1/thresholds": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest"]),
-    "/v1/spectrum": (
-        ["pulse", "slenderness", "restitution", "points"],
-        ["alpha_deg", "method", "absolute_tolerance", "frequency_ratio_min", "frequency_ratio_max", "format"],
-    ),
-    "/v1/map": (
-        ["pulse", "restitution", "columns", "rows"],
-        ["alpha_deg", "frequency_ratio_min", "frequency_ratio_max", "slenderness_min", "slenderness_max", "format"],
-    ),
-    "/v1/overturning": (["pulse", "restitution"], ["alpha_deg", "format"]),
-    "/v1/history": ([*GROUPS, "samples"], ["alpha_deg", "duration", "contact", "format"]),
-}
+OPTIONS = {"alpha_deg": 20.0, "method": "solver", "absolute_tolerance": 1e-3, "format": "csv", "highest": 9.0}
+"""Parameters of some routes, which a query has now and then."""
+
 PAGES = [
     *("/", "/docs", "/openapi.json", "/health", "/ready", "/metrics", "/v1/datasets", "/v1/datasets.zip", "/static/"),
     "/static/explorer/main.js",
@@ -151,9 +109,8 @@ def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
     kind = draw.choices([*kinds], [*kinds.values()])[0]
     method, query, body, headers = "GET", "", b"", []
     if kind in ("curve", "overturning"):
-        routes = [route for route in ROUTES if (route == "/v1/overturning") == (kind == "overturning")]
-        path = draw.choice(routes)
-        query = _query(draw, *ROUTES[path])
+        path = draw.choice([one for one in QUERIES if (one == "/v1/overturning") == (kind == "overturning")])
+        query = _query(draw, path)
     elif kind == "post":
         method, path = "POST", "/v1/response"
         body, media_type, query = _body(draw)
@@ -176,12 +133,12 @@ def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
     return Sent(method, path, query, headers, body, leaves=draw.random() < 0.03)
 
 
-def _query(draw: random.Random, required: list[str], optional: list[str]) -> str:
-    names = [*required, *(name for name in optional if draw.random() < 0.3)]
-    given = [(name, _value(draw, name)) for name in names]
+def _query(draw: random.Random, route: str) -> str:
+    """An ordinary query with other numbers, of which some parts are left out, given twice, unknown or hostile."""
+    query = QUERIES[route] | {name: value for name, value in OPTIONS.items() if draw.random() < 0.15}
+    given = [(name, _value(draw, name, value)) for name, value in query.items()]
     for _ in range(draw.choices([0, 1, 2], [5, 4, 1])[0]):
         place = draw.randrange(len(given))
-        name = given[place][0]
         match draw.randrange(5):
             case 0 if len(given) > 1:
                 del given[place]
@@ -190,45 +147,38 @@ def _query(draw: random.Random, required: list[str], optional: list[str]) -> str
             case 2:
                 given.append((draw.choice(HOSTILE), "1"))
             case _:
-                given[place] = name, draw.choice(HOSTILE)
+                given[place] = given[place][0], draw.choice(HOSTILE)
     return urlencode(given, errors="surrogatepass")
 
 
-def _value(draw: random.Random, name: str) -> str:
-    if name in WORDS:
-        return draw.choice(WORDS[name])
-    if name in COUNTS:
-        return str(draw.choice([2, draw.randrange(2, COUNTS[name]), 10**6]))
-    return repr(_number(draw, name))
-
-
-def _number(draw: random.Random, name: str) -> float:
-    low, high = NUMBERS[name]
-    near = draw.uniform(max(low, 0.1), min(high, 10.0)) if max(low, 0.1) < min(high, 10.0) else high
-    return draw.choices([near, draw.choice([low, high]), low * (high / low) ** draw.random()], [6, 1, 2])[0]
+def _value(draw: random.Random, name: str, value: Any) -> str:
+    """A value near the ordinary one, or far from it."""
+    if name == "pulse":
+        return draw.choice(["", "-"]) + draw.choice(PULSE_NAMES)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int):
+        return str(draw.choice([2, value, 10**6]))
+    factor = draw.choices([1.0, draw.uniform(0.5, 1.1), 10.0 ** draw.randint(-9, 9)], [4, 4, 1])[0]
+    return repr(value * factor)
 
 
 def _name(draw: random.Random, names: list[str]) -> str:
-    name = draw.choice(
-        [*names, draw.choice(HOSTILE), "spectra/sine/" + draw.choice(HOSTILE), "a/" * 600 + "b", "a" * 256]
-    )
-    suffix = draw.choice(
-        ["", ".nc", ".nc", ".zarr/.zmetadata", ".zarr/peak_rotation/0.0.0", ".zarr/" + draw.choice(HOSTILE)]
-    )
+    hostile = draw.choice(HOSTILE)
+    name = draw.choice([*names, hostile, "spectra/sine/" + hostile, "a/" * 600 + "b", "a" * 256])
+    suffix = draw.choice(["", ".nc", ".nc", ".zarr/.zmetadata", ".zarr/peak_rotation/0.0.0", ".zarr/" + hostile])
     return quote(name + suffix, safe="/%", errors="surrogatepass")
 
 
 def _body(draw: random.Random) -> tuple[bytes, str, str]:
     size = draw.choice([0, 1, 3, 300])
-    columns = {name: [_number(draw, name) for _ in range(size)] for name in GROUPS[1:]}
-    options = {"pulse": _value(draw, "pulse")} | {
-        name: _value(draw, name) for name in ("method", "alpha_deg", "absolute_tolerance") if draw.random() < 0.2
-    }
+    groups = {name: value for name, value in POINT.items() if name != "pulse"}
+    columns = {name: [float(_value(draw, name, value)) for _ in range(size)] for name, value in groups.items()}
+    options = {"pulse": "sine"} | {name: value for name, value in OPTIONS.items() if draw.random() < 0.1}
     form = draw.choice(["json", "csv", "nc"])
     if form == "json":
         odd = draw.choice([None, "1" * 400, [], {}, [[1]], True, 10**400, -1, "x", 1e308])
-        numbers = {name: float(value) if name in NUMBERS else value for name, value in options.items()}
-        content = columns | numbers | ({draw.choice([*GROUPS, "x"]): odd} if draw.random() < 0.3 else {})
+        content = columns | options | ({draw.choice([*POINT, "x"]): odd} if draw.random() < 0.3 else {})
         body, media_type, query = json.dumps(content).encode(), "application/json", ""
     else:
         media_type, query = {"csv": "text/csv", "nc": "application/x-netcdf"}[form], urlencode(options)
@@ -236,9 +186,8 @@ def _body(draw: random.Random) -> tuple[bytes, str, str]:
             lines = [",".join(columns), *(",".join(map(repr, row)) for row in zip(*columns.values(), strict=True))]
             body = "\n".join(lines).encode()
         else:
-            body = bytes(
-                xr.Dataset({name: ("point", np.array(c)) for name, c in columns.items()}).to_netcdf(engine="scipy")
-            )
+            table = xr.Dataset({name: ("point", np.array(values)) for name, values in columns.items()})
+            body = bytes(table.to_netcdf(engine="scipy"))
     if body and draw.random() < 0.3:
         damaged = bytearray(body)
         for _ in range(draw.randrange(1, 5)):

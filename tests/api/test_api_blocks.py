@@ -8,13 +8,11 @@ from rocking_api.routers import blocks
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
-from tests.api.conftest import assert_problem
-
-QUERY = {"width": 0.4, "height": 1.6, "pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
+from tests.api.conftest import BLOCK, assert_problem
 
 
 def get_response(client, **changes):
-    return client.get("/v1/blocks/response", params=QUERY | changes)
+    return client.get("/v1/blocks/response", params=BLOCK | changes)
 
 
 LIFTS = {"width": 1.6, "peak_acceleration": 60.0, "period": 0.1, "restitution": 0.9}
@@ -36,7 +34,7 @@ LIFTS = {"width": 1.6, "peak_acceleration": 60.0, "period": 0.1, "restitution": 
     ],
 )
 def test_numbers_warnings_and_margins_are_those_of_the_package(client, changes, words, overturned):
-    given = QUERY | changes
+    given = BLOCK | changes
     block = rocking.Block(given["width"], given["height"], **{k: given[k] for k in ("gravity",) if k in given})
     motion = {name: given[name] for name in ("peak_acceleration", "period", "restitution") if name in given}
     expected = block.response(given["pulse"], **motion)

@@ -13,12 +13,11 @@ import pytest
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
-from tests.api.conftest import NAMES, assert_problem, client_of, health_of
+from tests.api.conftest import NAMES, POINT, assert_problem, client_of, health_of
 from tests.datasets.test_lookup_files import UNREADABLE, folder_forbidden, folder_loop, replaced
 
 NAME, CURVES = "spectra/sine/eta-0.85", "overturning/sine/eta-0.85"
 URL = f"/v1/datasets/{NAME}.nc"
-POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 FORMS = ("", ".nc", ".zarr/.zmetadata")
 
 

@@ -13,11 +13,10 @@ from rocking_api.http.encoding import negotiated_form
 from rocking_api.routers.object_page import EXAMPLES, SITE
 from rocking_api.routers.pages import PAGES
 
-from tests.api.conftest import assert_problem, client_of
+from tests.api.conftest import POINT, assert_problem, client_of
 
 STATIC = Path(rocking_api.__file__).parent / "static"
 BROWSER = "text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"
-POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 DATASET, SUITE = "/v1/datasets/spectra/sine/eta-0.85", "/v1/suites/demonstration"
 SPECTRUM = "/v1/spectrum?pulse=sine&slenderness=0.6&restitution=0.85"
 

@@ -12,13 +12,11 @@ from rocking._datasets.cube import write_dataset
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra
-from tests.api.conftest import assert_problem, client_of
-
-QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+from tests.api.conftest import POINT, assert_problem, client_of
 
 
 def get_response(client, **changes):
-    return client.get("/v1/response", params=QUERY | changes)
+    return client.get("/v1/response", params=POINT | changes)
 
 
 def test_a_response_is_from_a_cube_or_the_solver_as_asked(client):
@@ -29,14 +27,14 @@ def test_a_response_is_from_a_cube_or_the_solver_as_asked(client):
     assert result["outcome"] == Outcome(expected.outcome).name == "RECOVERS"
     assert result["impacts"] == expected.impacts
     assert not result["overturned"]
-    assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
+    assert result["query"] == POINT | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
     assert result["data_version"] == client.get("/v1/datasets/spectra/sine/eta-0.85").json()["sha256"]
     result = get_response(client, method="solver").json()
     assert (result["source"], result["data_version"]) == ("solver", None)
     assert result["peak_rotation"] == expected.peak_rotation
     assert 0 < result["error_bound"] < 1e-9
     for changes in ({"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}):  # no cube applies
-        solved = {key: value for key, value in (QUERY | changes).items() if key != "pulse"}
+        solved = {key: value for key, value in (POINT | changes).items() if key != "pulse"}
         result = get_response(client, **changes).json()
         assert result["source"] == "solver"
         assert result["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **solved).peak_rotation
@@ -118,7 +116,7 @@ def test_numbers_broadcast_and_parameters_may_be_repeated_in_the_url(client):
 
 
 def test_batches_in_chunks_are_equal(client, monkeypatch):
-    many = QUERY | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
+    many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
     whole = client.post("/v1/response", json=many).json()
     monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
     assert client.post("/v1/response", json=many).json() == whole
