@@ -1,9 +1,11 @@
 """A small results folder, and the service over it."""
 
+import json
 import shutil
 import time
 from pathlib import Path
-from urllib.parse import urlencode
+from typing import NamedTuple
+from urllib.parse import quote, urlencode
 
 import numpy as np
 import pytest
@@ -151,6 +153,48 @@ def assert_problem(response, status, parameter=None):
         assert problem["parameter"] == parameter
         assert problem["allowed"]
     return problem
+
+
+class Example(NamedTuple):
+    """An example of the description of the service."""
+
+    path: str
+    operation: dict
+    method: str
+    url: str
+    query: dict
+    media_type: str | None
+    body: str
+
+
+def examples_of(description):
+    """Yield all of them: of a parameter what a page fills in, of a body each of its types."""
+    for path, methods in description["paths"].items():
+        for method, operation in methods.items():
+            url, query = path, {}
+            for parameter in operation.get("parameters", []):
+                value, name = example_of(parameter), parameter["name"]
+                assert value is not None or not parameter["required"], f"{path}: {name} has no example"
+                if parameter["in"] == "path":
+                    url = url.replace(f"{{{name}}}", quote(value, safe="/."))
+                elif value is not None:
+                    query[name] = value
+            for media_type, body in operation.get("requestBody", {}).get("content", {None: {"example": ""}}).items():
+                if body.get("schema", {}).get("format") != "binary":
+                    assert "example" in body, f"{path}: {media_type} has no example"
+                    content = json.dumps(body["example"]) if media_type == JSON else body["example"]
+                    yield Example(path, operation, method.upper(), url, query, media_type, content)
+
+
+def example_of(parameter):
+    """The example, the default, or the first of the allowed values."""
+    schema = parameter["schema"]
+    for examples in (parameter.get("examples"), schema.get("examples")):
+        if examples:
+            return examples[0] if isinstance(examples, list) else next(iter(examples.values()))["value"]
+    if schema.get("default") is not None:
+        return schema["default"]
+    return schema["enum"][0] if parameter.get("required") and "enum" in schema else None
 
 
 if __name__ == "__main__":

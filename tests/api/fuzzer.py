@@ -9,6 +9,7 @@ import io
 import json
 import logging
 import random
+import re
 import time
 from collections import Counter
 from pathlib import Path
@@ -21,7 +22,7 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 from rocking._excitation.pulses import PULSE_NAMES
-from tests.api.conftest import POINT, QUERIES
+from tests.api.conftest import POINT, QUERIES, Example, examples_of
 from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0
@@ -36,8 +37,12 @@ SLOW_HEALTH, BATCH = 1.0, 25
 KINDS = {"curve": 55, "overturning": 1, "post": 16, "dataset": 20, "page": 6, "nowhere": 2, "record": 12, "long": 8}
 """Kinds of requests, and how often they are sent."""
 
-EXTREME_KINDS = {"table": 1, "step": 1}
-"""Tables of blocks with long headers and arithmetic in units, and records with extreme steps."""
+EXTREME_KINDS = {"table": 1, "step": 1, "number": 4}
+"""Tables of blocks with long headers and arithmetic in units, records with extreme steps, and any extreme number."""
+
+EXTREMES = [f"{sign}1e{power}" for power in (-300, -30, -12, -6, 6, 12, 30, 300) for sign in ("", "-")]
+EXTREMES += ["0", "nan", "1" + "0" * 400]
+A_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
 OPTIONS = {"alpha_deg": 20.0, "method": "solver", "absolute_tolerance": 1e-3, "format": "csv", "highest": 9.0}
 """Parameters of some routes, which a query has now and then."""
@@ -103,8 +108,8 @@ class Received(NamedTuple):
     seconds: float
 
 
-def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
-    """Request k of a seed; `names` are those of the data sets."""
+def request(seed: int, k: int, names: list[str], examples: list[Example], kinds: dict[str, int]) -> Sent:
+    """Request k of a seed; `names` are those of the data sets, `examples` those of the description."""
     draw = random.Random(f"{seed} {k}")
     kind = draw.choices([*kinds], [*kinds.values()])[0]
     method, query, body, headers = "GET", "", b"", []
@@ -115,6 +120,11 @@ def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
         method, path = "POST", "/v1/response"
         body, media_type, query = _body(draw)
         headers.append(("content-type", media_type))
+    elif kind == "number":
+        example = draw.choice(examples)
+        method, path, media_type = example.method, example.url, example.media_type
+        query, text = _with_extreme(draw, example)
+        body, headers = text.encode(), [("content-type", media_type)] if media_type else []
     elif kind in ("record", "long", "table", "step"):
         method, (path, query, body) = "POST", _file(draw, kind)
         headers.append(("content-type", "text/csv"))
@@ -131,6 +141,21 @@ def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
     chosen = draw.sample(list(HEADERS), draw.choices([0, 1, 2, 4], [5, 3, 2, 1])[0])
     headers += [(name, draw.choice(HEADERS[name])) for name in chosen]
     return Sent(method, path, query, headers, body, leaves=draw.random() < 0.03)
+
+
+def _with_extreme(draw: random.Random, example: Example) -> tuple[str, str]:
+    """Query and body of an example with an extreme number in place of one of its own."""
+    query, body = {name: str(value) for name, value in example.query.items()}, example.body
+    numbers = [name for name, value in query.items() if A_NUMBER.fullmatch(value)]
+    places = [place.span() for place in A_NUMBER.finditer(body)]
+    if places and draw.random() < 0.5 + 0.5 * (not numbers):
+        start, end = draw.choice(places)
+        body = body[:start] + draw.choice(EXTREMES) + body[end:]
+    elif numbers:
+        query[draw.choice(numbers)] = draw.choice(EXTREMES)
+    return urlencode(
+        {name: value.lower() if value in ("True", "False") else value for name, value in query.items()}
+    ), body
 
 
 def _query(draw: random.Random, route: str) -> str:
@@ -290,7 +315,7 @@ async def ask_all(
 ) -> tuple[Counter, list[str]]:
     """Statuses and faults of the responses, and errors that the service logged."""
     app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
-    names = app.state.service.cubes.catalogue.names()
+    names, examples = app.state.service.cubes.catalogue.names(), [*examples_of(app.openapi())]
     statuses: Counter = Counter()
     faults: list[str] = []
     left = iter(range(first, first + count))
@@ -301,7 +326,7 @@ async def ask_all(
 
     async def client():
         for k in left:
-            sent = request(seed, k, names, kinds)
+            sent = request(seed, k, names, examples, kinds)
             try:
                 got = await exchange(app, sent)
                 wrong = fault(sent, got)

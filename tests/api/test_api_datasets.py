@@ -228,14 +228,6 @@ def test_a_url_with_a_digest_yields_these_bytes_or_none(path, own_results):
         assert client.get(f"/v1/datasets/{CURVES}.nc", headers={"if-none-match": old}).content == content
 
 
-def test_a_damaged_file_is_refused(path, own_results):
-    content = path.read_bytes()
-    path.write_bytes(content[: len(content) // 2] + bytes(len(content) - len(content) // 2))
-    with client_of(own_results) as client:
-        for form in FORMS:
-            assert "damaged" in assert_problem(client.get(f"/v1/datasets/{NAME}{form}"), 503)["detail"]
-
-
 @pytest.mark.parametrize("make", UNREADABLE)
 def test_an_unreadable_file_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
     path.unlink()

@@ -6,15 +6,21 @@ import threading
 import time
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 import rocking_api.execution.evaluation
 from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
-from rocking_api.models.params import ResponseParams
+from rocking_api.models.batch import batch_of, parse_csv
+from rocking_api.models.params import LookupOptions, ResponseParams
+from rocking_api.models.pulses import MAX_SAMPLES
 from rocking_api.routers.response import get_response
 from starlette.requests import ClientDisconnect
 
 import rocking
+from rocking._base.errors import StoppedError
+from rocking._numba.cancellation import StopFlag
 from tests.api.conftest import CSV, POINT, QUERIES, assert_problem, client_of, metrics_of, of_point, post, until
+from tests.sampling import number
 
 BATCH = POINT | {"slenderness": [0.6, 0.7]}
 
@@ -200,6 +206,10 @@ def test_work_beyond_the_time_limit_is_504(results, monkeypatch):
     with client_of(results, max_seconds=0.2) as client:
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
         assert "0.2 s" in assert_problem(client.post("/v1/response", json=many), 504)["detail"]
+        samples = {"acceleration": np.random.default_rng(1).uniform(-1, 1, MAX_SAMPLES).tolist(), "period": 10.0}
+        for path in ("/v1/map", "/v1/overturning"):
+            given = {"pulse": samples, "restitution": 0.85, "alpha_deg": 20.0}
+            assert_problem(client.post(path, json=given), 504)
     with client_of(results, max_seconds=0.001) as client:
         hurried = client.post("/v1/assess?pga=3&period_min=0.1&period_max=2", json=objects)
         assert hurried.status_code in (503, 504)
@@ -236,3 +246,35 @@ def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
         longest, source = asyncio.run(scenario())
     assert source == "solver"
     assert longest < 0.1
+
+
+class Clock(StopFlag):
+    """Notes the processor time of the thread at each look at the flag, and sets it at one of them."""
+
+    def __init__(self, last=None):
+        super().__init__()
+        self.times = [time.thread_time()]
+        self.last = last
+
+    def check(self):
+        self.times.append(time.thread_time())
+        if len(self.times) == self.last:
+            self.set()
+        super().check()
+
+
+def test_a_table_of_a_million_points_is_read_whole_and_its_reading_can_be_stopped():
+    points, random = number(600_000, 1_000_000), np.random.default_rng(1)
+    table = {name: random.uniform(0.05, 0.95, points) for name in ("slenderness", "frequency_ratio")}
+    rows = zip(*(values.tolist() for values in table.values()), strict=True)
+    body = (",".join(table) + "\n" + "".join(f"{s!r},{w!r}\n" for s, w in rows)).encode()
+    clock, stopped = Clock(), Clock(last=5)
+    found = batch_of(LookupOptions(pulse="sine"), parse_csv(body, points, clock), {"restitution": 0.85}, points)
+    clock.times.append(time.thread_time())
+    for name, values in table.items():
+        np.testing.assert_array_equal(found.groups[name], values)
+    assert len(clock.times) > 50
+    assert max(np.diff(clock.times)) < 0.1
+    with pytest.raises(StoppedError):
+        parse_csv(body, points, stopped)
+    assert len(stopped.times) == 5

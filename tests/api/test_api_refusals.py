@@ -215,6 +215,9 @@ BODIES = [
     (FIVE + "&slenderness=0.4", "slenderness\n0.5\n", CSV, "slenderness"),
     (FIVE + "&restitution=0.4&frequency_ratio=x", "slenderness\n0.5\n", CSV, "frequency_ratio"),
     (FIVE + "&eta=0.4", "slenderness\n0.5\n", CSV, "eta"),
+    *((FIVE, body, CSV, "lines of at most") for body in ("slenderness," * 200, "slenderness\n" + "1" * 2000)),
+    (FIVE, "slenderness\n" + "0.5\n" * 10_000 + "x\n", CSV, "from line 10002"),
+    *((BATCH, GROUPS % f'1,"slenderness":{last}', JSON, "two values, the second in line 1") for last in ("[2]", 2)),
     *((FIVE, body, NC, "body") for body in ("\x89HDF\r\n", "CDF\x01\x00\x00")),
     (BLOCKS, json_of(blocks=[]), JSON, "blocks"),
     (BLOCKS, json_of(blocks=[{"width": 2, "peak_acceleration": 4, "period": 1}]), JSON, "blocks[0].height"),
@@ -244,7 +247,7 @@ BODIES = [
     (ASSESS, json_of(objects=OBJECTS, mesh="/etc/passwd"), JSON, "mesh"),
     (ASSESS, json_of(objects=[{"path": "/etc/passwd"}]), JSON, "objects"),
 ]
-"""Address, body, its type, and the parameter that is named, perhaps within another one."""
+"""Address, body, its type, and what is named: a parameter, perhaps within another one, or a reason."""
 
 
 @pytest.mark.parametrize(("route", "body", "media_type", "name"), BODIES, ids=range(len(BODIES)))

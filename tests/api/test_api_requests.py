@@ -18,7 +18,7 @@ def test_random_requests(results):
 
 @pytest.mark.alone
 @pytest.mark.slow
-def test_long_tables_arithmetic_in_units_and_extreme_steps(results):
-    statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=number(50, 1000), kinds=EXTREME_KINDS))
+def test_extreme_numbers_and_steps_long_tables_and_arithmetic_in_units(results):
+    statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=number(150, 9000), kinds=EXTREME_KINDS))
     assert not faults
-    assert "422" in statuses
+    assert {"200", "422"} <= set(statuses)

@@ -61,9 +61,3 @@ def test_a_range_without_nodes_is_named_by_its_parameter_in_its_unit(own_results
         part = client.get(URL, params=RANGES | {"alpha_deg_min": 30, "format": "csv"}).text
     assert (problem["value"], problem["allowed"]) == (value, allowed)
     assert part.count(f"\n{np.radians(30.0)},") == part.count("\n") - 1 > 0
-
-
-def test_the_format_is_one_that_is_offered(client):
-    assert client.get(URL, params=RANGES, headers={"accept": "application/json"}).content.startswith(b"CDF")
-    assert client.get(URL, params=RANGES, headers={"accept": "application/json, text/csv"}).text.startswith("alpha,")
-    assert client.get(URL, params={"format": "json"}).json()["allowed"] == "one of 'csv' or 'nc'"

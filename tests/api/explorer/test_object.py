@@ -94,12 +94,3 @@ def test_a_mesh_is_read_and_a_damaged_one_explained_beside_its_field(open_page):
     expect(page.locator("#file-problem")).to_contain_text("allowed: a mesh that trimesh reads")
     assert page.locator("#file").get_attribute("aria-invalid") == "true"
     assert "stale" in page.locator("#result").get_attribute("class")
-
-
-def test_a_row_of_the_objects_leads_to_its_directions(open_page):
-    page = open_page("/objects")
-    page.locator("#table").fill("object;width [cm];depth [cm];height [cm]\nslab;40;15;120\nvase;22;22;55")
-    page.locator("#ask").click()
-    page.locator("#ranking tbody tr", has_text="slab").first.get_by_role("link").click()
-    expect(page.locator("#dial-title")).to_have_text("slab at 0.3 g and 30 cm/s")
-    expect_answer(page, "90° (depth) and 270°", rocking.Object("slab", width=0.4, depth=0.15, height=1.2))
