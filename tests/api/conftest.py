@@ -155,6 +155,19 @@ def assert_problem(response, status, parameter=None):
     return problem
 
 
+def parts_of(schema, schemas, seen=None):
+    """Yield a schema of the description and all within it, also those that it names, once."""
+    seen = set() if seen is None else seen
+    name = schema.get("$ref", "").rpartition("/")[2] if isinstance(schema, dict) else ""
+    if name and name not in seen:
+        seen.add(name)
+        yield from parts_of(schemas[name], schemas, seen)
+    if isinstance(schema, dict):
+        yield schema
+    for one in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from parts_of(one, schemas, seen)
+
+
 class Example(NamedTuple):
     """An example of the description of the service."""
 

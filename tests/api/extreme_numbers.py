@@ -17,6 +17,7 @@ import resource
 import signal
 import sys
 import tempfile
+import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -168,20 +169,17 @@ VARIANTS = (
 MOTION = [round(math.sin(0.5 * k) * math.sin(0.05 * k), 6) for k in range(60)]
 SAMPLES = "acceleration [m/s2]\n" + "".join(f"{4.0 * value:.6f}\n" for value in MOTION)
 PULSE = {"acceleration": [0.0, 1.0, -0.5, 0.0], "time": [0.0, 1.0, 2.0, 4.0], "period": 2.0}
+GRID = {"low": 2.0, "high": 9.0, "points": 3}
 SUITE: dict[str, Any] = {
     "name": "extreme",
     "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
     "blocks": [{"width": 0.5, "height": 2.0}, {"width": 0.5, "height": 1.0}],
     "restitution": 0.85,
     "measure": "pga",
-    "intensity": {"low": 2.0, "high": 9.0, "points": 4},
+    "intensity": GRID,
     "demand": ["overturning", 0.5],
     "confidence": 0.9,
-    "map": {
-        "intensity": 6.0,
-        "half_diagonal": {"low": 0.5, "high": 5.0, "points": 3},
-        "alpha_deg": {"low": 6.0, "high": 24.0, "points": 3},
-    },
+    "map": {"intensity": 6.0, "half_diagonal": GRID, "alpha_deg": GRID},
     "hazard": {"intensity": [1.0, 20.0], "annual_rate": [1e-2, 1e-5]},
     "sensitivity": {"intensity": [4.0], "restitution_step": 0.05},
 }
@@ -212,10 +210,7 @@ class Walk:
         except LateError:
             ended = f"not ended after {SECONDS:g} s"
         except Exception as error:  # noqa: BLE001  (any other error is a fault)
-            place = error.__traceback__
-            while place is not None and place.tb_next is not None:
-                place = place.tb_next
-            ended = f"{error!r} in {place and f'{place.tb_frame.f_code.co_filename}:{place.tb_lineno}'}"
+            ended = f"{error!r} in {traceback.extract_tb(error.__traceback__)[-1]}"
         finally:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
         self.results[ended if ended in ("answered", "refused") else "faults"] += 1

@@ -12,6 +12,7 @@ import random
 import re
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote, unquote_to_bytes, urlencode
@@ -242,8 +243,10 @@ def _file(draw: random.Random, kind: str) -> tuple[str, str, bytes]:
     return path, urlencode(given), body.encode("latin-1")
 
 
-async def exchange(app, sent: Sent) -> Received:
-    """Send a request to the application as uvicorn would."""
+async def exchange(
+    app, sent: Sent, started: Callable[[], object] = lambda: None, body: io.BytesIO | None = None
+) -> Received:
+    """Send a request to the application as uvicorn would; something may happen once the response has started."""
     scope = {
         "type": "http",
         "asgi": {"version": "3.0", "spec_version": "2.3"},
@@ -260,7 +263,7 @@ async def exchange(app, sent: Sent) -> Received:
         "state": {},
     }
     parts = [sent.body[:50], sent.body[50:]]
-    status, headers, body = 0, {}, io.BytesIO()
+    status, headers, body = 0, {}, io.BytesIO() if body is None else body
 
     async def receive():
         if parts:
@@ -273,6 +276,7 @@ async def exchange(app, sent: Sent) -> Received:
         if message["type"] == "http.response.start":
             status = message["status"]
             headers = {name.decode(): value.decode("latin-1") for name, value in message["headers"]}
+            started()
         else:
             body.write(message.get("body", b""))
 

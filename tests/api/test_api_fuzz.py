@@ -1,5 +1,6 @@
-"""Requests generated from the OpenAPI description: no 5xx, and every response as described."""
+"""Random requests: no 5xx, and every response as described."""
 
+import asyncio
 import os
 
 import hypothesis
@@ -8,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
+from tests.api.fuzzer import EXTREME_KINDS, ask_all
 from tests.sampling import number, sample
 
 CASES = number(120, 5500)
@@ -66,3 +68,19 @@ def test_generated_requests(schema, path, method):
     if SEED is not None:
         check_case = hypothesis.seed(int(SEED))(check_case)
     check_case()
+
+
+@pytest.mark.alone
+@pytest.mark.slow
+def test_random_requests(results):
+    statuses, faults = asyncio.run(ask_all(results, seed=2, first=0, count=number(150, 5000)))
+    assert not faults
+    assert {"200", "304", "404", "405", "413", "415", "422"} <= set(statuses)
+
+
+@pytest.mark.alone
+@pytest.mark.slow
+def test_extreme_numbers_and_steps_long_tables_and_arithmetic_in_units(results):
+    statuses, faults = asyncio.run(ask_all(results, seed=1, first=0, count=number(150, 9000), kinds=EXTREME_KINDS))
+    assert not faults
+    assert {"200", "422"} <= set(statuses)

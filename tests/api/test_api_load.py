@@ -1,25 +1,33 @@
-"""Under load: queue limit and time limit of heavy work, disconnects."""
+"""Under load: queue limit and time limit of heavy work, disconnects, and how little work one block is."""
 
 import asyncio
 import re
+import statistics
+import sys
 import threading
 import time
+from collections import Counter
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import rocking_api
 import rocking_api.execution.evaluation
+from rocking_api.app import create_app
 from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
 from rocking_api.models.batch import batch_of, parse_csv
 from rocking_api.models.params import LookupOptions, ResponseParams
 from rocking_api.models.pulses import MAX_SAMPLES
 from rocking_api.routers.response import get_response
+from rocking_api.settings import Settings
 from starlette.requests import ClientDisconnect
 
 import rocking
 from rocking._base.errors import StoppedError
 from rocking._numba.cancellation import StopFlag
 from tests.api.conftest import CSV, POINT, QUERIES, assert_problem, client_of, metrics_of, of_point, post, until
+from tests.api.fuzzer import Sent, exchange
 from tests.sampling import number
 
 BATCH = POINT | {"slenderness": [0.6, 0.7]}
@@ -278,3 +286,36 @@ def test_a_table_of_a_million_points_is_read_whole_and_its_reading_can_be_stoppe
     with pytest.raises(StoppedError):
         parse_csv(body, points, stopped)
     assert len(stopped.times) == 5
+
+
+ROOTS = tuple(str(Path(one.__file__).parent) for one in (rocking, rocking_api))
+
+
+@pytest.mark.parametrize(("method", "most"), [("cube", 60), ("solver", 40)])
+def test_one_block_is_little_work(results, method, most):
+    found, seconds = Counter(), []
+    query = f"pulse=sine&slenderness=0.413&frequency_ratio=5.1&restitution=0.85&method={method}"
+    sent = Sent("GET", "/v1/response", query, [], b"", False)
+
+    def count(frame, event, _):
+        if event == "call" and frame.f_code.co_filename.startswith(ROOTS):
+            found[frame.f_code.co_filename] += 1
+
+    async def scenario():
+        app = create_app(Settings(results=results))
+        async with app.router.lifespan_context(app):
+            await app.state.service.kernels.wait()
+            for _ in range(200):
+                began = time.process_time()
+                assert (await exchange(app, sent)).status == 200
+                seconds.append(time.process_time() - began)
+            sys.setprofile(count)
+            try:
+                await exchange(app, sent)
+            finally:
+                sys.setprofile(None)
+
+    asyncio.run(scenario())
+    assert found.total() <= most, found
+    assert len(found) <= 15, found
+    assert statistics.median(seconds) < 1e-3

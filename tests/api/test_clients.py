@@ -1,5 +1,7 @@
 """Clients that two generators make of the OpenAPI document: no numbered copies of a class, and their calls.
 
+The benchmark of the service is one more client.
+
 The generators are looked for on the path and below `build/clients`, where `make test-all` installs them.
 """
 
@@ -13,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.api.conftest import parts_of
 from tests.api.servers import ROOT, serving
 
 PATH = f"{ROOT / 'build' / 'clients' / 'bin'}{os.pathsep}{os.environ.get('PATH', '')}"
@@ -62,16 +65,11 @@ def test_sets_of_words_and_objects_are_named_and_every_content_has_a_schema(docu
     """What generators would number: an enumeration or an object within another schema."""
     found = json.loads(document.read_text())
 
-    def inline(part):
-        """Enumerations and objects within the properties of a schema."""
-        for one in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
-            if isinstance(one, dict) and ("enum" in one or one.get("type") == "object"):
-                yield one
-            yield from inline(one)
-
     schemas = found["components"]["schemas"]
     assert [name for name in schemas if name[-1].isdigit()] == []
-    assert [name for name, one in schemas.items() if [*inline(one.get("properties", {}))]] == []
+    for name, schema in schemas.items():
+        within = parts_of(schema.get("properties", {}), {}, {*schemas})
+        assert [one for one in within if "enum" in one or one.get("type") == "object"] == [], name
     for path, methods in found["paths"].items():
         for operation in methods.values():
             assert all("enum" not in one["schema"] for one in operation.get("parameters", ())), path
@@ -116,3 +114,19 @@ def test_models_of_datamodel_code_generator_read_an_answer(client, document, tmp
     point = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
     answer = client.get("/v1/response", params=point).text
     subprocess.run([sys.executable, "-c", PARSED, answer], cwd=tmp_path, check=True)
+
+
+@pytest.mark.long
+def test_the_benchmark_measures_a_worker(results, tmp_path):
+    out = tmp_path / "service.json"
+    few = ["--seconds", "1", "--points", "2000", "--json-points", "500", "--rounds", "1"]
+    command = [sys.executable, "-m", "benchmarks.cost.service", "--results", str(results), *few, "--out", str(out)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    record = json.loads(out.read_text())
+    assert record["points"]["questions"] > 50
+    assert 0 < record["points"]["median_ms"] <= record["points"]["p99_ms"]
+    assert [(one["form"], one["points"]) for one in record["batches"]] == [("netcdf", 2000), ("json", 500)]
+    assert 0 < record["share_by_data_sets"] < 1
+    assert record["memory"]["after batches"]["now_MB"] > 50
+    assert "the rest by the solver" in done.stdout

@@ -18,6 +18,7 @@ from rocking_api.routers import object_page
 
 import rocking
 from tests.api.conftest import assert_problem
+from tests.api.test_uploads import TRIANGLE, scene
 from tests.api.test_uploads import glb_file as glb
 from tests.sampling import but_long, number
 
@@ -155,16 +156,6 @@ def test_an_open_mesh_is_doubted_and_the_defect_of_another_named(client, slab):
     assert "MiB" not in problem["detail"]
 
 
-def scene(count, **parts):
-    """The tree of a GLB file with one mesh of some vertices."""
-    mesh = {"primitives": [{"attributes": {"POSITION": 0}}]}
-    start = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]}
-    accessor = {"bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3"}
-    views = {"bufferViews": [{"buffer": 0, "byteLength": 12 * count}], "buffers": [{"byteLength": 12 * count}]}
-    return start | {"meshes": [mesh], "accessors": [accessor]} | views | parts
-
-
-TRIANGLE = np.eye(3, dtype="<f4").tobytes()
 AXES = b"".join(b"property float %s\n" % axis for axis in (b"x", b"y", b"z"))
 HEADER = b"ply\nformat %s 1.0\nelement vertex 99999999999\n" + AXES + b"end_header\n"
 HOSTILE = {

@@ -2,7 +2,6 @@
 
 import re
 
-import pytest
 from playwright.sync_api import expect
 
 from rocking._dimensional.table_reader import rows_of_sheet
@@ -10,12 +9,6 @@ from tests.api.explorer.hands import PHONE, Keyboard
 from tests.sheets import xlsx_bytes
 
 TABLE = "object;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\njug;wide;10;40\n"
-
-
-@pytest.fixture(scope="module")
-def many():
-    rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(500))
-    return "object;width [cm];height [cm]\n" + "\n".join(rows)
 
 
 def column(page, number):
@@ -95,9 +88,10 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
     expect(page.locator("#pga-problem")).to_contain_text("allowed")
 
 
-def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service, many):
+def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service):
     page = open_page("/objects")
-    page.locator("#table").fill(many)
+    rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(500))
+    page.locator("#table").fill("object;width [cm];height [cm]\n" + "\n".join(rows))
     service.hold()
     page.locator("#ask").click()
     expect(page.locator("#status")).to_have_text(re.compile(r"Computing … \d+ s"))
