@@ -14,16 +14,14 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from urllib.parse import quote, unquote_to_bytes, urlencode
 
-import numpy as np
-import xarray as xr
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 from rocking._excitation.pulses import PULSE_NAMES
-from tests.api.conftest import POINT, QUERIES, Example, examples_of
+from tests.api.conftest import Example, examples_of
 from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0
@@ -35,18 +33,12 @@ SLOW = 5.0
 SLOW_HEALTH, BATCH = 1.0, 25
 """Largest time of /health [s], asked after so many requests. It takes milliseconds but while kernels are loaded."""
 
-KINDS = {"curve": 55, "overturning": 1, "post": 16, "dataset": 20, "page": 6, "nowhere": 2, "record": 12, "long": 8}
+KINDS = {"example": 76, "dataset": 20, "page": 6, "nowhere": 2, "record": 12, "long": 8, "table": 8, "step": 8}
 """Kinds of requests, and how often they are sent."""
-
-EXTREME_KINDS = {"table": 1, "step": 1, "number": 4}
-"""Tables of blocks with long headers and arithmetic in units, records with extreme steps, and any extreme number."""
 
 EXTREMES = [f"{sign}1e{power}" for power in (-300, -30, -12, -6, 6, 12, 30, 300) for sign in ("", "-")]
 EXTREMES += ["0", "nan", "1" + "0" * 400]
 A_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
-
-OPTIONS = {"alpha_deg": 20.0, "method": "solver", "absolute_tolerance": 1e-3, "format": "csv", "highest": 9.0}
-"""Parameters of some routes, which a query has now and then."""
 
 PAGES = [
     *("/", "/docs", "/openapi.json", "/health", "/ready", "/metrics", "/v1/datasets", "/v1/datasets.zip", "/static/"),
@@ -109,23 +101,15 @@ class Received(NamedTuple):
     seconds: float
 
 
-def request(seed: int, k: int, names: list[str], examples: list[Example], kinds: dict[str, int]) -> Sent:
+def request(seed: int, k: int, names: list[str], examples: list[Example]) -> Sent:
     """Request k of a seed; `names` are those of the data sets, `examples` those of the description."""
     draw = random.Random(f"{seed} {k}")
-    kind = draw.choices([*kinds], [*kinds.values()])[0]
+    kind = draw.choices([*KINDS], [*KINDS.values()])[0]
     method, query, body, headers = "GET", "", b"", []
-    if kind in ("curve", "overturning"):
-        path = draw.choice([one for one in QUERIES if (one == "/v1/overturning") == (kind == "overturning")])
-        query = _query(draw, path)
-    elif kind == "post":
-        method, path = "POST", "/v1/response"
-        body, media_type, query = _body(draw)
-        headers.append(("content-type", media_type))
-    elif kind == "number":
+    if kind == "example":
         example = draw.choice(examples)
-        method, path, media_type = example.method, example.url, example.media_type
-        query, text = _with_extreme(draw, example)
-        body, headers = text.encode(), [("content-type", media_type)] if media_type else []
+        method, path, query, body = example.method, example.url, *_changed(draw, example)
+        headers = [("content-type", example.media_type)] if example.media_type else []
     elif kind in ("record", "long", "table", "step"):
         method, (path, query, body) = "POST", _file(draw, kind)
         headers.append(("content-type", "text/csv"))
@@ -144,49 +128,36 @@ def request(seed: int, k: int, names: list[str], examples: list[Example], kinds:
     return Sent(method, path, query, headers, body, leaves=draw.random() < 0.03)
 
 
-def _with_extreme(draw: random.Random, example: Example) -> tuple[str, str]:
-    """Query and body of an example with an extreme number in place of one of its own."""
-    query, body = {name: str(value) for name, value in example.query.items()}, example.body
-    numbers = [name for name, value in query.items() if A_NUMBER.fullmatch(value)]
-    places = [place.span() for place in A_NUMBER.finditer(body)]
-    if places and draw.random() < 0.5 + 0.5 * (not numbers):
-        start, end = draw.choice(places)
-        body = body[:start] + draw.choice(EXTREMES) + body[end:]
-    elif numbers:
-        query[draw.choice(numbers)] = draw.choice(EXTREMES)
-    return urlencode(
-        {name: value.lower() if value in ("True", "False") else value for name, value in query.items()}
-    ), body
+def _changed(draw: random.Random, example: Example) -> tuple[str, bytes]:
+    """Query and body of an example: with an extreme number, another pulse, a part that is hostile, or damaged."""
+    given = [
+        (name, str(value).lower() if isinstance(value, bool) else str(value)) for name, value in example.query.items()
+    ]
+    body = bytearray(example.body.encode())
+    change = draw.choice(["none", "number", "number", "pulse", "hostile", "damaged"])
+    if change == "number" and (places := [*A_NUMBER.finditer(example.body)]) and (draw.random() < 0.5 or not given):
+        start, end = draw.choice(places).span()
+        body[start:end] = draw.choice(EXTREMES).encode()
+    elif change == "number":
+        given = _replaced(draw, given, EXTREMES, A_NUMBER)
+    elif change == "pulse":
+        given = _replaced(draw, given, [sign + name for name in PULSE_NAMES for sign in ("", "-")], re.compile("sine"))
+    elif change == "hostile":
+        more = [draw.choice(given), (draw.choice(HOSTILE), "1")] if given else []
+        given = [*_replaced(draw, given[draw.randrange(2) :], HOSTILE, re.compile(".*")), *more[: draw.randrange(3)]]
+    for _ in range(draw.randrange(1, 5) if change == "damaged" and body else 0):
+        body[draw.randrange(len(body))] = draw.randrange(256)
+    return urlencode(given, errors="surrogatepass"), bytes(body)
 
 
-def _query(draw: random.Random, route: str) -> str:
-    """An ordinary query with other numbers, of which some parts are left out, given twice, unknown or hostile."""
-    query = QUERIES[route] | {name: value for name, value in OPTIONS.items() if draw.random() < 0.15}
-    given = [(name, _value(draw, name, value)) for name, value in query.items()]
-    for _ in range(draw.choices([0, 1, 2], [5, 4, 1])[0]):
-        place = draw.randrange(len(given))
-        match draw.randrange(5):
-            case 0 if len(given) > 1:
-                del given[place]
-            case 1:
-                given.append(given[place])
-            case 2:
-                given.append((draw.choice(HOSTILE), "1"))
-            case _:
-                given[place] = given[place][0], draw.choice(HOSTILE)
-    return urlencode(given, errors="surrogatepass")
+Query = list[tuple[str, str]]
 
 
-def _value(draw: random.Random, name: str, value: Any) -> str:
-    """A value near the ordinary one, or far from it."""
-    if name == "pulse":
-        return draw.choice(["", "-"]) + draw.choice(PULSE_NAMES)
-    if isinstance(value, str):
-        return value
-    if isinstance(value, int):
-        return str(draw.choice([2, value, 10**6]))
-    factor = draw.choices([1.0, draw.uniform(0.5, 1.1), 10.0 ** draw.randint(-9, 9)], [4, 4, 1])[0]
-    return repr(value * factor)
+def _replaced(draw: random.Random, given: Query, others: list[str], kind: re.Pattern[str]) -> Query:
+    """A query of which one value of a kind is another one."""
+    places = [place for place, (_, value) in enumerate(given) if kind.fullmatch(value)]
+    chosen = draw.choice(places) if places else None
+    return [(name, draw.choice(others) if place == chosen else value) for place, (name, value) in enumerate(given)]
 
 
 def _name(draw: random.Random, names: list[str]) -> str:
@@ -194,32 +165,6 @@ def _name(draw: random.Random, names: list[str]) -> str:
     name = draw.choice([*names, hostile, "spectra/sine/" + hostile, "a/" * 600 + "b", "a" * 256])
     suffix = draw.choice(["", ".nc", ".nc", ".zarr/.zmetadata", ".zarr/peak_rotation/0.0.0", ".zarr/" + hostile])
     return quote(name + suffix, safe="/%", errors="surrogatepass")
-
-
-def _body(draw: random.Random) -> tuple[bytes, str, str]:
-    size = draw.choice([0, 1, 3, 300])
-    groups = {name: value for name, value in POINT.items() if name != "pulse"}
-    columns = {name: [float(_value(draw, name, value)) for _ in range(size)] for name, value in groups.items()}
-    options = {"pulse": "sine"} | {name: value for name, value in OPTIONS.items() if draw.random() < 0.1}
-    form = draw.choice(["json", "csv", "nc"])
-    if form == "json":
-        odd = draw.choice([None, "1" * 400, [], {}, [[1]], True, 10**400, -1, "x", 1e308])
-        content = columns | options | ({draw.choice([*POINT, "x"]): odd} if draw.random() < 0.3 else {})
-        body, media_type, query = json.dumps(content).encode(), "application/json", ""
-    else:
-        media_type, query = {"csv": "text/csv", "nc": "application/x-netcdf"}[form], urlencode(options)
-        if form == "csv":
-            lines = [",".join(columns), *(",".join(map(repr, row)) for row in zip(*columns.values(), strict=True))]
-            body = "\n".join(lines).encode()
-        else:
-            table = xr.Dataset({name: ("point", np.array(values)) for name, values in columns.items()})
-            body = bytes(table.to_netcdf(engine="scipy"))
-    if body and draw.random() < 0.3:
-        damaged = bytearray(body)
-        for _ in range(draw.randrange(1, 5)):
-            damaged[draw.randrange(len(damaged))] = draw.randrange(256)
-        body = bytes(damaged[: draw.randrange(len(damaged)) if draw.random() < 0.3 else None])
-    return body, media_type, query
 
 
 def _file(draw: random.Random, kind: str) -> tuple[str, str, bytes]:
@@ -314,9 +259,7 @@ def fault(sent: Sent, got: Received) -> str | None:
     return None
 
 
-async def ask_all(
-    results: Path, seed: int, first: int, count: int, kinds: dict[str, int] = KINDS, together: int = 4
-) -> tuple[Counter, list[str]]:
+async def ask_all(results: Path, seed: int, first: int, count: int, together: int = 4) -> tuple[Counter, list[str]]:
     """Statuses and faults of the responses, and errors that the service logged."""
     app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
     names, examples = app.state.service.cubes.catalogue.names(), [*examples_of(app.openapi())]
@@ -330,7 +273,7 @@ async def ask_all(
 
     async def client():
         for k in left:
-            sent = request(seed, k, names, examples, kinds)
+            sent = request(seed, k, names, examples)
             try:
                 got = await exchange(app, sent)
                 wrong = fault(sent, got)
