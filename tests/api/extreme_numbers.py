@@ -2,7 +2,7 @@
 
 `python -m tests.api.extreme_numbers RESULTS` replaces one number of an ordinary call at a time and prints the faults:
 errors other than those about an argument, warnings, calls beyond the time limit. The parameters are read from the
-signatures and the commands; one that has no ordinary value here is a fault as well. `--only NAME` restricts it to the
+signatures, where one that has no ordinary value here is a fault as well. `--only NAME` restricts it to the
 calls whose name contains NAME, and `--sample SEED` to some of the calls, with a few of the values of each number, drawn
 at random. Those of HTTP are sent by `fuzzer.py`.
 """
@@ -30,7 +30,6 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-import typer.main
 from typer.testing import CliRunner
 
 import rocking
@@ -126,45 +125,40 @@ MEASURES = [name for kind in (rocking.Record, rocking.Block) for name in dir(kin
 UNUSED = ("evaluate", "interpolate", "used", "level", "slice_at")
 """Methods of a cube that are not public."""
 
-OPTIONS: dict[str, tuple[float, str]] = {
-    "slenderness": (0.4, ""), "frequency_ratio": (5.0, ""), "alpha": (0.3, " rad"), "restitution": (0.85, ""),
-    "width": (0.5, " m"), "height": (2.0, " m"), "offset": (0.05, " m"), "mass_height": (0.8, " m"),
-    "peak_acceleration": (4.0, " m/s^2"), "period": (0.5, " s"),
-    "period_min": (0.5, " s"), "period_max": (0.6, " s"), "duration": (5.0, " s"),
-    "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
-    "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
-    "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
-    "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
-    "resolution": (0.01, ""), "skip": (0, ""),
-    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"), "rebound": (0.4, ""),
-    "start": (0.05, " rad"),
-}  # fmt: skip
-"""Ordinary values of the options that take a number, and their units."""
-
-TEXTS = {
-    "pulse", "format", "all", "contact", "output", "file", "unit", "component", "vertical",
-    "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
-    "objects", "record", "shapes", "moving_ground", "sensitivity", "no_sensitivity", "report", "title", "place", "date",
-    "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
-    "column", "standards", "detail", "directions", "body", "sides", "second",
-}  # fmt: skip
-"""Options and arguments that take none."""
-
-COMMON = {
-    *("edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"),
-    *("seed", "friction", "damping", "participation", "confidence", "resolution", "skip"),
+SIZE, STRENGTH = "--restitution=0.85 --width=0.5m --height=2m", "--peak-acceleration=4m/s^2 --period=0.5s"
+RATIOS, PERIODS = "--frequency-ratio-min=2 --frequency-ratio-max=3", "--period-min=0.5s --period-max=0.6s"
+POINT = "--slenderness=0.4 --frequency-ratio=5"
+UNDER_PULSES = {
+    "response": (POINT, STRENGTH),
+    "history": (f"{POINT} --duration=5", f"{STRENGTH} --duration=5s"),
+    "spectrum": (f"--slenderness=0.4 {RATIOS}", f"--peak-acceleration=4m/s^2 {PERIODS}"),
+    "boundary": (RATIOS, PERIODS),
+    "plot map": (RATIOS, PERIODS),
 }
-VARIANTS = (
-    {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
-    {"width", "height", "peak_acceleration", "period", "period_min", "period_max", "duration", "pga"},
-    {"width", "height", "offset", "mass_height", "peak_acceleration", "period", "duration"},
-    {"width", "height", "peak_acceleration", "period", "period_min", "period_max"},
-    {"pga", "pgv"},
-    {"left", "right", "mass_height", "gyration", "peak_acceleration", "period", "duration", "pga"},
-    {"diameter", "height", "peak_acceleration", "period", "duration", "pga"},
-    {"width", "height", "start", "duration"},
-)
-"""Options that are given together, beside those that go with all."""
+"""Options of the commands for a pulse, by groups and by sizes."""
+
+OF_FILES = f"record.csv --unit=m/s2 --time-step=0.02s --skip=0 --baseline-order=1 --scale=1.2 {SIZE}"
+COMMANDS = [
+    *(f"{name} --pulse=sine --alpha=0.3rad --restitution=0.85 {groups}" for name, (groups, _) in UNDER_PULSES.items()),
+    *(f"plot {name} --pulse=sine {SIZE} {sizes}" for name, (_, sizes) in UNDER_PULSES.items() if " " not in name),
+    f"history --pulse=sine {SIZE} {STRENGTH} --samples=20 --format=csv",
+    f"spectrum --pulse=sine {SIZE} --peak-acceleration=4m/s^2 {PERIODS} --points=5 --format=csv",
+    f"response --pulse=sine {SIZE} {STRENGTH} --offset=0.05m --mass-height=0.8m --rebound=0.4 --sides=left",
+    f"response --pulse=sine {STRENGTH} --left=0.2m --right=0.3m --mass-height=0.8m --gyration=0.6m",
+    f"response --pulse=sine {STRENGTH} --diameter=0.4m --height=2m",
+    f"history {SIZE} --start=0.05rad --duration=5s",
+    f"record {OF_FILES}",
+    f"plot record {OF_FILES} --duration=5s",
+    f"assess objects.csv --shapes=sine --pga=3m/s^2 {PERIODS}",
+    "assess objects.csv --shapes=sine --pga=3m/s^2 --pgv=0.4m/s --samples=20 --seed=1 --resolution=0.01",
+    "assess objects.csv --record=record.csv --unit=m/s2 --time-step=0.02s --skip=0 --baseline-order=1",
+    "identify trace.csv --edges=1 --confidence=0.9",
+    "identify rotations.csv --time-step=0.05s",
+    "floor record.csv --unit=m/s2 --time-step=0.02s --skip=0 --period=0.5s --damping=0.05 --participation=1.3",
+    "fragility suite.json",
+    "serve --port=8000 --workers=1",
+]
+"""Ordinary commands, of which each number is replaced; the numbers of `fragility` are in its file."""
 
 MOTION = [round(math.sin(0.5 * k) * math.sin(0.05 * k), 6) for k in range(60)]
 SAMPLES = "acceleration [m/s2]\n" + "".join(f"{4.0 * value:.6f}\n" for value in MOTION)
@@ -172,7 +166,7 @@ PULSE = {"acceleration": [0.0, 1.0, -0.5, 0.0], "time": [0.0, 1.0, 2.0, 4.0], "p
 GRID = {"low": 2.0, "high": 9.0, "points": 3}
 SUITE: dict[str, Any] = {
     "name": "extreme",
-    "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
+    "records": {"folder": ".", "pattern": "record.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
     "blocks": [{"width": 0.5, "height": 2.0}, {"width": 0.5, "height": 1.0}],
     "restitution": 0.85,
     "measure": "pga",
@@ -313,45 +307,31 @@ def evaluate(function: Callable[..., Any], given: dict[str, Any]) -> str:
 
 def walk_commands(walk: Walk, folder: Path) -> None:
     """All options of all commands that take a number, and the numbers of the configuration of a suite."""
-    cases: dict[str, list[str]] = {"record": [OBJECTS["path"]], "fragility": [str(folder / "suite.json")]}
-    (folder / "suite.json").write_text(json.dumps(SUITE), encoding="utf-8")
-    (folder / "trace.csv").write_text("\n".join(f"{t},{y}" for t, y in zip(*TRACE, strict=True)), encoding="utf-8")
-    cases["identify"] = [str(folder / "trace.csv")]
-    (folder / "objects.csv").write_text("width [m],height [m]\n0.4,1.6\n", encoding="utf-8")
-    cases["assess"] = [str(folder / "objects.csv"), "--shapes=sine"]
-    for name, command in commands("rocking", typer.main.get_command(command_line)):
-        takes = {parameter.name for parameter in command.params}
-        walk.faults += [f"{name}: {one} has no ordinary value in this test" for one in takes - OPTIONS.keys() - TEXTS]
-        words = name.split()[1:]
-        start = [*words, *(["--pulse=sine"] if "pulse" in takes else []), *cases.get(words[-1], [])]
-        start += ["--output=picture.png"] if "output" in takes else []
-        start += ["--format=csv"] if "format" in takes and words != ["record"] else []
-        done: set[str] = set()
-        for variant in VARIANTS:
-            options = {key: OPTIONS[key] for key in OPTIONS if key in takes & (variant | COMMON)}
-            for key in (key for key in options if key not in done):
-                for other in walk.values(options[key][0]):
-                    given = {**options, key: (other, options[key][1])}
-                    named = (f"--{one.replace('_', '-')}={value}{unit}" for one, (value, unit) in given.items())
-                    walk.call(name, f"{key} = {other}", partial(run_command, [*start, *named]))
-            done |= options.keys()
+    trace = "\n".join(f"{time},{rotation}" for time, rotation in zip(*TRACE, strict=True))
+    files = {
+        "record.csv": SAMPLES,
+        "trace.csv": trace,
+        "rotations.csv": "\n".join(map(str, TRACE[1])),
+        "objects.csv": "width [m],height [m]\n0.4,1.6\n",
+        "suite.json": json.dumps(SUITE),
+    }
+    for name, content in files.items():
+        (folder / name).write_text(content, encoding="utf-8")
+    for one in COMMANDS:
+        walk.call(one, "", partial(run_command, one, folder))
+        for place in re.finditer(r"(?<==)\d+(\.\d+)?(?![\d:])", one):
+            for other in walk.values(float(place[0]) if "." in place[0] else int(place[0])):
+                changed = one[: place.start()] + str(other) + one[place.end() :]
+                walk.call(one, changed, partial(run_command, changed, folder))
     for other in walk.replaced(SUITE):
         (folder / "suite.json").write_text(json.dumps(other), encoding="utf-8")
-        walk.call(
-            "rocking fragility", other, partial(run_command, ["fragility", str(folder / "suite.json"), "--format=json"])
-        )
+        walk.call("fragility", other, partial(run_command, "fragility suite.json", folder))
 
 
-def commands(name: str, command: Any) -> Iterator[tuple[str, Any]]:
-    if hasattr(command, "commands"):
-        for own, part in command.commands.items():
-            yield from commands(f"{name} {own}", part)
-    else:
-        yield name, command
-
-
-def run_command(argv: list[str]) -> str:
-    found = CliRunner().invoke(command_line, argv)
+def run_command(text: str, folder: Path) -> str:
+    argv = [str(folder / one) if one.endswith((".csv", ".json")) and one[0] != "-" else one for one in text.split()]
+    argv = [one.replace("=record.csv", f"={folder}/record.csv") for one in argv]
+    found = CliRunner().invoke(command_line, [*argv, *(["--output=picture.png"] if argv[0] == "plot" else [])])
     if found.exception is not None and not isinstance(found.exception, SystemExit):
         raise found.exception
     endings = {0: "answered", 2: "refused"}

@@ -7,11 +7,11 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 from urllib.parse import urlencode
 
 import pytest
 import rocking_api.execution.kernels
-from rocking_api.execution.kernels import Kernels
 
 from rocking import precompile
 from rocking._excitation.pulses import PULSE_NAMES
@@ -85,18 +85,12 @@ def test_kernels_are_compiled_in_another_process_and_loaded_in_a_thread(monkeypa
 
     async def run_process(command, **_):
         done.append(command[1:])
-        return type("Ended", (), {"returncode": 0})
+        return SimpleNamespace(returncode=0)
 
-    monkeypatch.setattr(rocking_api.execution.kernels, "is_missing", lambda: True)
-    monkeypatch.setattr(rocking_api.execution.kernels.anyio, "run_process", run_process)
-    monkeypatch.setattr(rocking_api.execution.kernels, "load_kernels", lambda: done.append(threading.current_thread()))
-
-    async def scenario():
-        kernels = Kernels(1.0)
-        await kernels.wait()  # nothing loads them: a request loads what it needs
-        await kernels.load()
-        await kernels.wait()
-
-    asyncio.run(scenario())
+    own = rocking_api.execution.kernels
+    monkeypatch.setattr(own, "is_missing", lambda: True)
+    monkeypatch.setattr(own.anyio, "run_process", run_process)
+    monkeypatch.setattr(own, "load_kernels", lambda: done.append(threading.current_thread()))
+    asyncio.run(own.Kernels(1.0).load())
     assert done[0] == ["-m", "rocking.precompile"]
     assert done[1] is not threading.main_thread()

@@ -34,16 +34,20 @@ BATCH = POINT | {"slenderness": [0.6, 0.7]}
 
 
 class Gate:
-    """Heavy work that blocks until it is released."""
+    """Heavy work that blocks until it is released, and an executor for it."""
 
-    def __init__(self):
-        self.open = threading.Event()
-        self.begun = threading.Semaphore(0)
+    def __init__(self, queue=0):
+        self.open, self.begun = threading.Event(), threading.Semaphore(0)
+        self.executor = BoundedExecutor(workers=1, queue=queue, seconds=30)
 
     def work(self, *_):
         self.begun.release()
         assert self.open.wait(30)
         return "done"
+
+    def asked(self, host, cost=0, work=None):
+        """A task for a client that stays."""
+        return asyncio.create_task(self.executor.run(work or self.work, of_client(host), cost))
 
 
 def of_client(host):
@@ -53,18 +57,15 @@ def of_client(host):
 
 def test_clients_take_turns_and_the_cheapest_of_each_is_first():
     async def scenario():
-        executor, gate, order = BoundedExecutor(workers=1, queue=6, seconds=30), Gate(), []
+        gate, order = Gate(queue=6), []
 
         def work(name):
             return lambda _: (time.sleep(0.01), order.append(name))
 
-        async def later(client, name, cost):
-            await executor.run(work(name), of_client(client), cost)
-
-        tasks = [asyncio.create_task(executor.run(gate.work, of_client("a")))]
+        tasks = [gate.asked("a")]
         await asyncio.to_thread(gate.begun.acquire)
         asked = [("a", "a dear", 9), ("a", "a cheap", 1), ("a", "a middling", 5), ("b", "b", 99), ("c", "c", 99)]
-        tasks += [asyncio.create_task(later(*one)) for one in asked]
+        tasks += [gate.asked(client, cost, work(name)) for client, name, cost in asked]
         await asyncio.sleep(0.01)
         gate.open.set()
         await asyncio.gather(*tasks)
@@ -75,12 +76,12 @@ def test_clients_take_turns_and_the_cheapest_of_each_is_first():
 
 def test_one_client_does_not_fill_the_queue():
     async def scenario():
-        executor, gate = BoundedExecutor(workers=1, queue=3, seconds=30), Gate()
-        tasks = [asyncio.create_task(executor.run(gate.work, of_client("a"), cost)) for cost in range(4)]
+        gate = Gate(queue=3)
+        tasks = [gate.asked("a", cost) for cost in range(4)]
         await asyncio.to_thread(gate.begun.acquire)
         with pytest.raises(BusyError):
-            await executor.run(gate.work, of_client("a"))
-        other = asyncio.create_task(executor.run(gate.work, of_client("b"), 100))
+            await gate.asked("a")
+        other = gate.asked("b", 100)
         with pytest.raises(BusyError):  # the dearest of the client with the most
             await tasks[-1]
         gate.open.set()

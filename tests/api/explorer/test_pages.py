@@ -5,21 +5,18 @@ import io
 import re
 
 import numpy as np
-import pytest
 import xarray as xr
 from playwright.sync_api import expect
 
 from tests.api.conftest import NAMES
-from tests.api.explorer.hands import Keyboard, Touch
+from tests.api.explorer.hands import Keyboard
 from tests.api.explorer.reading import query
-from tests.sampling import but_long
 
 
-@pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
-def test_data_sets_are_listed_filtered_and_opened(open_page, address, by):
-    page = open_page("/datasets?pulse=sine&eta=0.85", **by.options)
+def test_data_sets_are_listed_filtered_and_opened_by_keyboard(open_page, address):
+    page = open_page("/datasets?pulse=sine&eta=0.85")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    status, hand = page.locator("#status"), by(page)
+    status, hand = page.locator("#status"), Keyboard(page)
     expect(status).to_contain_text("2 of")
     page.locator("#filter").fill("nothing of this name")
     expect(status).to_contain_text("0 of")

@@ -11,13 +11,11 @@ import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import parse_record
 from tests.api.conftest import NAPA
-from tests.api.explorer.hands import HEADER, STRONG, Keyboard, Touch, choose_record, short_record
+from tests.api.explorer.hands import HEADER, STRONG, Keyboard, choose_record, short_record
 from tests.api.explorer.reading import stated_rotation
-from tests.sampling import but_long
+from tests.excitation.record_files import at2
 
 BLOCK = rocking.Block(0.5, 2.0)  # that of the form
-
-BY_HAND = pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
 
 
 @pytest.fixture(scope="module")
@@ -37,10 +35,9 @@ def choose_files(page, hand, files):
     waiting.value.set_files([{"name": name, "mimeType": kind, "buffer": content} for name, content in files.items()])
 
 
-@BY_HAND
-def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_page, content, motion, by):
-    page = open_page("/records", **by.options)
-    hand, caption = by(page), page.locator("#scales-caption")
+def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_page, content, motion):
+    page = open_page("/records")
+    hand, caption = Keyboard(page), page.locator("#scales-caption")
     expect(page.locator("#dropped")).to_contain_text("South Napa 2014")
     expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     expect(caption).to_contain_text("overturns from")
@@ -143,27 +140,16 @@ def components():
     return {"NAPA_090": first, "NAPA_000": second, "NAPA_UP": second / 3.0}, east.time_step
 
 
-def at2(values, step):
-    rows = "\n".join(f"{value:.9E}" for value in values)
-    head = f"PEER\nSouth Napa\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=  {len(values)}, DT= {step:.4f} SEC\n"
-    return (head + rows).encode()
-
-
-@BY_HAND
-def test_does_it_overturn_with_the_other_components(open_page, by, tmp_path):
-    page = open_page("/records", **by.options)
+def test_does_it_overturn_with_the_other_components(open_page, tmp_path):
+    page = open_page("/records")
     values, step = components()
-    files = {f"{name}.AT2": at2(samples, step) for name, samples in values.items()}
-    hand = by(page)
-    if by is Keyboard:
-        choose_files(page, hand, files)
-    else:  # the columns of one file, which are named in the form
-        table = np.column_stack([step * np.arange(len(values["NAPA_UP"])), *values.values()])
-        rows = "\n".join(",".join(f"{value:.9E}" for value in row) for row in table)
-        choose_files(page, hand, {"mine.csv": f"time_s,east (g),north (g),up (g)\n{rows}".encode()})
-        expect(page.locator("#file-problem")).to_contain_text("the field “Component”")
-        for field, name in {"component": "east", "second": "north", "vertical": "up"}.items():
-            hand.write(f"#{field}", name)
+    files = {
+        f"{name}.AT2": at2(
+            f"NPTS= {len(one)}, DT= {step:.4f} SEC", body="\n".join(f"{value:.9E}" for value in one)
+        ).encode()
+        for name, one in values.items()
+    }
+    choose_files(page, Keyboard(page), files)
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
     first, second = (

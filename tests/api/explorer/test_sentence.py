@@ -12,7 +12,6 @@ import rocking
 from rocking._base.constants import STANDARD_GRAVITY
 from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import BLOCK, pixels, query, set_time, settle, stated_rotation
-from tests.sampling import but_long
 
 VASE = rocking.Object("vase", width=0.22, height=0.55)
 SITE = rocking.Site(pga="0.3 g", pgv="30 cm/s")
@@ -44,10 +43,9 @@ def test_an_example_rocks_beside_its_verdict(open_page):
     assert query(page) == {}
 
 
-@pytest.mark.parametrize("touch", but_long([False, True], True))
-def test_is_a_vase_stable_at_this_site_and_how_wide_must_its_base_be(open_page, touch):
-    page = open_page("/", **(PHONE if touch else {}))
-    hand = Touch(page) if touch else Keyboard(page)
+def test_is_a_vase_stable_at_this_site_and_how_wide_must_its_base_be_on_a_phone(open_page):
+    page = open_page("/", **PHONE)
+    hand = Touch(page)
     for name, value in {"width": "22", "height": "55", "acceleration": "0.3", "velocity": "30"}.items():
         hand.write(f"#{name}", value)
     assert page.evaluate("document.documentElement.scrollWidth") <= page.evaluate("innerWidth")
@@ -159,10 +157,9 @@ def test_errors_are_shown_at_once_in_the_words_of_the_form(open_page):
     expect(page.locator("#answer")).to_be_hidden()
 
 
-@pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
-def test_a_pulse_is_previewed_given_by_samples_and_drawn(open_page, by):
-    page = open_page(BLOCK, **by.options)
-    note, hand = page.locator("#pulse-note"), by(page)
+def test_a_pulse_is_previewed_given_by_samples_and_drawn(open_page):
+    page = open_page(BLOCK)
+    note, hand = page.locator("#pulse-note"), Keyboard(page)
     expect(note).to_contain_text("It lasts 1 T.")
     for name, duration in (("half_sine", "0.5"), ("ricker", "4")):
         page.locator("#pulse").select_option(name)
@@ -195,10 +192,9 @@ def test_a_pulse_is_previewed_given_by_samples_and_drawn(open_page, by):
     expect(page.locator(".verdict")).to_have_text(OVERTURNS if found.overturned else RESTS)
 
 
-@pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
-def test_the_address_and_the_sliders_are_those_of_the_block(open_page, by):
-    page = open_page(BLOCK, **(by.options or {"width": 1280, "height": 960}))
-    hand = by(page)
+def test_the_address_and_the_sliders_are_those_of_the_block(open_page):
+    page = open_page(BLOCK, width=1280, height=960)
+    hand = Keyboard(page)
     expect(page.locator(".verdict")).to_have_text(RESTS)
     assert page.locator("#width").input_value() == "0.4"
     page.locator("#motion-caption").filter(has_text="comes to rest").wait_for()
@@ -210,7 +206,7 @@ def test_the_address_and_the_sliders_are_those_of_the_block(open_page, by):
     set_time(page, page.locator("#time").get_attribute("max"))
     assert float(page.locator("#stage").get_attribute("data-angle")) == 0.0
     box = page.locator("#stage").bounding_box()
-    assert by is Touch or box["y"] + box["height"] <= 960  # the motion is in view
+    assert box["y"] + box["height"] <= 960  # the motion is in view
 
     settle(page)
     page.locator("#map-marks").press("ArrowDown")  # the same block under a weaker motion
