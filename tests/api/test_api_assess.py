@@ -28,10 +28,10 @@ ROWS = [
 
 
 def test_rows_are_those_of_a_direct_call(client):
-    objects = [rocking.Object(**row) for row in ROWS]
     site = rocking.Site(pga=3.0, pgv=0.3, shapes=["sine", "ricker"])
-    for sensitivity in ("false", "true"):
-        answer = client.post(f"{URL.replace('false', sensitivity)}&standards=static,asce43", json=ROWS).json()
+    for sensitivity, rows in (("false", ROWS), ("true", ROWS[1:])):
+        answer = client.post(f"{URL.replace('false', sensitivity)}&standards=static,asce43", json=rows).json()
+        objects = [rocking.Object(**row) for row in rows]
         expected = rocking.assess(objects, site, sensitivity=sensitivity == "true", standards=["static", "asce43"])
         assert answer["rows"] == expected.rows
         assert answer["motions"] == ["sine", "ricker"]

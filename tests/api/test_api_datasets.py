@@ -18,7 +18,7 @@ from rocking_api.settings import Settings
 from rocking._datasets.cube import read_dataset, write_dataset
 from tests.api.conftest import NAMES, POINT, assert_problem, client_of, health_of
 from tests.api.fuzzer import Sent, exchange
-from tests.datasets.test_lookup_files import UNREADABLE, folder_forbidden, folder_loop, replaced
+from tests.datasets.test_lookup_files import UNREADABLE, replaced
 
 NAME, CURVES = "spectra/sine/eta-0.85", "overturning/sine/eta-0.85"
 URL = f"/v1/datasets/{NAME}.nc"
@@ -124,10 +124,6 @@ def test_what_is_unchanged_is_not_sent_again(client, content):
         response = client.get(URL, headers={"if-none-match": form.format(etag)})
         assert (response.status_code, response.content, response.headers["etag"]) == (304, b"", etag)
     assert client.get(URL, headers={"if-none-match": '"other"'}).content == content
-    chunk = f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0"
-    response = client.get(chunk)
-    assert response.headers["content-type"] == "application/octet-stream"
-    assert client.get(chunk, headers={"if-none-match": response.headers["etag"]}).status_code == 304
 
 
 def test_ranges(client, content):
@@ -220,17 +216,6 @@ def test_an_unreadable_file_is_reported_and_others_are_served(path, own_results,
             problem = assert_problem(client.get(f"/v1/datasets/{NAME}{form}"), 503)
             assert str(own_results) not in str(problem)
         assert_problem(client.get("/v1/response", params=POINT | {"method": "cube"}), 503)
-
-
-@pytest.mark.parametrize("make", [folder_loop, folder_forbidden])
-def test_an_unreadable_folder_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
-    path.unlink()
-    path.parent.rmdir()
-    make(path.parent, monkeypatch)
-    with client_of(own_results) as client:
-        assert "cannot be read" in health_of(client)["problems"]["spectra/sine"]
-        assert len(client.get("/v1/datasets").json()["datasets"]) == len(NAMES - {NAME})
-        assert client.get("/v1/response", params=POINT).json()["source"] == "solver"
 
 
 SUBSET = f"/v1/datasets/{NAME}/subset"

@@ -60,11 +60,8 @@ def test_remarks_of_the_reader_are_in_the_response(client):
 def test_history_and_scales_are_those_of_the_library(client, motion):
     block = rocking.Block(0.5, 2.0)
     uplift = block.uplift_acceleration / motion.peak_acceleration
-    groups = {
-        "frequency_parameter": block.frequency_parameter,
-        "restitution": block.inelastic_restitution,
-        "alpha": block.alpha,
-    }
+    groups = {"frequency_parameter": block.frequency_parameter, "restitution": block.inelastic_restitution}
+    groups["alpha"] = block.alpha
     expected = rocking.time_history(motion, **groups, slenderness=uplift, samples=300, contact=True)
     found = post(client, route="history", samples=300, contact=True).json()
     for name in ("rotation", "time", "impact_time"):

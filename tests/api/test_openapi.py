@@ -11,6 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 from rocking_api.models.params import Params
 
 from tests.api.conftest import JSON, POINT, examples_of, health_of, parts_of
+from tests.sampling import sample
 
 VARIABLE = re.compile(r"^(coordinates|variables|dimensions)\.[^.]+")
 """What the description of a data set holds by the name of a variable or dimension."""
@@ -116,7 +117,7 @@ def fields(schemas, schema, path=()):
 
 def test_every_json_answer_holds_question_units_warnings_version_and_address(client, description, asked):
     schemas = description["components"]["schemas"]
-    tried = set()
+    tried, repeated = set(), [one for one, _ in sample(asked, 9)]
     for one, response in asked:
         path, query = one.path, one.query
         schema = one.operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
@@ -127,7 +128,8 @@ def test_every_json_answer_holds_question_units_warnings_version_and_address(cli
         assert isinstance(answer["warnings"], list), path
         assert answer["version"] == description["info"]["version"], path
         method, _, url = answer["url"].rpartition(" ")
-        assert client.request(method or "GET", url, **sent(one)).json() == answer, path
+        if one in repeated:
+            assert client.request(method or "GET", url, **sent(one)).json() == answer, path
         found = {VARIABLE.sub(r"\1", name) for name in numbers(answer) if not re.search(r"\battributes\.", name)}
         assert found <= set(answer["units"]), path
         assert set(answer["units"]) <= found | set(fields(schemas, schema)), path
