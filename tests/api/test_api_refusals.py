@@ -40,50 +40,28 @@ def _soon(client):
     assert time.monotonic() - began < 30
 
 
-@pytest.mark.parametrize("route", QUERIES)
-def test_no_number_and_no_second_value_is_accepted(client, route):
-    for name, value in QUERIES[route].items():
-        for wrong in NO_NUMBERS + NO_COUNTS * isinstance(value, int):
-            if (name, wrong) != ("restitution", "true"):
-                response = client.get(route, params=QUERIES[route] | {name: wrong})
-                beyond = wrong.startswith("9") and response.status_code == 413
-                assert_problem(response, 413 if beyond else 422, name)
-        twice = client.get(route, params=[*QUERIES[route].items(), (name, value)])
-        assert assert_problem(twice, 422, name)["allowed"] == "one value"
+def test_what_is_no_number_and_no_count_is_refused(client):
+    for route, name, values in (("/v1/response", "frequency_ratio", NO_NUMBERS), ("/v1/map", "columns", NO_COUNTS)):
+        for wrong in values:
+            response = client.get(route, params=QUERIES[route] | {name: wrong})
+            beyond = wrong.startswith("9") and response.status_code == 413
+            assert_problem(response, 413 if beyond else 422, name)
 
 
-WRONG = {
-    "/v1/response": (
-        POINT,
-        [
-            *({"pulse": "sinus"}, {"restitution": 1.01}, {"restitution": -0.1}, {"slenderness": 0}),
-            *({"slenderness": -1}, {"slenderness": 1e-10}, {"slenderness": "much"}, {"frequency_ratio": "-inf"}),
-            *({"frequency_ratio": 0}, {"frequency_ratio": 1e7}, {"frequency_ratio": 1e-7}, {"method": "guess"}),
-            *({"absolute_tolerance": -1}, {"absolute_tolerance": "nan"}, {"alpha_deg": 95}, {"alpha_deg": 1e-9}),
-            *({"tolerence": 1e-6}, {"frequency_ratio": 40, "method": "cube"}, {"slenderness": 0.01, "method": "cube"}),
-            *({"restitution": 0.7, "method": "cube"}, {"pulse": "-ricker", "method": "cube"}),
-            *({"alpha_deg": 80, "method": "cube"}, {"absolute_tolerance": 1e-13, "method": "cube"}),
-        ],
-    ),
-    SUBSET: (
-        {},
-        [
-            *({"slenderness_max": 0.5, "slenderness_min": 0.6}, {"frequency_ratio_min": "nan"}),
-            *({"alpha_deg_max": "nan"}, {"variables": "height"}, {"format": "json"}, {"colour": 1}),
-        ],
-    ),
-    "/v1/pulses": ({}, [{"samples": 1}]),
-    "/v1/datasets": ({}, [{"page": 2}, {"limit": 0}]),
-    "/v1/suites": ({}, [{"limit": 0}]),
-    "/v1/suites/demonstration": ({}, [{"format": "pdf"}]),
-}
-"""By route, ordinary parameters and changes of them; the first of a change is wrong."""
+WITHOUT_CUBE = [
+    *({"frequency_ratio": 40}, {"slenderness": 0.01}, {"restitution": 0.7}, {"pulse": "-ricker"}),
+    *({"alpha_deg": 80}, {"absolute_tolerance": 1e-13}),
+]
+PARTS = [({"slenderness_max": 0.5, "slenderness_min": 0.6}), {"variables": "height"}]
 
 
-@pytest.mark.parametrize("route", WRONG)
-def test_a_wrong_value_is_named_with_what_is_allowed(client, route):
-    ordinary, wrong = WRONG[route]
-    for changes in wrong:
+def test_a_wrong_value_is_named_with_what_is_allowed(client):
+    for route, ordinary, changes in (
+        *(("/v1/response", POINT | {"method": "cube"}, wrong) for wrong in WITHOUT_CUBE),
+        *((SUBSET, {}, wrong) for wrong in PARTS),
+        ("/v1/response", POINT, {"tolerence": 1e-6}),
+        ("/v1/suites/demonstration", {}, {"format": "pdf"}),
+    ):
         name, value = next(iter(changes.items()))
         problem = assert_problem(client.get(route, params=ordinary | changes), 422, name)
         assert str(problem["value"]).startswith(str(value)) or float(problem["value"]) == value
@@ -257,18 +235,11 @@ SITES = [
     ("pga=3", "site"),
     ("pga=3&pgv=0.3&period_min=0.2&period_max=1", "site"),
     ("pga=3&period_min=1&period_max=0.2", "periods"),
-    ("pga=-3&pgv=0.3", "pga"),
-    ("pga=3&pgv=nan", "pgv"),
-    ("pga=3&period_min=1e-9&period_max=1", "period_min"),
     ("pga=3&pgv=0.3&shapes=sine,square", "shapes"),
-    ("pga=3&pgv=0.3&hazard=1", "hazard"),
     ("pga=3&pgv=0.3&samples=1.5&floor_periods=0.5&shapes=sine", "samples"),
     *((f"pga=3&pgv=0.3&floor_periods={wrong}", "floor_periods") for wrong in ("0", "a")),
 ]
-OF_RECORDS = [
-    *({"width": 0.0}, {"height": "x"}, {"scale": 0.0}, {"restitution": 1.5}, {"restitution": "plastic"}),
-    *({"unit": "feet"}, {"time_step": -1.0}, {"baseline_order": 7}, {"colour": 1}, {"vertical": "up"}),
-]
+OF_RECORDS = [{"height": "x"}, {"restitution": "plastic"}, {"unit": "feet"}, {"vertical": "up"}]
 
 
 def test_wrong_parameters_beside_a_body_are_named(client):
@@ -280,9 +251,6 @@ def test_wrong_parameters_beside_a_body_are_named(client):
     assert_problem(client.post(RESPONSE, params={"component": "Z"}, content=record), 422, "record")
     scales = "/v1/records/scales?width=0.5&height=2"
     assert_problem(client.post(scales + "&scale_min=2&scale_max=1", content=record), 422, "scale_max")
-    assert_problem(client.post(scales + "&points=1", content=record), 422, "points")
-    for query, name in (("edges=3", "edges"), ("confidence=1", "confidence"), ("confidence=nan", "confidence")):
-        assert_problem(client.post(f"{IDENTIFY}?{query}", json=identify.EXAMPLE), 422, name)
     for factor in (1e-300, 1e-200, 1e-100, 1e-30, 1e6):
         trace = identify.EXAMPLE | {"time": [factor * time for time in identify.EXAMPLE["time"]]}
         problem = assert_problem(client.post(IDENTIFY, json=trace), 422, "time")

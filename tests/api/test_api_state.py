@@ -106,8 +106,7 @@ def test_with_a_damaged_cube_the_solver_is_used_until_it_is_repaired(client, own
         assert health_of(damaged)["status"] == "ok"
 
 
-def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog, monkeypatch):
-    monkeypatch.setattr("rocking_api.dataset_checker.WATCH_SECONDS", 0.01)
+def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog):
     names = [CURVES, SINE]
     paths = [own_results / f"{name}.nc" for name in names]
     whole = [path.read_bytes() for path in paths]
@@ -129,7 +128,9 @@ def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog, monk
         assert caplog.text.count("a data set is no longer damaged") == 2
 
 
-def test_a_folder_that_is_replaced_during_a_check_is_checked_anew():
+def test_the_state_follows_a_folder_that_is_replaced_during_a_check_or_without_requests(monkeypatch):
+    monkeypatch.setattr("rocking_api.dataset_checker.MAX_WAIT", 0.05)
+    monkeypatch.setattr("rocking_api.dataset_checker.WATCH_SECONDS", 0.01)
     names = ["spectra/sine/eta-0.80", "spectra/sine/eta-0.85", "spectra/sine/eta-0.90"]
     present, long = [*names], Semaphore(0)
 
@@ -147,10 +148,15 @@ def test_a_folder_that_is_replaced_during_a_check_is_checked_anew():
             await checker.state()
         present[:] = names[:1]
         state = await checker.state()
+        assert (state.names, state.unchecked, state.problems, checker.damaged) == (names[:1], 0, {}, {})
+        watch = asyncio.create_task(checker.watch())
+        present[:] = names[:2]
+        while not checker.damaged:
+            await asyncio.sleep(0.01)
+        watch.cancel()
         long.release()
-        return state.names, state.unchecked, state.problems, checker.damaged
 
-    assert asyncio.run(asyncio.wait_for(followed(), 10)) == (names[:1], 0, {}, {})
+    asyncio.run(asyncio.wait_for(followed(), 10))
 
 
 def test_metrics_count_requests_and_points_by_source(results):

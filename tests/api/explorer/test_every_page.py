@@ -23,6 +23,17 @@ SIZES = [*((width, 100) for width in range(320, 1441, number(640, 40))), (768, 2
 # The charts follow the width of the window when the browser draws its next frame, before anything is seen.
 NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
+SMALL = """() => {
+    const alone = (one) => one.parentElement.textContent.trim() === one.textContent.trim();
+    const inText = (one) => getComputedStyle(one).display === "inline" && !alone(one);
+    return [...document.querySelectorAll("a, button, input:not([type=hidden]), select, textarea, summary")]
+        .filter((one) => one.checkVisibility() && !one.closest("#swagger-ui") && !inText(one))
+        .map((one) => [one.id || one.textContent, one.getBoundingClientRect()])
+        .filter(([, box]) => box.width > 0 && (box.height < 24 || box.width < 24))
+        .map(([name, box]) => `${name}: ${box.width} x ${box.height}`);
+}"""
+"""Controls below 24 px in height or width; links within a sentence are as high as its lines."""
+
 OVERLAPS = """() => {
     const parts = "input, select, button, a, label, output, #map-marks, #legend span, h1, h2, h3, p, dt, dd, canvas";
     const boxes = [...document.querySelectorAll(parts)]
@@ -155,6 +166,7 @@ def test_rules_of_every_page(open_page, name):
         assert {name.split()[0] for name in texts} == state.canvases
         sizes[width, percent] = {name: max(one["size"] for one in drawn) for name, drawn in texts.items()}
         faults = [*page.evaluate(OVERLAPS)] if name != "/docs" else []
+        faults += page.evaluate(SMALL) if percent == 100 else []
         faults += [fault for drawn in texts.values() for fault in faults_of(drawn)]
         if faults:
             found[width, percent] = faults
