@@ -199,6 +199,11 @@ def examples_of(description):
                     yield Example(path, operation, method.upper(), url, query, media_type, content)
 
 
+def texts(query):
+    """The values of a query as they are in an address."""
+    return {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in query.items()}
+
+
 def example_of(parameter):
     """The example, the default, or the first of the allowed values."""
     schema = parameter["schema"]

@@ -318,7 +318,7 @@ def walk_commands(walk: Walk, folder: Path) -> None:
     for name, content in files.items():
         (folder / name).write_text(content, encoding="utf-8")
     for one in COMMANDS:
-        walk.call(one, "", partial(run_command, one, folder))
+        walk.call(one, "", partial(run_command, one, folder, refused="an ordinary command is refused"))
         for place in re.finditer(r"(?<==)\d+(\.\d+)?(?![\d:])", one):
             for other in walk.values(float(place[0]) if "." in place[0] else int(place[0])):
                 changed = one[: place.start()] + str(other) + one[place.end() :]
@@ -328,13 +328,13 @@ def walk_commands(walk: Walk, folder: Path) -> None:
         walk.call("fragility", other, partial(run_command, "fragility suite.json", folder))
 
 
-def run_command(text: str, folder: Path) -> str:
+def run_command(text: str, folder: Path, refused: str = "refused") -> str:
     argv = [str(folder / one) if one.endswith((".csv", ".json")) and one[0] != "-" else one for one in text.split()]
     argv = [one.replace("=record.csv", f"={folder}/record.csv") for one in argv]
     found = CliRunner().invoke(command_line, [*argv, *(["--output=picture.png"] if argv[0] == "plot" else [])])
     if found.exception is not None and not isinstance(found.exception, SystemExit):
         raise found.exception
-    endings = {0: "answered", 2: "refused"}
+    endings = {0: "answered", 2: refused}
     return endings.get(found.exit_code, f"exit code {found.exit_code}, {found.output[-300:]}")
 
 

@@ -21,7 +21,7 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 from rocking._excitation.pulses import PULSE_NAMES
-from tests.api.conftest import Example, examples_of
+from tests.api.conftest import Example, examples_of, texts
 from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0
@@ -130,9 +130,7 @@ def request(seed: int, k: int, names: list[str], examples: list[Example]) -> Sen
 
 def _changed(draw: random.Random, example: Example) -> tuple[str, bytes]:
     """Query and body of an example: with an extreme number, another pulse, a part that is hostile, or damaged."""
-    given = [
-        (name, str(value).lower() if isinstance(value, bool) else str(value)) for name, value in example.query.items()
-    ]
+    given = [*texts(example.query).items()]
     body = bytearray(example.body.encode())
     change = draw.choice(["none", "number", "number", "pulse", "hostile", "damaged"])
     if change == "number" and (places := [*A_NUMBER.finditer(example.body)]) and (draw.random() < 0.5 or not given):

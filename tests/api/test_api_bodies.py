@@ -4,7 +4,7 @@ import pytest
 
 import rocking
 from rocking._dimensional.body_kinds import WITHOUT_FILES as KINDS
-from tests.api.conftest import assert_problem
+from tests.api.conftest import assert_problem, texts
 from tests.sampling import but_long, number, sample
 
 RECORD = "time [s],a [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
@@ -26,7 +26,6 @@ ROUTES = {
     "/v1/identify": (TRACE, {"confidence": 0.9, "degrees": True, "edges": 2}),
 }
 OTHER = {"pga": 2.0, "width": 0.5, "pulse": "cosine", "confidence": 0.8}
-FILES = {"/v1/records/" + name: RECORD for name in ("response", "history", "scales", "pulse")}
 
 
 def answer_of(response):
@@ -37,23 +36,18 @@ def answer_of(response):
 
 
 @pytest.mark.parametrize("route", ROUTES)
-def test_the_same_parameters_in_the_body_and_in_the_query_have_the_same_answer(client, route):
+def test_parameters_in_the_body_and_in_the_query_have_the_same_answer_and_the_same_refusals(client, route):
     content, params = ROUTES[route]
     inside = client.post(route, json=content | params)
     assert inside.status_code == (422 if route == "/v1/identify" else 200), inside.text  # three samples are too few
     for name in sample([*params], number(1, len(params))):
         rest = {key: value for key, value in params.items() if key != name}
-        text = str(params[name]).lower() if isinstance(params[name], bool) else params[name]
-        assert answer_of(client.post(route, params={name: text}, json=content | rest)) == answer_of(inside)
-        assert answer_of(client.post(route, params={name: text}, json=content | params)) == answer_of(inside)
-    if route in FILES:
-        texts = {name: str(value).lower() if isinstance(value, bool) else value for name, value in params.items()}
-        assert answer_of(client.post(route, params=texts, content=FILES[route])) == answer_of(inside)
+        query = texts({name: params[name]})
+        assert answer_of(client.post(route, params=query, json=content | rest)) == answer_of(inside)
+        assert answer_of(client.post(route, params=query, json=content | params)) == answer_of(inside)
+    if "record" in content:
+        assert answer_of(client.post(route, params=texts(params), content=RECORD)) == answer_of(inside)
 
-
-@pytest.mark.parametrize("route", ROUTES)
-def test_two_values_unknown_parameters_and_wrong_values_are_refused_in_either_place(client, route):
-    content, params = ROUTES[route]
     name = next(name for name in OTHER if name in params)
     problem = assert_problem(client.post(route, params={name: OTHER[name]}, json=content | params), 422, name)
     assert problem["allowed"] == "one value"

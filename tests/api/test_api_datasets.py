@@ -239,14 +239,6 @@ def test_netcdf_holds_the_nodes_within_the_ranges(client, expected):
         assert part["peak_rotation"].attrs["long_name"] == expected["peak_rotation"].attrs["long_name"]
 
 
-def test_csv_has_a_row_for_each_node(client, expected):
-    lines = client.get(SUBSET, params=RANGES | {"format": "csv"}).text.splitlines()
-    assert lines[0] == "alpha,slenderness,frequency_ratio,peak_rotation,outcome,impacts,exceeded_alpha"
-    assert len(lines) - 1 == expected["outcome"].size
-    peaks = [float(line.split(",")[3] or "nan") for line in lines[1:]]
-    np.testing.assert_array_equal(peaks, expected["peak_rotation"].values.ravel())
-
-
 @pytest.mark.parametrize(
     ("params", "name", "value", "allowed"),
     [

@@ -221,9 +221,3 @@ def test_spectrum_and_motion_of_a_point_are_those_of_the_solver_and_can_be_saved
     assert float(page.locator("#stage").get_attribute("data-ground")) == pytest.approx(way, rel=1e-3)
     page.goto("/?frequency_ratio=4&slenderness=0.3")
     expect(page.locator("#charts-caption")).to_contain_text("Dashed: α, past which its weight turns it over, and the")
-
-
-def test_a_bad_address_is_explained(open_page):
-    page = open_page("/?restitution=2")
-    expect(page.locator("#eta-problem")).to_contain_text("[0, 1]")
-    expect(page.locator("#map-status")).to_contain_text("No answer")

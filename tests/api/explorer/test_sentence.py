@@ -155,6 +155,9 @@ def test_errors_are_shown_at_once_in_the_words_of_the_form(open_page):
     page.locator("#width").press("Enter")
     expect(page.locator("#width-problem")).to_have_text("width is 30000; allowed: [0.0001, 10000] [m]")
     expect(page.locator("#answer")).to_be_hidden()
+    page.goto("/?restitution=2")
+    expect(page.locator("#eta-problem")).to_contain_text("[0, 1]")
+    expect(page.locator("#map-status")).to_contain_text("No answer")
 
 
 def test_a_pulse_is_previewed_given_by_samples_and_drawn(open_page):
