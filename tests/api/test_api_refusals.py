@@ -276,10 +276,10 @@ def test_types_and_codings_that_are_not_read_are_refused(client, route):
         assert_problem(client.post(route, content=bomb, headers=headers), 415, "Content-Encoding")
 
 
-@pytest.mark.parametrize("declared", ["²", "1e3", "-1", "", "9" * 6000])
-def test_odd_lengths_of_a_body(client, declared):
-    headers = {"content-type": JSON, "content-length": declared.encode("latin-1")}
-    assert client.post("/v1/response", content=b"{}", headers=headers).status_code in (413, 422)
+def test_odd_lengths_of_a_body(client):
+    for declared in ("²", "1e3", "-1", "", "9" * 6000):
+        headers = {"content-type": JSON, "content-length": declared.encode("latin-1")}
+        assert client.post("/v1/response", content=b"{}", headers=headers).status_code in (413, 422)
 
 
 def test_a_netcdf_file_of_a_wrong_size_or_damaged_anywhere(client):
