@@ -1,6 +1,7 @@
 """What is wrong is refused by name, with its value and what is allowed; afterwards the service answers.
 
-Each kind of fault once for each route that meets it: values, bodies, sizes, types.
+Each kind of fault once for each route that meets it: bodies, sizes, types, and values that depend on others. Single
+parameters of all routes are in `test_openapi.py`.
 """
 
 import gzip
@@ -52,7 +53,7 @@ WITHOUT_CUBE = [
     *({"frequency_ratio": 40}, {"slenderness": 0.01}, {"restitution": 0.7}, {"pulse": "-ricker"}),
     *({"alpha_deg": 80}, {"absolute_tolerance": 1e-13}),
 ]
-PARTS = [({"slenderness_max": 0.5, "slenderness_min": 0.6}), {"variables": "height"}]
+PARTS = [{"slenderness_max": 0.5, "slenderness_min": 0.6}, {"variables": "height"}]
 
 
 def test_a_wrong_value_is_named_with_what_is_allowed(client):
