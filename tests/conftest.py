@@ -29,7 +29,7 @@ FIRST = (
     "tests/workflow/test_workflow_recovery.py",  # needs the shared run
     "tests/repository/test_docs.py",  # needs it
     "tests/workflow/test_suite.py",
-    "tests/api/test_extreme_numbers.py",
+    "tests/api/test_api_fuzz.py",
     "tests/api/explorer/",  # together: the files share a browser and a service, which end with the last of them
     "tests/benchmarks/test_benchmarks.py",
     "tests/workflow/test_workflow.py",
@@ -39,7 +39,6 @@ FIRST = (
     "tests/evidence/test_free_rocking.py",
     "tests/base/test_compilation.py",
     "tests/repository/test_types.py",
-    "tests/api/test_api_fuzz.py",
     "tests/solver/test_stages.py",
 )
 """Beginnings of the names of files that run first: long ones, so that no process is left idle by one at the end."""

@@ -1,8 +1,11 @@
 """A small results folder, and the service over it."""
 
+import json
 import shutil
 import time
 from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import quote, urlencode
 
 import numpy as np
 import pytest
@@ -30,8 +33,31 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
 """Names of the data sets in the results."""
 
 
+JSON, CSV, NC = "application/json", "text/csv", "application/x-netcdf"
+
 NAPA = Path(__file__).parents[2] / "workflow/motions/napa_HNE.csv"
 """A record of the workflow."""
+
+
+POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+BLOCK = {"pulse": "sine", "width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
+
+
+def of_point(*left_out, **more):
+    """The parameters of the point but some, and others."""
+    return {name: value for name, value in POINT.items() if name not in left_out} | more
+
+
+QUERIES = {
+    "/v1/response": POINT,
+    "/v1/blocks/response": BLOCK | {"method": "solver"},
+    "/v1/thresholds": of_point("slenderness"),
+    "/v1/spectrum": of_point("frequency_ratio", points=20),
+    "/v1/history": of_point(samples=20, duration=9.0),
+    "/v1/overturning": of_point("slenderness", "frequency_ratio"),
+    "/v1/map": of_point("slenderness", "frequency_ratio", columns=3, rows=3),
+}
+"""An ordinary query of each route that computes the response to a pulse."""
 
 
 @pytest.fixture(scope="session")
@@ -78,6 +104,14 @@ def own_results(results, tmp_path):
     return shutil.copytree(results, tmp_path / "results")
 
 
+def until(condition, seconds=20):
+    """Wait for what another thread does."""
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert condition()
+
+
 def client_of(results, **settings):
     """A client of another service."""
     return TestClient(create_app(Settings(results=results, **settings)), raise_server_exceptions=False)
@@ -89,6 +123,12 @@ def health_of(client):
     while (health := client.get("/health").json())["unchecked"] and time.monotonic() < deadline:
         time.sleep(0.01)
     return health
+
+
+def post(client, route, content, media_type=JSON, **query):
+    """The response to a body; the route may have a query of its own."""
+    address = f"{route}{'&' if '?' in route else '?'}{urlencode(query)}"
+    return client.post(address, content=content, headers={"content-type": media_type})
 
 
 def metrics_of(client):
@@ -113,6 +153,66 @@ def assert_problem(response, status, parameter=None):
         assert problem["parameter"] == parameter
         assert problem["allowed"]
     return problem
+
+
+def parts_of(schema, schemas, seen=None):
+    """Yield a schema of the description and all within it, also those that it names, once."""
+    seen = set() if seen is None else seen
+    name = schema.get("$ref", "").rpartition("/")[2] if isinstance(schema, dict) else ""
+    if name and name not in seen:
+        seen.add(name)
+        yield from parts_of(schemas[name], schemas, seen)
+    if isinstance(schema, dict):
+        yield schema
+    for one in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from parts_of(one, schemas, seen)
+
+
+class Example(NamedTuple):
+    """An example of the description of the service."""
+
+    path: str
+    operation: dict
+    method: str
+    url: str
+    query: dict
+    media_type: str | None
+    body: str
+
+
+def examples_of(description):
+    """Yield all of them: of a parameter what a page fills in, of a body each of its types."""
+    for path, methods in description["paths"].items():
+        for method, operation in methods.items():
+            url, query = path, {}
+            for parameter in operation.get("parameters", []):
+                value, name = example_of(parameter), parameter["name"]
+                assert value is not None or not parameter["required"], f"{path}: {name} has no example"
+                if parameter["in"] == "path":
+                    url = url.replace(f"{{{name}}}", quote(value, safe="/."))
+                elif value is not None:
+                    query[name] = value
+            for media_type, body in operation.get("requestBody", {}).get("content", {None: {"example": ""}}).items():
+                if body.get("schema", {}).get("format") != "binary":
+                    assert "example" in body, f"{path}: {media_type} has no example"
+                    content = json.dumps(body["example"]) if media_type == JSON else body["example"]
+                    yield Example(path, operation, method.upper(), url, query, media_type, content)
+
+
+def texts(query):
+    """The values of a query as they are in an address."""
+    return {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in query.items()}
+
+
+def example_of(parameter):
+    """The example, the default, or the first of the allowed values."""
+    schema = parameter["schema"]
+    for examples in (parameter.get("examples"), schema.get("examples")):
+        if examples:
+            return examples[0] if isinstance(examples, list) else next(iter(examples.values()))["value"]
+    if schema.get("default") is not None:
+        return schema["default"]
+    return schema["enum"][0] if parameter.get("required") and "enum" in schema else None
 
 
 if __name__ == "__main__":

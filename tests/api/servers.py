@@ -111,11 +111,9 @@ def proxy(service_port, folder):
 class Stopwatch:
     """Time since its creation [s], without that in which the processors did not work for the processes.
 
-    That is the time that the main threads of the processes were ready to run but did not, while others did; that of
-    their other threads must count, as the event loop waits for those that parse bodies. It is also the time for which a
-    virtual machine stops, as when its host gives it memory: the clocks go on, the ticks of its processors do not. The
-    result is never longer than the processor time of the processes, which a delay that they cause themselves cannot
-    exceed.
+    That is the time that the main threads of the processes were ready to run while others did, and that for which a
+    virtual machine stops: the clocks go on, the ticks of its processors do not. The result is never longer than the
+    processor time of the processes, which a delay that they cause themselves cannot exceed.
     """
 
     def __init__(self, *processes):

@@ -2,19 +2,17 @@
 
 import csv
 import io
+import re
 
 import pytest
 from rocking_api.routers import blocks
 
 import rocking
-from rocking._base.constants import STANDARD_GRAVITY
-from tests.api.conftest import assert_problem
-
-QUERY = {"width": 0.4, "height": 1.6, "pulse": "sine", "peak_acceleration": 4.0, "period": 0.5}
+from tests.api.conftest import BLOCK, CSV, assert_problem, post
 
 
 def get_response(client, **changes):
-    return client.get("/v1/blocks/response", params=QUERY | changes)
+    return client.get("/v1/blocks/response", params=BLOCK | changes)
 
 
 LIFTS = {"width": 1.6, "peak_acceleration": 60.0, "period": 0.1, "restitution": 0.9}
@@ -24,25 +22,25 @@ LIFTS = {"width": 1.6, "peak_acceleration": 60.0, "period": 0.1, "restitution": 
     ("changes", "words", "overturned"),
     [
         ({}, "", False),
-        ({"peak_acceleration": 40.0, "period": 0.1, "restitution": 0.9}, "may slide: pure", False),
         ({"peak_acceleration": 30.0}, "may slide: pure", True),
-        ({"peak_acceleration": 3.0, "restitution": 0.5}, "slide at an impact", False),
         (LIFTS, "lifts off", False),
         ({"width": 1.62, "peak_acceleration": 5.0, "restitution": 0.5}, "wider than high", False),
-        ({"peak_acceleration": 4.6}, "changes within 5 % of this peak acceleration: at 4.7", False),
         ({"peak_acceleration": 4.8}, "changes within 5 % of this peak acceleration: at 4.7", True),
         ({"peak_acceleration": 2.6, "restitution": 0.5}, "impacts accumulate", False),
         ({"pulse": "-cosine", "gravity": 3.71}, "", False),
     ],
 )
 def test_numbers_warnings_and_margins_are_those_of_the_package(client, changes, words, overturned):
-    given = QUERY | changes
+    given = BLOCK | changes
     block = rocking.Block(given["width"], given["height"], **{k: given[k] for k in ("gravity",) if k in given})
     motion = {name: given[name] for name in ("peak_acceleration", "period", "restitution") if name in given}
     expected = block.response(given["pulse"], **motion)
     found = get_response(client, method="solver", **changes).json()
     assert found["overturned"] is overturned
     assert words in " ".join(found["warnings"])
+    if not found["rocking_model_applies"]:  # the meaning ends with what a block that is held would do
+        first = "would lift off" if words == "lifts off" else "would slide: "
+        assert re.match(first + ".*the rocking model does not apply.*" + found["response"]["meaning"], found["meaning"])
     summary = expected.summary()
     assert (summary["friction_demand"] is None) is (words == "lifts off")
     for name in {*summary} & {*found} - {"notes"}:
@@ -70,22 +68,6 @@ def test_a_body_whose_mass_is_not_in_the_middle(client):
     assert_problem(get_response(client, offset=0.03, method="cube"), 422, "method")
     problem = assert_problem(get_response(client, offset=0.2), 422, "offset")
     assert "less than half the width to either side, 0.2 m" in problem["detail"]
-
-
-@pytest.mark.parametrize(
-    ("changes", "first"),
-    [
-        ({"width": 1.0, "height": 1.0, "peak_acceleration": 1.5 * STANDARD_GRAVITY}, "would slide: "),
-        (LIFTS, "would lift off"),
-        ({"peak_acceleration": 3 * STANDARD_GRAVITY}, "would slide: "),  # and overturns, if held against sliding
-    ],
-)
-def test_the_meaning_starts_with_the_rocking_model_not_applying(client, changes, first):
-    response = get_response(client, **changes).json()
-    assert not response["rocking_model_applies"]
-    assert response["meaning"].startswith(first)
-    assert "the rocking model does not apply" in response["meaning"]
-    assert response["meaning"].endswith(response["response"]["meaning"])  # what a block that is held would do
 
 
 def test_a_search_beyond_its_time_limit_leaves_the_rest_of_the_response(client, monkeypatch):
@@ -121,16 +103,14 @@ def test_many_blocks_as_json_and_csv(client):
     assert found["overturned"] == [True, False, True]
     assert found["metadata"]["assumptions"]
     url = "/v1/blocks/response?pulse=sine"
-    text = client.post(url, content=TABLE, headers={"content-type": "text/csv"}).text.splitlines()
+    text = post(client, url, TABLE, CSV).text.splitlines()
     columns = dict(zip(text[0].split(","), zip(*(line.split(",") for line in text[1:]), strict=True), strict=True))
     assert columns["overturned"] == ("true", "false", "true")
     assert float(columns["peak_rotation"][1]) == pytest.approx(found["peak_rotation"][1], rel=1e-9)
-    both = client.post(url + "&format=json", content=TABLE, headers={"content-type": "text/csv"}).json()
-    assert (both["outcome"], both["totals"]) == (found["outcome"], found["totals"])
-    counted = client.post(url + "&format=json", content=TABLE + "Total,1,1,1,1\n", headers={"content-type": "text/csv"})
-    assert (counted.json()["outcome"], counted.json()["totals"]) == (found["outcome"], ["row 5: Total"])
+    both = post(client, url, TABLE + "Total,1,1,1,1\n", CSV, format="json").json()
+    assert (both["outcome"], both["totals"]) == (found["outcome"], ["row 5: Total"])
     wide = "w [cm],h [cm],thickness [cm],pga [g],t [s]\n60,160,12,0.4,0.5\n"
-    unused = client.post(url + "&format=json", content=wide, headers={"content-type": "text/csv"}).json()
+    unused = post(client, url, wide, CSV, format="json").json()
     assert (unused["skipped"], unused["columns"]["w [cm]"]) == (["thickness [cm]"], "width")
 
 
@@ -138,10 +118,8 @@ def test_a_text_may_state_another_unit(client):
     stated = {"width": "40 cm", "height": "1600mm", "peak_acceleration": "0.5 g", "period": "500 ms"}
     found = client.get("/v1/blocks/response", params={"pulse": "sine", "mass_height": "80 cm"} | stated).json()
     same = {"width": 0.4, "height": 1.6, "peak_acceleration": 0.5 * 9.80665, "period": 0.5}
-    assert (
-        found["query"]
-        == client.get("/v1/blocks/response", params={"pulse": "sine", "mass_height": 0.8} | same).json()["query"]
-    )
+    plain = client.get("/v1/blocks/response", params={"pulse": "sine", "mass_height": 0.8} | same).json()
+    assert found["query"] == plain["query"]
     many = client.post("/v1/blocks/response", json={"pulse": "sine", "blocks": [stated]}).json()
     assert many["width"] == [0.4]
 
@@ -150,19 +128,10 @@ def test_names_come_out_as_they_went_in_but_for_formulas(client):
     names = ["vase, blue", 'say "no"', "two\nlines", "a\rb", "=1+1", "+1", "@SUM(A1)", "-2+3"]
     sent = io.StringIO(newline="")
     csv.writer(sent).writerows([TABLE.splitlines()[0].split(","), *([name, 0.2, 80, 4, 500, 0.9] for name in names)])
-    url, headers = "/v1/blocks/response?pulse=sine", {"content-type": "text/csv"}
-    response = client.post(url, content=sent.getvalue(), headers=headers)
+    url = "/v1/blocks/response?pulse=sine"
+    response = post(client, url, sent.getvalue(), CSV)
     assert response.status_code == 200
     rows = list(csv.DictReader(io.StringIO(response.text, newline=""), strict=True))
     assert [row["name"] for row in rows] == [*names[:4], *(f"'{name}" for name in names[4:])]
     assert {row["restitution"] for row in rows} == {"0.9"}
-    assert client.post(url + "&format=json", content=sent.getvalue(), headers=headers).json()["name"] == names
-
-
-def test_an_impact_at_a_share_of_the_half_base_is_the_number(client):
-    sine = 1 / 17
-    eta = (4 - 3 * sine * (1 + 0.49)) / (4 - 3 * sine * (1 - 0.49))
-    found = get_response(client, restitution="kalliontzis(k=0.7)")
-    assert found.status_code == 200, found.text
-    assert found.json()["restitution"] == pytest.approx(eta)
-    assert_problem(get_response(client, restitution="kalliontzis"), 422, "restitution")
+    assert post(client, url, sent.getvalue(), CSV, format="json").json()["name"] == names

@@ -1,21 +1,26 @@
-"""Spectrum, history, thresholds, map and boundaries, under a pulse by its name and by samples, in every format."""
+"""Spectrum, history, thresholds, map and boundaries, under a pulse by its name and by samples, in every format.
+
+And the catalogue of pulses.
+"""
 
 import csv
 import io
-import time
 
 import numpy as np
 import pytest
 import xarray as xr
-from rocking_api.models.pulses import MAX_SAMPLES
 from rocking_api.routers import overturning
 
 import rocking
+from rocking import precompile
 from rocking._boundary.curves import join_curves
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._excitation import pulses
+from rocking._excitation.pulses import PULSE_NAMES
 from rocking._model.response import Outcome
 from tests.api.conftest import NAPA, assert_problem, client_of
+from tests.excitation.test_smooth_pulse import CHIRP
 
 SAMPLES = {"acceleration": [0.0, 2.0, -1.0, 0.0], "time": [0.0, 0.1, 0.4, 1.0], "name": "ramp"}
 RAMP = rocking.SampledPulse(SAMPLES["acceleration"], SAMPLES["time"], name="ramp")
@@ -233,19 +238,6 @@ def test_boundaries_are_those_of_the_requested_angle_and_traced_where_they_are_d
         assert client.get("/v1/overturning", params=CURVES).json()["source"] == "solver"
 
 
-@pytest.mark.parametrize("changes", [{"restitution": 0.5}, {"pulse": "half_sine"}])
-def test_boundaries_that_are_not_stored_are_traced(client, changes):
-    query = CURVES | changes
-    result = client.get("/v1/overturning", params=query).json()
-    assert (result["source"], result["data_version"]) == ("solver", None)
-    curve = max(result["curves"], key=lambda curve: len(curve["slenderness"]))
-    assert curve["outcome"].startswith("OVERTURNED")
-    for s, w in list(zip(curve["slenderness"], curve["frequency_ratio"], strict=True))[::40]:
-        beside = {"slenderness": s * (1 + np.array([-1e-9, 1e-9])), "frequency_ratio": w}
-        overturned = rocking.peak_response(query["pulse"], **beside, restitution=query["restitution"]).overturned
-        assert overturned[0] != overturned[1] or s < 0.02
-
-
 @pytest.mark.parametrize("form", ["json", "csv", "nc"])
 def test_a_pulse_that_overturns_nothing_has_no_boundaries(client, form):
     response = post(client, "/v1/overturning", pulse=SAMPLES | {"period": 1e6}, format=form)
@@ -253,14 +245,39 @@ def test_a_pulse_that_overturns_nothing_has_no_boundaries(client, form):
     assert form != "json" or response.json()["curves"] == []
 
 
-def test_long_work_under_samples_ends_at_the_time_limit(results):
-    rng = np.random.default_rng(1)
-    long = {"acceleration": rng.uniform(-1, 1, MAX_SAMPLES).tolist(), "period": 10.0}
-    with client_of(results, max_seconds=0.3) as client:
-        while client.get("/v1/thresholds?pulse=sine&frequency_ratio=3&restitution=0.8").status_code != 200:
-            time.sleep(0.1)
-        assert post(client, "/v1/map", pulse=long, columns=300, rows=300, alpha_deg=20.0).status_code == 504
-        problem = post(client, "/v1/overturning", pulse=long, alpha_deg=20.0)
-        assert problem.status_code == 504
-        assert "POST /v1/map" in problem.json()["detail"]
-        assert client.get("/health").status_code == 200
+def test_pulses_are_those_of_the_package(client):
+    found = client.get("/v1/pulses", params={"samples": 33}).json()["pulses"]
+    assert [one["name"] for one in found][: len(PULSE_NAMES)] == list(PULSE_NAMES)
+    for one in found[: len(PULSE_NAMES)]:
+        pulse = rocking.pulse(one["name"])
+        phase = np.linspace(pulse.start, pulse.end, 33)
+        np.testing.assert_allclose(one["time"], (phase - pulse.start) / (2 * np.pi), atol=5.1e-5)
+        np.testing.assert_allclose(one["acceleration"], pulse.shape(phase), atol=5.1e-5)
+        assert one["duration"] == pytest.approx((pulse.end - pulse.start) / (2 * np.pi))
+        assert one["definition"].endswith((".", ")"))
+    last = next(one for one in found if one["name"] == "mavroeidis_papageorgiou")
+    assert {one["name"]: one["default"] for one in last["parameters"]} == {"cycles": 2.0, "phase": 0.0}
+    assert {one["name"]: one["range"] for one in last["parameters"]}["cycles"] == "(1, 20]"
+
+
+def test_a_pulse_takes_its_parameters_in_its_text(client):
+    text = "mavroeidis_papageorgiou(cycles=3, phase=90deg)"
+    groups = {"slenderness": 0.5, "frequency_ratio": 4.0, "restitution": 0.9}
+    expected = rocking.peak_response(rocking.pulse("mavroeidis_papageorgiou", cycles=3, phase=np.pi / 2), **groups)
+    answer = client.get("/v1/response", params={"pulse": text, **groups}).json()
+    assert answer["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-12)
+    assert_problem(client.get("/v1/response", params={"pulse": "sine(cycles=2)", **groups}), 422, "cycles")
+
+
+def test_a_registered_pulse_is_listed_and_solved(tmp_path, monkeypatch):
+    monkeypatch.setattr(pulses, "_REGISTERED", {})
+    pulses.register(CHIRP)
+    precompile.main()  # the service refuses requests while it compiles
+    groups = {"slenderness": 0.45, "frequency_ratio": 3.0, "restitution": 0.85}
+    with client_of(tmp_path) as client:
+        listed = {pulse["name"]: pulse for pulse in client.get("/v1/pulses").json()["pulses"]}
+        assert listed["chirp"]["duration"] == pytest.approx(4.0)
+        response = client.get("/v1/response", params=groups | {"pulse": "chirp", "method": "solver"})
+        assert response.status_code == 200, response.text
+        solved = float(rocking.peak_response(CHIRP, **groups).peak_rotation)
+        assert response.json()["peak_rotation"] == pytest.approx(solved, abs=1e-4)

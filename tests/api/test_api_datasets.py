@@ -1,5 +1,5 @@
-"""Catalogue, description, download and zarr keys of the data sets, also of those that are damaged, unreadable, replaced
-or written to while the service sends them.
+"""Catalogue, description, parts, download and zarr keys of the data sets, also of those that are damaged, unreadable,
+replaced or written to while the service sends them.
 """
 
 import asyncio
@@ -9,16 +9,19 @@ import io
 import os
 import zipfile
 
+import numpy as np
 import pytest
+import xarray as xr
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
-from tests.api.conftest import NAMES, assert_problem, client_of, health_of
-from tests.datasets.test_lookup_files import UNREADABLE, folder_forbidden, folder_loop, replaced
+from rocking._datasets.cube import read_dataset, write_dataset
+from tests.api.conftest import NAMES, POINT, assert_problem, client_of, health_of
+from tests.api.fuzzer import Sent, exchange
+from tests.datasets.test_lookup_files import UNREADABLE, replaced
 
 NAME, CURVES = "spectra/sine/eta-0.85", "overturning/sine/eta-0.85"
 URL = f"/v1/datasets/{NAME}.nc"
-POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 FORMS = ("", ".nc", ".zarr/.zmetadata")
 
 
@@ -121,10 +124,6 @@ def test_what_is_unchanged_is_not_sent_again(client, content):
         response = client.get(URL, headers={"if-none-match": form.format(etag)})
         assert (response.status_code, response.content, response.headers["etag"]) == (304, b"", etag)
     assert client.get(URL, headers={"if-none-match": '"other"'}).content == content
-    chunk = f"/v1/datasets/{NAME}.zarr/peak_rotation/0.0.0"
-    response = client.get(chunk)
-    assert response.headers["content-type"] == "application/octet-stream"
-    assert client.get(chunk, headers={"if-none-match": response.headers["etag"]}).status_code == 304
 
 
 def test_ranges(client, content):
@@ -154,52 +153,25 @@ def test_ranges(client, content):
         assert assert_problem(client.get(URL, headers={"range": requested}), 400, "Range")["value"] == requested
 
 
-def download(results, change, **headers):
-    """Status, headers and body of a download during which something changes after the head."""
-
-    async def scenario():
-        app = create_app(Settings(results=results))
-        scope = {
-            "type": "http",
-            "method": "GET",
-            "path": URL,
-            "raw_path": URL.encode(),
-            "query_string": b"",
-            "http_version": "1.1",
-            "headers": [(name.encode(), value.encode()) for name, value in {"host": "a", **headers}.items()],
-        }
-        status, received, body = 0, {}, b""
-
-        async def send(message):
-            nonlocal status, received, body
-            if message["type"] == "http.response.start":
-                status, received = message["status"], dict(message["headers"])
-                change()
-            else:
-                body += message.get("body", b"")
-
-        try:
-            await app(scope, asyncio.Event().wait, send)
-        except RuntimeError as error:
-            return status, received, body, str(error)
-        return status, received, body, None
-
-    return asyncio.run(scenario())
+def download(results, change, body=None, **headers):
+    """The response to a download during which something changes after the head."""
+    app = create_app(Settings(results=results))
+    return asyncio.run(exchange(app, Sent("GET", URL, "", [*headers.items()], b"", False), change, body))
 
 
 def test_what_is_sent_is_what_was_hashed(path, own_results):
     content, other, digest = path.read_bytes(), other_of(path), digest_of(path)
-    status, headers, body, broken = download(own_results, lambda: path.with_name("link").hardlink_to(path))
-    assert (status, body, broken) == (200, content, None)
+    assert download(own_results, lambda: path.with_name("link").hardlink_to(path)).body == content
     for part, ranges in ((slice(None), {}), (slice(100, 70001), {"range": "bytes=100-70000"})):
-        status, headers, body, broken = download(own_results, lambda: replaced(path, other), **ranges)
-        assert (status, body, broken) == (206 if ranges else 200, content[part], None)
-        assert headers[b"etag"] == f'"{digest}"'.encode()
+        got = download(own_results, lambda: replaced(path, other), **ranges)
+        assert (got.status, got.body) == (206 if ranges else 200, content[part])
+        assert got.headers["etag"] == f'"{digest}"'
         replaced(path, content)
-    _, _, body, broken = download(own_results, lambda: path.write_bytes(bytes(len(content))))
-    assert "was written to while it was sent" in broken
-    assert len(body) < len(content)
-    assert content.startswith(body)
+    begun = io.BytesIO()
+    with pytest.raises(RuntimeError, match="was written to while it was sent"):
+        download(own_results, lambda: path.write_bytes(bytes(len(content))), begun)
+    assert len(begun.getvalue()) < len(content)
+    assert content.startswith(begun.getvalue())
 
 
 def test_a_url_with_a_digest_yields_these_bytes_or_none(path, own_results):
@@ -229,14 +201,6 @@ def test_a_url_with_a_digest_yields_these_bytes_or_none(path, own_results):
         assert client.get(f"/v1/datasets/{CURVES}.nc", headers={"if-none-match": old}).content == content
 
 
-def test_a_damaged_file_is_refused(path, own_results):
-    content = path.read_bytes()
-    path.write_bytes(content[: len(content) // 2] + bytes(len(content) - len(content) // 2))
-    with client_of(own_results) as client:
-        for form in FORMS:
-            assert "damaged" in assert_problem(client.get(f"/v1/datasets/{NAME}{form}"), 503)["detail"]
-
-
 @pytest.mark.parametrize("make", UNREADABLE)
 def test_an_unreadable_file_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
     path.unlink()
@@ -254,12 +218,46 @@ def test_an_unreadable_file_is_reported_and_others_are_served(path, own_results,
         assert_problem(client.get("/v1/response", params=POINT | {"method": "cube"}), 503)
 
 
-@pytest.mark.parametrize("make", [folder_loop, folder_forbidden])
-def test_an_unreadable_folder_is_reported_and_others_are_served(path, own_results, monkeypatch, make):
+SUBSET = f"/v1/datasets/{NAME}/subset"
+RANGES = {"slenderness_min": 0.5, "slenderness_max": 0.6, "frequency_ratio_min": 2.0, "frequency_ratio_max": 3.0}
+
+
+@pytest.fixture(scope="module")
+def expected(results):
+    cube = read_dataset(results / f"{NAME}.nc")
+    return cube.sel(slenderness=slice(0.5 - 1e-9, 0.6 + 1e-9), frequency_ratio=slice(2.0, 3.0))
+
+
+def test_netcdf_holds_the_nodes_within_the_ranges(client, expected):
+    response = client.get(SUBSET, params=RANGES | {"variables": "peak_rotation,outcome"})
+    assert response.headers["content-type"] == "application/x-netcdf"
+    with xr.open_dataset(io.BytesIO(response.content)) as part:
+        assert set(part.data_vars) == {"peak_rotation", "outcome"}
+        for name in ("slenderness", "frequency_ratio", "alpha", "peak_rotation", "outcome"):
+            np.testing.assert_array_equal(part[name], expected[name])
+        assert part.attrs["source_sha256"] == client.get(f"/v1/datasets/{NAME}").json()["sha256"]
+        assert part["peak_rotation"].attrs["long_name"] == expected["peak_rotation"].attrs["long_name"]
+
+
+@pytest.mark.parametrize(
+    ("params", "name", "value", "allowed"),
+    [
+        ({"alpha_deg_min": 30.5}, "alpha_deg_min", 30.5, "a range with nodes; they span 0 to 30 deg"),
+        ({"alpha_deg_max": -1}, "alpha_deg_max", -1.0, "a range with nodes; they span 0 to 30 deg"),
+        ({"alpha_deg_min": 12, "alpha_deg_max": 7}, "alpha_deg_max", 7.0, "at least alpha_deg_min, 12"),
+        ({"slenderness_min": "inf"}, "slenderness_min", "inf", "a range with nodes; they span 0.05 to 0.95"),
+        ({"slenderness_min": 0.501, "slenderness_max": 0.502}, "slenderness_min", 0.501,
+         "a range with nodes up to slenderness_max, 0.502; they span 0.05 to 0.95"),
+    ],
+)  # fmt: skip
+def test_a_range_without_nodes_is_named_by_its_parameter_in_its_unit(own_results, params, name, value, allowed):
+    path = own_results / f"{NAME}.nc"
+    cube = read_dataset(path)
+    parts = [cube.assign_coords(alpha=[np.radians(degrees)]) for degrees in (0.0, 10.0, 30.0)]
     path.unlink()
-    path.parent.rmdir()
-    make(path.parent, monkeypatch)
+    write_dataset(xr.concat(parts, "alpha", data_vars="minimal"), path)
     with client_of(own_results) as client:
-        assert "cannot be read" in health_of(client)["problems"]["spectra/sine"]
-        assert len(client.get("/v1/datasets").json()["datasets"]) == len(NAMES - {NAME})
-        assert client.get("/v1/response", params=POINT).json()["source"] == "solver"
+        problem = assert_problem(client.get(SUBSET, params=params), 422, name)
+        part = client.get(SUBSET, params=RANGES | {"alpha_deg_min": 30, "format": "csv"}).text
+    assert (problem["value"], problem["allowed"]) == (value, allowed)
+    assert part.count(f"\n{np.radians(30.0)},") == part.count("\n") - 1 > 0

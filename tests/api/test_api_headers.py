@@ -13,11 +13,10 @@ from rocking_api.http.encoding import negotiated_form
 from rocking_api.routers.object_page import EXAMPLES, SITE
 from rocking_api.routers.pages import PAGES
 
-from tests.api.conftest import assert_problem, client_of
+from tests.api.conftest import POINT, assert_problem, client_of
 
 STATIC = Path(rocking_api.__file__).parent / "static"
 BROWSER = "text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"
-POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 DATASET, SUITE = "/v1/datasets/spectra/sine/eta-0.85", "/v1/suites/demonstration"
 SPECTRUM = "/v1/spectrum?pulse=sine&slenderness=0.6&restitution=0.85"
 
@@ -25,30 +24,21 @@ SPECTRUM = "/v1/spectrum?pulse=sine&slenderness=0.6&restitution=0.85"
 @pytest.mark.parametrize(
     ("accept", "form"),
     [
-        ("", "json"),
         (BROWSER, "json"),
         ("*/*", "json"),
         ("image/png", "json"),
-        ("application/*", "json"),
         ("text/*", "csv"),
         ("text/csv", "csv"),
-        ("TEXT/CSV ; Q=0.5", "csv"),
         ("text/csv;q=0.1, application/json", "json"),
         ("application/json;q=0.2, text/csv;charset=utf-8;q=0.30", "csv"),
-        ("text/csv, application/json", "csv"),
         ("*/*, text/csv", "csv"),
         ("application/json;q=0.1, */*", "csv"),
-        ("application/json;q=0", "csv"),
         ("application/json;q=0.000, */*;q=0.1", "csv"),
-        ("text/csv;q=0, */*", "json"),
         ("*/*;q=0", "json"),
         ("text/html;q=0, text/csv;q=0.1", "csv"),
-        ("text/html, text/csv", "json"),
         ("text/html;q=0.5, text/csv", "csv"),
         ("text/html, application/json;q=0.5, */*;q=0.8", "json"),
         ("application/xml", "nrml"),
-        ("application/xml, */*;q=0.8", "nrml"),
-        ("application/xml;q=0.1, application/json", "json"),
         ("application/xml, text/html;q=0.5", "json"),
         ("text/csv;q=2, application/json;q=nan", "csv"),
     ],
@@ -74,15 +64,14 @@ def test_a_browser_gets_the_default_and_no_download(client):
     assert client.get(f"{subset}&format=json").json()["allowed"] == "one of 'csv' or 'nc'"
 
 
-@pytest.mark.parametrize("path", [SUITE, SPECTRUM, f"{DATASET}/subset?slenderness_max=0.1"])
-def test_caches_are_told_what_depends_on_the_header(client, path):
+def test_caches_are_told_what_depends_on_the_header(client):
     def vary(address, **headers):
         return [name.strip() for name in client.get(address, headers=headers).headers.get("vary", "").split(",")]
 
-    assert "Accept" in vary(path)
-    assert "Accept" in vary(path, accept="text/csv")
-    assert "Accept" in vary(path, **{"if-none-match": client.get(path).headers["etag"]})
-    assert "Accept" not in vary(f"{path}{'&' if '?' in path else '?'}format=csv")
+    for path in (SUITE, SPECTRUM, f"{DATASET}/subset?slenderness_max=0.1"):
+        for headers in ({}, {"accept": "text/csv"}, {"if-none-match": client.get(path).headers["etag"]}):
+            assert "Accept" in vary(path, **headers)
+        assert "Accept" not in vary(f"{path}{'&' if '?' in path else '?'}format=csv")
 
 
 def test_errors_are_pages_for_browsers_only(client):
@@ -113,13 +102,9 @@ def test_a_busy_service_is_a_page_that_says_what_to_do(client, monkeypatch):
     ("path", "allowed"),
     [
         ("/v1/response", "GET, POST"),
-        ("/objects", "GET, POST"),
-        ("/object", "GET, POST"),
         ("/health", "GET, HEAD"),
         (SUITE, "GET"),
-        (DATASET, "GET"),
         (f"{DATASET}.nc", "GET, HEAD"),
-        (f"{DATASET}.zarr/.zgroup", "GET, HEAD"),
         ("/static/docs.js", "GET, HEAD"),
     ],
 )
@@ -206,17 +191,15 @@ def test_pages_load_nothing_from_outside(client, page):
     assert not re.search(r"<style|\sstyle=|\son\w+=|<script>", response.text)
     for link in re.findall(r'(?:src|href|action)="([^"]+)"', response.text):
         assert link.startswith("/")
-        if link != "/guide/":  # built apart: tests/api/test_guide.py
+        if link != "/guide/":  # built apart: tests/api/test_service_page.py
             assert client.get(link).status_code in (200, 422)  # 422: the form's action, without its parameters
     assert "http" not in response.text
 
 
-@pytest.mark.parametrize("library", ["uplot", "swagger-ui"])
-def test_vendored_libraries_are_what_was_published(library):
-    folder = STATIC / library
-    listed = (folder / "SHA256SUMS").read_text().split()
-    digests = dict(zip(listed[1::2], listed[::2], strict=True))
-    assert "LICENSE" in digests
-    assert set(digests) == {path.name for path in folder.iterdir()} - {"SHA256SUMS"}
-    for name, digest in digests.items():
-        assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
+def test_vendored_libraries_are_what_was_published():
+    for folder in (STATIC / "uplot", STATIC / "swagger-ui"):
+        listed = (folder / "SHA256SUMS").read_text().split()
+        digests = dict(zip(listed[1::2], listed[::2], strict=True))
+        assert "LICENSE" in digests
+        found = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
+        assert digests == {name: digest for name, digest in found.items() if name != "SHA256SUMS"}

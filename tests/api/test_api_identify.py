@@ -11,10 +11,9 @@ from rocking_api.routers.identify import EDGE_COLUMNS
 
 import rocking
 from benchmarks.accuracy.free_rocking import free_rocking
-from tests.api.conftest import assert_problem
+from tests.api.conftest import CSV, assert_problem, post
 
 URL = "/v1/identify"
-CSV = {"content-type": "text/csv"}
 ALPHA, P, ETA = 0.25, 2.5, 0.9
 
 
@@ -42,7 +41,7 @@ def test_the_block_is_that_of_a_direct_call(client, trace):
     assert answer["rotation"] == trace["rotation"]
     nan = np.isnan(expected["fitted"].values)
     assert [value is None for value in answer["fitted"]] == nan.tolist()
-    degrees = client.post(URL + "?degrees=true&confidence=0.9", content=as_csv(trace, 180 / math.pi), headers=CSV)
+    degrees = post(client, URL, as_csv(trace, 180 / math.pi), CSV, degrees="true", confidence=0.9)
     (row,) = csv.DictReader(io.StringIO(degrees.text))
     assert float(row["alpha"]) == pytest.approx(answer["alpha"][0], rel=1e-6)  # of the fit
 
@@ -51,11 +50,11 @@ def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
     body = as_csv(trace, 180 / math.pi, "time [s],rotation [deg]")
     expected = client.post(URL, json=trace).json()["alpha"]
     for query in ("", "?degrees=true"):
-        (row,) = csv.DictReader(io.StringIO(client.post(URL + query, content=body, headers=CSV).text))
+        (row,) = csv.DictReader(io.StringIO(post(client, URL + query, body, CSV).text))
         assert float(row["alpha"]) == pytest.approx(expected[0], rel=1e-6)
-    assert_problem(client.post(URL + "?degrees=false", content=body, headers=CSV), 422)
+    assert_problem(post(client, URL, body, CSV, degrees="false"), 422)
     radians = as_csv(trace, 1.0, "time [s],rotation [rad]")
-    assert_problem(client.post(URL + "?degrees=true", content=radians, headers=CSV), 422)
+    assert_problem(post(client, URL, radians, CSV, degrees="true"), 422)
 
 
 def test_frames_are_no_times(client):

@@ -1,37 +1,53 @@
-"""Under load: queue limit and time limit of heavy work, disconnects."""
+"""Under load: queue limit and time limit of heavy work, disconnects, and how little work one block is."""
 
 import asyncio
 import re
+import statistics
+import sys
 import threading
 import time
+from collections import Counter
+from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+import rocking_api
 import rocking_api.execution.evaluation
+from rocking_api.app import create_app
 from rocking_api.execution.executor import BoundedExecutor, BusyError, TimeLimitError
-from rocking_api.models.params import ResponseParams
+from rocking_api.models.batch import batch_of, parse_csv
+from rocking_api.models.params import LookupOptions, ResponseParams
+from rocking_api.models.pulses import MAX_SAMPLES
 from rocking_api.routers.response import get_response
+from rocking_api.settings import Settings
 from starlette.requests import ClientDisconnect
 
 import rocking
-from rocking._numba.cancellation import run_with_timeout
-from tests.api.conftest import assert_problem, client_of, metrics_of
+from rocking._base.errors import StoppedError
+from rocking._numba.cancellation import StopFlag
+from tests.api.conftest import CSV, POINT, QUERIES, assert_problem, client_of, metrics_of, of_point, post, until
+from tests.api.fuzzer import Sent, exchange
+from tests.sampling import number
 
-POINT = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 BATCH = POINT | {"slenderness": [0.6, 0.7]}
 
 
 class Gate:
-    """Heavy work that blocks until it is released."""
+    """Heavy work that blocks until it is released, and an executor for it."""
 
-    def __init__(self):
-        self.open = threading.Event()
-        self.begun = threading.Semaphore(0)
+    def __init__(self, queue=0):
+        self.open, self.begun = threading.Event(), threading.Semaphore(0)
+        self.executor = BoundedExecutor(workers=1, queue=queue, seconds=30)
 
     def work(self, *_):
         self.begun.release()
         assert self.open.wait(30)
         return "done"
+
+    def asked(self, host, cost=0, work=None):
+        """A task for a client that stays."""
+        return asyncio.create_task(self.executor.run(work or self.work, of_client(host), cost))
 
 
 def of_client(host):
@@ -41,18 +57,15 @@ def of_client(host):
 
 def test_clients_take_turns_and_the_cheapest_of_each_is_first():
     async def scenario():
-        executor, gate, order = BoundedExecutor(workers=1, queue=6, seconds=30), Gate(), []
+        gate, order = Gate(queue=6), []
 
         def work(name):
             return lambda _: (time.sleep(0.01), order.append(name))
 
-        async def later(client, name, cost):
-            await executor.run(work(name), of_client(client), cost)
-
-        tasks = [asyncio.create_task(executor.run(gate.work, of_client("a")))]
+        tasks = [gate.asked("a")]
         await asyncio.to_thread(gate.begun.acquire)
         asked = [("a", "a dear", 9), ("a", "a cheap", 1), ("a", "a middling", 5), ("b", "b", 99), ("c", "c", 99)]
-        tasks += [asyncio.create_task(later(*one)) for one in asked]
+        tasks += [gate.asked(client, cost, work(name)) for client, name, cost in asked]
         await asyncio.sleep(0.01)
         gate.open.set()
         await asyncio.gather(*tasks)
@@ -63,12 +76,12 @@ def test_clients_take_turns_and_the_cheapest_of_each_is_first():
 
 def test_one_client_does_not_fill_the_queue():
     async def scenario():
-        executor, gate = BoundedExecutor(workers=1, queue=3, seconds=30), Gate()
-        tasks = [asyncio.create_task(executor.run(gate.work, of_client("a"), cost)) for cost in range(4)]
+        gate = Gate(queue=3)
+        tasks = [gate.asked("a", cost) for cost in range(4)]
         await asyncio.to_thread(gate.begun.acquire)
         with pytest.raises(BusyError):
-            await executor.run(gate.work, of_client("a"))
-        other = asyncio.create_task(executor.run(gate.work, of_client("b"), 100))
+            await gate.asked("a")
+        other = gate.asked("b", 100)
         with pytest.raises(BusyError):  # the dearest of the client with the most
             await tasks[-1]
         gate.open.set()
@@ -169,41 +182,19 @@ def test_a_full_queue_is_503_with_retry_after_and_single_blocks_are_served(resul
         batch.join()
 
 
-HEAVY = {
-    "/v1/blocks/response": {"pulse": "sine", "width": 0.4, "height": 1.6, "peak_acceleration": 4.0,
-                            "period": 0.5, "method": "solver"},
-    "/v1/thresholds": {"pulse": "sine", "frequency_ratio": 6.0, "restitution": 0.85},
-    "/v1/spectrum": {"pulse": "sine", "slenderness": 0.6, "restitution": 0.85},
-    "/v1/map": {"pulse": "sine", "restitution": 0.85},
-    "/v1/overturning": {"pulse": "sine", "restitution": 0.85},
-    "/v1/history": POINT,
-}  # fmt: skip
-WRONG = {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0, "frequency_ratio": -1.0, "slenderness": -1.0,
-         "width": -2.0, "absolute_tolerance": -1.0, "highest": 0.5, "points": 1, "samples": 1, "columns": 1,
-         "rows": 1, "duration": -1.0, "frequency_ratio_min": -1.0, "slenderness_max": 0.0}  # fmt: skip
-
-
 def test_what_is_wrong_is_refused_before_queueing(results):
-    """With a full queue a valid request is refused with 503, an invalid one with 422."""
+    """With a full queue a valid request is refused with 503, an invalid one with 422; of queries in test_openapi.py."""
+    options, body = of_point("slenderness"), "slenderness\n{}\n"
     with client_of(results) as client:
-        paths = client.get("/openapi.json").json()["paths"]
         client.app.state.service.executor._capacity = 0
-        for path, query in HEAVY.items():
-            assert_problem(client.get(path, params=query), 503)
-            for name in {parameter["name"] for parameter in paths[path]["get"]["parameters"]} & {*WRONG}:
-                assert_problem(client.get(path, params=query | {name: WRONG[name]}), 422, name)
-
-        def post(form, **wrong):
-            if form == "json":
-                return client.post("/v1/response", json=BATCH | wrong)
-            tasks = {key: value for key, value in (POINT | wrong).items() if key != "slenderness"}
-            body = f"slenderness\n{wrong.get('slenderness', 0.6)}\n"
-            return client.post("/v1/response", params=tasks, content=body, headers={"content-type": "text/csv"})
-
-        for form in ("json", "csv"):
-            assert_problem(post(form), 503)
-            for name in ("pulse", "alpha_deg", "absolute_tolerance", "restitution", "frequency_ratio", "slenderness"):
-                assert_problem(post(form, **{name: WRONG[name]}), 422, name)
+        for path, query in QUERIES.items():
+            assert path == "/v1/response" or assert_problem(client.get(path, params=query), 503)
+        assert_problem(client.post("/v1/response", json=BATCH), 503)
+        assert_problem(post(client, "/v1/response", body.format(0.6), CSV, **options), 503)
+        for name, value in {"pulse": "sinus", "restitution": -1.0, "alpha_deg": 95.0}.items():
+            assert_problem(client.post("/v1/response", json=BATCH | {name: value}), 422, name)
+            assert_problem(post(client, "/v1/response", body.format(0.6), CSV, **options | {name: value}), 422, name)
+        assert_problem(post(client, "/v1/response", body.format(-1), CSV, **options), 422, "slenderness")
 
 
 def test_work_beyond_the_time_limit_is_504(results, monkeypatch):
@@ -212,24 +203,13 @@ def test_work_beyond_the_time_limit_is_504(results, monkeypatch):
     with client_of(results, max_seconds=0.2) as client:
         many = POINT | {"slenderness": [0.6] * 100_000, "method": "solver"}
         assert "0.2 s" in assert_problem(client.post("/v1/response", json=many), 504)["detail"]
+        samples = {"acceleration": np.random.default_rng(1).uniform(-1, 1, MAX_SAMPLES).tolist(), "period": 10.0}
+        for path in ("/v1/map", "/v1/overturning"):
+            given = {"pulse": samples, "restitution": 0.85, "alpha_deg": 20.0}
+            assert_problem(client.post(path, json=given), 504)
     with client_of(results, max_seconds=0.001) as client:
         hurried = client.post("/v1/assess?pga=3&period_min=0.1&period_max=2", json=objects)
         assert hurried.status_code in (503, 504)
-
-
-@pytest.mark.alone
-@pytest.mark.parametrize("path", ["/v1/thresholds", "/v1/overturning"])
-def test_a_search_beyond_the_time_limit_is_504_and_frees_its_worker(results, path):
-    """An elastic block under a slow pulse has very many impacts: the searches take seconds, or minutes."""
-    query = {"pulse": "c2", "restitution": 1.0, "alpha_deg": 12.0}
-    if path == "/v1/thresholds":
-        query["frequency_ratio"] = 0.02
-    with client_of(results, max_seconds=0.3) as client:
-        assert_problem(client.get(path, params=query), 504)
-        began = time.monotonic()
-        while client.app.state.service.executor.running:
-            time.sleep(0.01)
-            assert time.monotonic() - began < 0.5
 
 
 @pytest.mark.alone
@@ -242,18 +222,8 @@ def test_curves_of_an_elastic_block_end_early_and_the_answer_says_what_to_ask_in
         assert time.monotonic() - began < 4.0
         assert "time limit of 1 s" in detail
         instead = re.search(r"ask for the outcomes on a grid, (\S+),", detail)[1]
-        assert client.get(instead).status_code == 200
-        deadline = time.monotonic() + 5.0
-        while client.app.state.service.executor.running and time.monotonic() < deadline:
-            time.sleep(0.01)
-        assert not client.app.state.service.executor.running
-
-
-def test_a_part_of_the_work_may_have_its_own_time_limit():
-    def both(stop):
-        return run_with_timeout(slow_search, 0.05, stop), run_with_timeout(lambda part: part.is_set(), 10.0, stop)
-
-    assert asyncio.run(BoundedExecutor(1, 0, 10.0).run(both)) == (None, False)
+        assert client.get(f"{instead}&columns=4&rows=4").status_code == 200
+        until(lambda: not client.app.state.service.executor.running, 5)
 
 
 def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
@@ -273,3 +243,68 @@ def test_blocks_with_many_impacts_do_not_block_the_event_loop(results):
         longest, source = asyncio.run(scenario())
     assert source == "solver"
     assert longest < 0.1
+
+
+class Clock(StopFlag):
+    """Notes the processor time of the thread at each look at the flag, and sets it at one of them."""
+
+    def __init__(self, last=None):
+        super().__init__()
+        self.times = [time.thread_time()]
+        self.last = last
+
+    def check(self):
+        self.times.append(time.thread_time())
+        if len(self.times) == self.last:
+            self.set()
+        super().check()
+
+
+def test_a_table_of_a_million_points_is_read_whole_and_its_reading_can_be_stopped():
+    points, random = number(600_000, 1_000_000), np.random.default_rng(1)
+    table = {name: random.uniform(0.05, 0.95, points) for name in ("slenderness", "frequency_ratio")}
+    rows = zip(*(values.tolist() for values in table.values()), strict=True)
+    body = (",".join(table) + "\n" + "".join(f"{s!r},{w!r}\n" for s, w in rows)).encode()
+    clock, stopped = Clock(), Clock(last=5)
+    found = batch_of(LookupOptions(pulse="sine"), parse_csv(body, points, clock), {"restitution": 0.85}, points)
+    clock.times.append(time.thread_time())
+    for name, values in table.items():
+        np.testing.assert_array_equal(found.groups[name], values)
+    assert len(clock.times) > 50
+    assert max(np.diff(clock.times)) < 0.1
+    with pytest.raises(StoppedError):
+        parse_csv(body, points, stopped)
+    assert len(stopped.times) == 5
+
+
+ROOTS = tuple(str(Path(one.__file__).parent) for one in (rocking, rocking_api))
+
+
+@pytest.mark.parametrize(("method", "most"), [("cube", 60), ("solver", 40)])
+def test_one_block_is_little_work(results, method, most):
+    found, seconds = Counter(), []
+    query = f"pulse=sine&slenderness=0.413&frequency_ratio=5.1&restitution=0.85&method={method}"
+    sent = Sent("GET", "/v1/response", query, [], b"", False)
+
+    def count(frame, event, _):
+        if event == "call" and frame.f_code.co_filename.startswith(ROOTS):
+            found[frame.f_code.co_filename] += 1
+
+    async def scenario():
+        app = create_app(Settings(results=results))
+        async with app.router.lifespan_context(app):
+            await app.state.service.kernels.wait()
+            for _ in range(200):
+                began = time.process_time()
+                assert (await exchange(app, sent)).status == 200
+                seconds.append(time.process_time() - began)
+            sys.setprofile(count)
+            try:
+                await exchange(app, sent)
+            finally:
+                sys.setprofile(None)
+
+    asyncio.run(scenario())
+    assert found.total() <= most, found
+    assert len(found) <= 15, found
+    assert statistics.median(seconds) < 1e-3

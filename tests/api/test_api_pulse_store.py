@@ -1,14 +1,16 @@
 """Data sets, and the cubes of a pulse as one zarr store over the restitution, read over HTTP from a real server."""
 
 import re
+import shutil
 
+import httpx2
 import numpy as np
 import pytest
 import xarray as xr
 
 from rocking._datasets.cube import read_dataset, write_dataset
 from rocking._spectra.cubes import spectra, spectrum
-from tests.api.conftest import assert_problem, client_of
+from tests.api.conftest import POINT, assert_problem, client_of
 from tests.api.servers import serving
 
 ETAS = [0.80, 0.85, 0.90]
@@ -31,9 +33,11 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def server(folder, tmp_path_factory):
-    """A separate process: the netCDF library holds the interpreter while it reads from a URL."""
-    with serving(folder, tmp_path_factory.mktemp("serve") / "log") as server:
+    """Two separate processes, which end well: the netCDF library holds the interpreter while it reads from a URL."""
+    with serving(folder, tmp_path_factory.mktemp("serve") / "log", workers=2) as server:
         yield server
+        assert server.stop(120) == 0
+        assert "Traceback" not in server.log.read_text()
 
 
 @pytest.fixture(scope="module")
@@ -75,6 +79,14 @@ def test_the_store_holds_every_value_of_the_cubes(server, cubes):
             assert part.peak_rotation.attrs["units"] == "1"
 
 
+def test_several_workers_are_one_service(server):
+    found = httpx2.get(f"{server.address}/v1/response", params=POINT | {"method": "solver"}, timeout=120)
+    assert found.json()["outcome"]
+    for _ in range(9):  # whichever of them answers
+        metrics = httpx2.get(f"{server.address}/metrics", timeout=120).text
+        assert 'rocking_points_total{source="solver"} 1.0' in metrics
+
+
 def test_one_restitution_downloads_its_chunks_only(server, cubes):
     with xr.open_zarr(server.address + URL) as store:
         before = server.log.read_text()
@@ -104,11 +116,7 @@ def test_a_chunk_has_the_version_of_its_cube(own_pulse):
 @pytest.fixture
 def own_pulse(folder, tmp_path):
     """A copy that a test may change."""
-    for path in (folder / "spectra/sine").iterdir():
-        target = tmp_path / "spectra/sine" / path.name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(path.read_bytes())
-    return tmp_path
+    return shutil.copytree(folder, tmp_path / "own")
 
 
 OTHER_KEYS = [

@@ -1,12 +1,12 @@
 """What is wrong is refused by name, with its value and what is allowed; afterwards the service answers.
 
-Each kind of fault once for each route that meets it: values, bodies, sizes, types.
+Each kind of fault once for each route that meets it: bodies, sizes, types, and values that depend on others. Single
+parameters of all routes are in `test_openapi.py`.
 """
 
 import gzip
 import json
 import time
-from urllib.parse import urlencode
 
 import anyio
 import numpy as np
@@ -20,27 +20,17 @@ from rocking_api.routers.response import MAX_JSON
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._excitation.records.record import UNITS
-from tests.api.conftest import NAPA, assert_problem, client_of
+from tests.api.conftest import CSV, JSON, NAPA, NC, POINT, QUERIES, assert_problem, client_of, post
+from tests.api.test_api_curves import BODIES as OF_PULSE
 from tests.excitation.record_files import at2
 from tests.sampling import number
 
-POINT = {"pulse": "sine", "slenderness": "0.6", "frequency_ratio": "6", "restitution": "0.85"}
-BLOCK = {"pulse": "sine", "width": "0.4", "height": "1.6", "peak_acceleration": "4", "period": "0.5"}
 SIZE = {"width": "0.4", "height": "1.6"}
 SUBSET = "/v1/datasets/spectra/sine/eta-0.85/subset"
-ROUTES = {
-    "/v1/response": POINT,
-    "/v1/blocks/response": BLOCK,
-    "/v1/thresholds": {key: POINT[key] for key in ("pulse", "frequency_ratio", "restitution")},
-    "/v1/spectrum": {key: POINT[key] for key in ("pulse", "slenderness", "restitution")} | {"points": "20"},
-    "/v1/history": POINT | {"samples": "20", "duration": "9"},
-    "/v1/overturning": {key: POINT[key] for key in ("pulse", "restitution")},
-    "/v1/map": {key: POINT[key] for key in ("pulse", "restitution")} | {"columns": "3", "rows": "3"},
-}
 NO_NUMBERS = ["1e400", "-1e400", "nan", "-nan", "inf", "Infinity", "1e", "0x10", "", " ", "١", "1,5", "9" * 5000]
 NO_NUMBERS += ["null", "true", "[]", "{}", "\x00", "%00", "<script>", "' OR 1=1 --", "../../etc/passwd", "\ud7ff"]
 
-JSON, CSV, NC = "application/json", "text/csv", "application/x-netcdf"
+NO_COUNTS = ["-1", "0", "1", "1e3", "10.5", "9" * 30, "9" * 400, "-" + "9" * 400]
 
 
 @pytest.fixture(autouse=True)
@@ -51,55 +41,28 @@ def _soon(client):
     assert time.monotonic() - began < 30
 
 
-def post(client, route, content, media_type=JSON, **query):
-    address = f"{route}{'&' if '?' in route else '?'}{urlencode(query)}"
-    return client.post(address, content=content, headers={"content-type": media_type})
+def test_what_is_no_number_and_no_count_is_refused(client):
+    for route, name, values in (("/v1/response", "frequency_ratio", NO_NUMBERS), ("/v1/map", "columns", NO_COUNTS)):
+        for wrong in values:
+            response = client.get(route, params=QUERIES[route] | {name: wrong})
+            beyond = wrong.startswith("9") and response.status_code == 413
+            assert_problem(response, 413 if beyond else 422, name)
 
 
-@pytest.mark.parametrize("route", ROUTES)
-def test_no_number_and_no_second_value_is_accepted(client, route):
-    for name, value in ROUTES[route].items():
-        for wrong in NO_NUMBERS:
-            if (name, wrong) != ("restitution", "true"):
-                assert_problem(client.get(route, params=ROUTES[route] | {name: wrong}), 422, name)
-        twice = client.get(route, params=[*ROUTES[route].items(), (name, value)])
-        assert assert_problem(twice, 422, name)["allowed"] == "one value"
+WITHOUT_CUBE = [
+    *({"frequency_ratio": 40}, {"slenderness": 0.01}, {"restitution": 0.7}, {"pulse": "-ricker"}),
+    *({"alpha_deg": 80}, {"absolute_tolerance": 1e-13}),
+]
+PARTS = [{"slenderness_max": 0.5, "slenderness_min": 0.6}, {"variables": "height"}]
 
 
-WRONG = {
-    "/v1/response": (
-        POINT,
-        [
-            *({"pulse": "sinus"}, {"restitution": 1.01}, {"restitution": -0.1}, {"slenderness": 0}),
-            *({"slenderness": -1}, {"slenderness": 1e-10}, {"slenderness": "much"}, {"frequency_ratio": "-inf"}),
-            *({"frequency_ratio": 0}, {"frequency_ratio": 1e7}, {"frequency_ratio": 1e-7}, {"method": "guess"}),
-            *({"absolute_tolerance": -1}, {"absolute_tolerance": "nan"}, {"alpha_deg": 95}, {"alpha_deg": 1e-9}),
-            *({"tolerence": 1e-6}, {"frequency_ratio": 40, "method": "cube"}, {"slenderness": 0.01, "method": "cube"}),
-            *({"restitution": 0.7, "method": "cube"}, {"pulse": "-ricker", "method": "cube"}),
-            *({"alpha_deg": 80, "method": "cube"}, {"absolute_tolerance": 1e-13, "method": "cube"}),
-        ],
-    ),
-    SUBSET: (
-        {},
-        [
-            *({"slenderness_max": 0.5, "slenderness_min": 0.6}, {"frequency_ratio_min": "nan"}),
-            *({"alpha_deg_max": "nan"}, {"variables": "height"}, {"format": "json"}, {"colour": 1}),
-        ],
-    ),
-    "/v1/pulses": ({}, [{"samples": 1}]),
-    "/v1/datasets": ({}, [{"page": 2}, {"limit": 0}]),
-    "/v1/datasets.zip": ({}, [{"page": 2}]),
-    "/v1/datasets/spectra/sine/eta-0.85": ({}, [{"page": 2}]),
-    "/v1/suites": ({}, [{"limit": 0}]),
-    "/v1/suites/demonstration": ({}, [{"format": "pdf"}]),
-}
-"""By route, ordinary parameters and changes of them; the first of a change is wrong."""
-
-
-@pytest.mark.parametrize("route", WRONG)
-def test_a_wrong_value_is_named_with_what_is_allowed(client, route):
-    ordinary, wrong = WRONG[route]
-    for changes in wrong:
+def test_a_wrong_value_is_named_with_what_is_allowed(client):
+    for route, ordinary, changes in (
+        *(("/v1/response", POINT | {"method": "cube"}, wrong) for wrong in WITHOUT_CUBE),
+        *((SUBSET, {}, wrong) for wrong in PARTS),
+        ("/v1/response", POINT, {"tolerence": 1e-6}),
+        ("/v1/suites/demonstration", {}, {"format": "pdf"}),
+    ):
         name, value = next(iter(changes.items()))
         problem = assert_problem(client.get(route, params=ordinary | changes), 422, name)
         assert str(problem["value"]).startswith(str(value)) or float(problem["value"]) == value
@@ -117,10 +80,7 @@ def test_all_that_is_missing_or_wrong_is_named_up_to_a_number(client):
         "one of pulse, alpha_deg, method, absolute_tolerance, slenderness, frequency_ratio"
     )
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
-    assert (problem["parameter"], problem["value"]) == ("pulse", "saw")
     assert problem["detail"].startswith("5 parameters are missing or wrong: `pulse` = 'saw' is not allowed")
-    outside = assert_problem(client.get("/v1/response", params=POINT | {"slenderness": -1, "restitution": 2}), 422)
-    assert [one["name"] for one in outside["errors"]] == ["slenderness", "restitution"]
     unknown = {f"unknown_{k}": 1 for k in range(50)}
     problem = assert_problem(client.get("/v1/response", params=POINT | unknown), 422, "unknown_0")
     assert len(problem["errors"]) == 20
@@ -128,24 +88,25 @@ def test_all_that_is_missing_or_wrong_is_named_up_to_a_number(client):
 
 
 def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(client):
-    url, csv = "/v1/response", {"headers": {"content-type": CSV}, "content": "slenderness\n0.4\n"}
+    url, columns = "/v1/response", "slenderness\n0.4\n"
     body = {"pulse": "sine", "frequency_ratio": 5, "restitution": 0.85}
     assert assert_problem(client.post(url, json=body), 422, "slenderness")["allowed"] == "required in the body"
     unknown = assert_problem(client.post(url, json=body | {"slenderness": 1, "colour": 1}), 422, "colour")
     assert unknown["detail"].startswith("there is no parameter `colour` in the body; allowed: one of pulse")
-    query = "?frequency_ratio=5&restitution=0.85"
-    assert assert_problem(client.post(url + query, **csv), 422, "pulse")["allowed"] == "required in the query"
-    unknown = assert_problem(client.post(url + query + "&pulse=sine&colour=1", **csv), 422, "colour")
+    for missing, allowed in (
+        ("pulse", "required in the query"),
+        ("frequency_ratio", "required: a column of the body or a parameter in the URL"),
+    ):
+        query = {name: value for name, value in body.items() if name != missing}
+        assert assert_problem(post(client, url, columns, CSV, **query), 422, missing)["allowed"] == allowed
+    unknown = assert_problem(post(client, url, columns, CSV, **body, colour=1), 422, "colour")
     assert unknown["allowed"].endswith(", in the query")
-    column = assert_problem(client.post(url + "?restitution=1&pulse=sine", **csv), 422, "frequency_ratio")
-    assert column["allowed"] == "required: a column of the body or a parameter in the URL"
-    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}
-    missing = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block]}), 422, "pulse")
-    assert missing["allowed"] == "required in the query, or in a JSON body"
-    blocks = {"blocks": [{"width": 0.4}], "colour": 1}
-    problem = assert_problem(client.post("/v1/blocks/response?pulse=sine", json=blocks), 422)
+    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0}
+    problem = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block], "colour": 1}), 422)
     assert "`blocks[0].period` is missing in the body" in problem["detail"]
     assert "there is no parameter `colour` in the body" in problem["detail"]
+    pulse = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block | {"period": 0.5}]}), 422, "pulse")
+    assert pulse["allowed"] == "required in the query, or in a JSON body"
 
 
 LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with its unit, such as 0.5 s, 500 ms"
@@ -229,6 +190,9 @@ BODIES = [
     (FIVE + "&slenderness=0.4", "slenderness\n0.5\n", CSV, "slenderness"),
     (FIVE + "&restitution=0.4&frequency_ratio=x", "slenderness\n0.5\n", CSV, "frequency_ratio"),
     (FIVE + "&eta=0.4", "slenderness\n0.5\n", CSV, "eta"),
+    *((FIVE, body, CSV, "lines of at most") for body in ("slenderness," * 200, "slenderness\n" + "1" * 2000)),
+    (FIVE, "slenderness\n" + "0.5\n" * 10_000 + "x\n", CSV, "from line 10002"),
+    *((BATCH, GROUPS % f'1,"slenderness":{last}', JSON, "two values, the second in line 1") for last in ("[2]", 2)),
     *((FIVE, body, NC, "body") for body in ("\x89HDF\r\n", "CDF\x01\x00\x00")),
     (BLOCKS, json_of(blocks=[]), JSON, "blocks"),
     (BLOCKS, json_of(blocks=[{"width": 2, "peak_acceleration": 4, "period": 1}]), JSON, "blocks[0].height"),
@@ -258,7 +222,7 @@ BODIES = [
     (ASSESS, json_of(objects=OBJECTS, mesh="/etc/passwd"), JSON, "mesh"),
     (ASSESS, json_of(objects=[{"path": "/etc/passwd"}]), JSON, "objects"),
 ]
-"""Address, body, its type, and the parameter that is named, perhaps within another one."""
+"""Address, body, its type, and what is named: a parameter, perhaps within another one, or a reason."""
 
 
 @pytest.mark.parametrize(("route", "body", "media_type", "name"), BODIES, ids=range(len(BODIES)))
@@ -271,23 +235,12 @@ SITES = [
     ("pgv=0.3", "pga"),
     ("pga=3", "site"),
     ("pga=3&pgv=0.3&period_min=0.2&period_max=1", "site"),
-    ("pga=3&period_min=0.2", "periods"),
     ("pga=3&period_min=1&period_max=0.2", "periods"),
-    ("pga=-3&pgv=0.3", "pga"),
-    ("pga=3&pgv=nan", "pgv"),
-    ("pga=3&pgv=1000", "pgv"),
-    ("pga=3&period_min=1e-9&period_max=1", "period_min"),
-    ("pga=3&pgv=0.3&shapes=", "shapes"),
     ("pga=3&pgv=0.3&shapes=sine,square", "shapes"),
-    ("pga=3&pgv=0.3&hazard=1", "hazard"),
     ("pga=3&pgv=0.3&samples=1.5&floor_periods=0.5&shapes=sine", "samples"),
     *((f"pga=3&pgv=0.3&floor_periods={wrong}", "floor_periods") for wrong in ("0", "a")),
-    ("pga=3&pgv=0.3&samples=1000000", "samples"),
 ]
-OF_RECORDS = [
-    *({"width": 0.0}, {"height": "x"}, {"scale": 0.0}, {"restitution": 1.5}, {"restitution": "plastic"}),
-    *({"unit": "feet"}, {"time_step": -1.0}, {"baseline_order": 7}, {"colour": 1}, {"vertical": "up"}),
-]
+OF_RECORDS = [{"height": "x"}, {"restitution": "plastic"}, {"unit": "feet"}, {"vertical": "up"}]
 
 
 def test_wrong_parameters_beside_a_body_are_named(client):
@@ -299,28 +252,19 @@ def test_wrong_parameters_beside_a_body_are_named(client):
     assert_problem(client.post(RESPONSE, params={"component": "Z"}, content=record), 422, "record")
     scales = "/v1/records/scales?width=0.5&height=2"
     assert_problem(client.post(scales + "&scale_min=2&scale_max=1", content=record), 422, "scale_max")
-    assert_problem(client.post(scales + "&points=1", content=record), 422, "points")
-    for query, name in (("edges=3", "edges"), ("confidence=1", "confidence"), ("confidence=nan", "confidence")):
-        assert_problem(client.post(f"{IDENTIFY}?{query}", json=identify.EXAMPLE), 422, name)
     for factor in (1e-300, 1e-200, 1e-100, 1e-30, 1e6):
         trace = identify.EXAMPLE | {"time": [factor * time for time in identify.EXAMPLE["time"]]}
         problem = assert_problem(client.post(IDENTIFY, json=trace), 422, "time")
         assert "0.001 to 100000 s" in problem["allowed"]
 
 
-@pytest.mark.parametrize(
-    ("body", "line", "reason"),
-    [
+def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client):
+    for body, line, reason in (
         (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
-        (TABLE.replace("vase", "v" * 131_073), 2, "field larger than field limit"),
         (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
-        (TABLE.replace("name", '"name'), 1, "unexpected end of data"),
-    ],
-    ids=range(4),
-)
-def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client, body, line, reason):
-    problem = assert_problem(post(client, BLOCKS, body, CSV), 422, f"blocks, line {line}")
-    assert reason in problem["value"]
+    ):
+        problem = assert_problem(post(client, BLOCKS, body, CSV), 422, f"blocks, line {line}")
+        assert reason in problem["value"]
 
 
 @pytest.mark.parametrize("route", ["/v1/response", "/v1/assess", "/v1/spectrum", "/v1/records/response", IDENTIFY])
@@ -333,10 +277,10 @@ def test_types_and_codings_that_are_not_read_are_refused(client, route):
         assert_problem(client.post(route, content=bomb, headers=headers), 415, "Content-Encoding")
 
 
-@pytest.mark.parametrize("declared", ["²", "1e3", "-1", "", "9" * 6000])
-def test_odd_lengths_of_a_body(client, declared):
-    headers = {"content-type": JSON, "content-length": declared.encode("latin-1")}
-    assert client.post("/v1/response", content=b"{}", headers=headers).status_code in (413, 422)
+def test_odd_lengths_of_a_body(client):
+    for declared in ("²", "1e3", "-1", "", "9" * 6000):
+        headers = {"content-type": JSON, "content-length": declared.encode("latin-1")}
+        assert client.post("/v1/response", content=b"{}", headers=headers).status_code in (413, 422)
 
 
 def test_a_netcdf_file_of_a_wrong_size_or_damaged_anywhere(client):
@@ -371,7 +315,7 @@ def test_names_lead_to_nothing_but_data_sets_and_static_files(client):
         assert client.get(f"/v1/datasets/spectra/sine/eta-0.85.zarr/{key}").status_code == 404
     for path in ("/static/../app.py", "/static/..%2fapp.py", "/static/%2e%2e/app.py", "/static/%00", "/v2/response"):
         assert client.get(path).status_code == 404
-    for name in ("none", "%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
+    for name in ("%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
         assert client.get(f"/v1/suites/{name}").status_code == 404
     assert_problem(client.get("/v1/suites/none"), 404, "name")
     assert_problem(client.get("/v1/suites/none", params={"format": "nrml"}), 404, "name")
@@ -379,25 +323,13 @@ def test_names_lead_to_nothing_but_data_sets_and_static_files(client):
     assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")  # no cube
 
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_half_of_a_pair_of_escapes_is_repeated_as_text(count):
-    errors = [InvalidArgumentError(f"a{number} \ud800", "b \udc00", "c \udfff") for number in range(count)]
-    response = anyio.run(error_response, None, errors[0] if count == 1 else SeveralArgumentsError(errors))
-    problem = json.loads(response.body)
-    assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a0 \ud800", r"b \udc00", r"c \udfff"]
-    assert r"\ud800" in problem["detail"]
-    assert len(problem.get("errors", [])) == (0 if count == 1 else 2)
-
-
-COUNTS = {"/v1/spectrum": ["points"], "/v1/history": ["samples"], "/v1/map": ["columns", "rows"]}
-
-
-@pytest.mark.parametrize("route", COUNTS)
-def test_counts_that_are_none_or_beyond_all_doubles(client, route):
-    for name in COUNTS[route]:
-        for count in ("-1", "0", "1", "1e3", "10.5", "9" * 30, "9" * 400, "-" + "9" * 400):
-            response = client.get(route, params=ROUTES[route] | {name: count})
-            assert_problem(response, 413 if response.status_code == 413 else 422, name)
+def test_half_of_a_pair_of_escapes_is_repeated_as_text():
+    error = InvalidArgumentError("a \ud800", "b \udc00", "c \udfff")
+    for one in (error, SeveralArgumentsError([error, InvalidArgumentError("d", "e", "f")])):
+        problem = json.loads(anyio.run(error_response, None, one).body)
+        assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a \ud800", r"b \udc00", r"c \udfff"]
+        assert r"\ud800" in problem["detail"]
+    assert len(problem["errors"]) == 2
 
 
 def test_sizes_are_limited(results, monkeypatch):
@@ -456,49 +388,35 @@ def test_large_bodies_are_limited_by_route(client, monkeypatch):
     assert_problem(client.post(ASSESS, json=OBJECTS), 413, "objects")
 
 
-OF_PULSES = {
-    "/v1/response": {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85},
-    "/v1/spectrum": {"slenderness": 0.4, "restitution": 0.85, "points": 5},
-    "/v1/history": {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85, "samples": 20},
-    "/v1/map": {"restitution": 0.85, "columns": 4, "rows": 3},
-    "/v1/overturning": {"restitution": 0.2},
-    "/v1/thresholds": {"frequency_ratio": 5.0, "restitution": 0.85},
-    "/v1/blocks/response": {"blocks": [{"width": 0.4, "height": 1.6, "peak_acceleration": 4.0, "period": 0.5}]},
-}
 PULSES = [
-    ({"acceleration": [0, 1, "a"]}, "pulse.acceleration[2]"),
     ({"acceleration": [0, 1, None]}, "pulse.acceleration[2]"),
     ({"acceleration": [0, 1e400, 0]}, "pulse.acceleration[1]"),
     ({"acceleration": [0, [1], 0]}, "pulse.acceleration[1]"),
     ({"acceleration": [0, 0]}, "pulse.acceleration"),
-    ({"acceleration": [1]}, "pulse.acceleration"),
     ({"acceleration": [1.0] * (MAX_SAMPLES + 1)}, "pulse.acceleration"),
     ({"acceleration": "0,1,0"}, "pulse.acceleration"),
-    ({"acceleration": {}}, "pulse.acceleration"),
     ({"acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulse.time[2]"),
-    ({"acceleration": [0, 1, 0], "time": [0, 2]}, "pulse.time"),
     ({"acceleration": [0, 1, 0], "time": [0, 1e-300, 1e300]}, "pulse.time"),
     ({"acceleration": [0, 1, 0], "period": -1}, "pulse.period"),
-    ({"acceleration": [0, 1, 0], "period": 1e300}, "pulse.period"),
     ({"acceleration": [0, 1, 0], "name": ""}, "pulse.name"),
     ({"acceleration": [0, 1, 0], "dt": 1}, "pulse.dt"),
     ({}, "pulse.acceleration"),
-    ([], "pulse"),
     (5, "pulse"),
     ("triangle", "pulse"),
 ]
 
 
-@pytest.mark.parametrize("route", OF_PULSES)
+@pytest.mark.parametrize("route", OF_PULSE)
 def test_an_error_of_the_samples_of_a_pulse_names_the_element(client, route):
     for pulse, name in PULSES:
-        body = json.dumps(OF_PULSES[route] | {"pulse": pulse})
+        body = json.dumps(OF_PULSE[route] | {"pulse": pulse})
         problem = assert_problem(client.post(route, content=body), 422, name)
         assert len(json.dumps(problem)) < 2000
 
 
 def test_hostile_samples_of_a_pulse_are_refused_soon(client):
-    numbers = json.dumps(OF_PULSES["/v1/map"] | {"pulse": {"acceleration": [1.2345678901234567] * MAX_SAMPLES}})
+    few = {"restitution": 0.85, "columns": 4, "rows": 3}
+    numbers = json.dumps(few | {"pulse": {"acceleration": [1.2345678901234567] * MAX_SAMPLES}})
     began = time.process_time()
     for body in (
         '{"pulse": ' + '{"acceleration": ' * 20_000,
@@ -506,7 +424,6 @@ def test_hostile_samples_of_a_pulse_are_refused_soon(client):
         '{"pulse": {"acceleration": [' + "1" * 400_000 + "]}}",
         '{"pulse": {"acceleration": [' + '"a",' * 120_000 + "1]}}",
         '{"pulse": {"acceleration": [' + "1e999," * 70_000 + "1]}}",
-        '{"pulse": {' + ",".join(f'"k{k}": 1' for k in range(40_000)) + "}}",
         '{"a": "' + "\\u0000" * 60_000 + '"}',
     ):
         assert client.post("/v1/map", content=body).status_code in (400, 422)

@@ -12,13 +12,11 @@ from rocking._datasets.cube import write_dataset
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra
-from tests.api.conftest import assert_problem, client_of
-
-QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
+from tests.api.conftest import CSV, NC, POINT, assert_problem, client_of, post
 
 
 def get_response(client, **changes):
-    return client.get("/v1/response", params=QUERY | changes)
+    return client.get("/v1/response", params=POINT | changes)
 
 
 def test_a_response_is_from_a_cube_or_the_solver_as_asked(client):
@@ -29,14 +27,14 @@ def test_a_response_is_from_a_cube_or_the_solver_as_asked(client):
     assert result["outcome"] == Outcome(expected.outcome).name == "RECOVERS"
     assert result["impacts"] == expected.impacts
     assert not result["overturned"]
-    assert result["query"] == QUERY | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
+    assert result["query"] == POINT | {"alpha_deg": None, "method": "auto", "absolute_tolerance": 1e-4}
     assert result["data_version"] == client.get("/v1/datasets/spectra/sine/eta-0.85").json()["sha256"]
     result = get_response(client, method="solver").json()
     assert (result["source"], result["data_version"]) == ("solver", None)
     assert result["peak_rotation"] == expected.peak_rotation
     assert 0 < result["error_bound"] < 1e-9
     for changes in ({"restitution": 0.7}, {"frequency_ratio": 40.0}, {"pulse": "half_sine"}):  # no cube applies
-        solved = {key: value for key, value in (QUERY | changes).items() if key != "pulse"}
+        solved = {key: value for key, value in (POINT | changes).items() if key != "pulse"}
         result = get_response(client, **changes).json()
         assert result["source"] == "solver"
         assert result["peak_rotation"] == peak_response(changes.get("pulse", "sine"), **solved).peak_rotation
@@ -98,8 +96,7 @@ def test_a_batch_equals_single_requests_in_json_and_csv(client):
     assert result["outcome"] == [outcome.name for outcome in TRUTH]
     lines = [",".join(BATCH), *(",".join(map(repr, map(float, row))) for row in zip(*BATCH.values(), strict=True))]
     for query in ({"pulse": "sine"}, {"pulse": "sine", "absolute_tolerance": 1e-3}):
-        csv = {"content": "\r\n".join(lines), "headers": {"content-type": "text/csv"}}
-        answer = client.post("/v1/response", params=query, **csv)
+        answer = post(client, "/v1/response", "\r\n".join(lines), CSV, **query)
         assert answer.headers["content-type"].startswith("text/csv")
         header, *rows = [line.split(",") for line in answer.text.splitlines()]
         assert [row[header.index("outcome")] for row in rows] == result["outcome"]
@@ -108,7 +105,7 @@ def test_a_batch_equals_single_requests_in_json_and_csv(client):
 
 
 def test_numbers_broadcast_and_parameters_may_be_repeated_in_the_url(client):
-    body = {"pulse": "sine", "slenderness": [0.5, 0.6], "frequency_ratio": 6.0, "restitution": 0.85}
+    body = POINT | {"slenderness": [0.5, 0.6]}
     named, plain = client.post("/v1/response?pulse=sine", json=body), client.post("/v1/response", json=body)
     assert plain.json()["outcome"] == ["RECOVERS", "RECOVERS"]
     assert named.json() == plain.json() | {"url": "POST /v1/response?pulse=sine"}
@@ -118,7 +115,7 @@ def test_numbers_broadcast_and_parameters_may_be_repeated_in_the_url(client):
 
 
 def test_batches_in_chunks_are_equal(client, monkeypatch):
-    many = QUERY | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
+    many = POINT | {"slenderness": [0.05 + 0.009 * k for k in range(101)]}
     whole = client.post("/v1/response", json=many).json()
     monkeypatch.setattr(rocking_api.execution.evaluation, "CHUNK_SIZE", 7)
     assert client.post("/v1/response", json=many).json() == whole
@@ -126,17 +123,11 @@ def test_batches_in_chunks_are_equal(client, monkeypatch):
 
 def test_netcdf_batch_in_and_out(client):
     grid = xr.Dataset(coords={"slenderness": [0.5, 0.6, 1.5], "frequency_ratio": [5.0, 6.0]})
-    result = client.post(
-        "/v1/response",
-        params={"pulse": "sine", "restitution": 0.85},
-        content=bytes(grid.to_netcdf(engine="scipy")),
-        headers={"content-type": "application/x-netcdf"},
-    )
-    assert result.headers["content-type"] == "application/x-netcdf"
+    result = post(client, "/v1/response?pulse=sine&restitution=0.85", bytes(grid.to_netcdf(engine="scipy")), NC)
+    assert result.headers["content-type"] == NC
     found = xr.open_dataset(io.BytesIO(result.content), engine="scipy").load()
-    expected = peak_response(
-        "sine", slenderness=found.slenderness, frequency_ratio=found.frequency_ratio, restitution=0.85
-    )
+    groups = {name: found[name] for name in ("slenderness", "frequency_ratio")}
+    expected = peak_response("sine", **groups, restitution=0.85)
     assert found.sizes == {"point": 6}
     np.testing.assert_array_equal(found.outcome, expected.outcome)
     assert np.all(np.abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound)

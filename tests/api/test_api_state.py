@@ -3,11 +3,9 @@
 import asyncio
 import logging
 import re
-import time
 from threading import Semaphore
 from types import SimpleNamespace
 
-import httpx2
 import pytest
 import typer
 from fastapi.testclient import TestClient
@@ -16,19 +14,9 @@ from rocking_api.command import main
 from rocking_api.dataset_checker import DatasetChecker
 from rocking_api.settings import EXAMPLE, Settings
 
-from tests.api.conftest import NAMES, assert_problem, client_of, health_of, metrics_of
-from tests.api.servers import serving
+from tests.api.conftest import NAMES, POINT, assert_problem, client_of, health_of, metrics_of, until
 
-QUERY = {"pulse": "sine", "slenderness": 0.6, "frequency_ratio": 6.0, "restitution": 0.85}
 SINE, CURVES = "spectra/sine/eta-0.85", "overturning/sine/eta-0.85"
-
-
-def until(condition, seconds=20):
-    """Wait for what another thread does."""
-    deadline = time.monotonic() + seconds
-    while not condition() and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert condition()
 
 
 def ready_of(client):
@@ -39,8 +27,7 @@ def ready_of(client):
 
 def damaged_of(client):
     """The gauges of damaged data sets."""
-    found = re.findall(r'^rocking_dataset_damaged\{dataset="(.*)"\} (.*)$', client.get("/metrics").text, re.M)
-    return {name: float(value) for name, value in found}
+    return {key[1]: value for key, value in metrics_of(client).items() if key[0] == "rocking_dataset_damaged"}
 
 
 def test_healthy_and_ready(client, monkeypatch):
@@ -73,7 +60,7 @@ def test_an_installation_serves_an_example_where_no_data_are(monkeypatch, tmp_pa
         health = health_of(client)
         assert (health["status"], health["problems"]) == ("ok", {})
         assert client.get("/v1/suites/example").json()["title"].startswith("Example: ")
-        query = QUERY | {"pulse": "cosine", "restitution": 0.9}
+        query = POINT | {"pulse": "cosine", "restitution": 0.9}
         found = client.get("/v1/response", params=query).json()
         solved = client.get("/v1/response", params=query | {"method": "solver"}).json()
         assert abs(found["peak_rotation"] - solved["peak_rotation"]) <= found["error_bound"] + solved["error_bound"]
@@ -88,9 +75,9 @@ def test_without_results_the_solver_is_used_and_all_say_so(client, tmp_path, cap
         assert health["status"] == "degraded"
         assert "make reproduce" in health["problems"]["spectra"]
         assert str(tmp_path) not in str(health)
-        assert empty.get("/v1/response", params=QUERY).json()["source"] == "solver"
+        assert empty.get("/v1/response", params=POINT).json()["source"] == "solver"
         assert empty.get("/v1/datasets").json()["datasets"] == []
-        assert_problem(empty.get("/v1/response", params=QUERY | {"method": "cube"}), 422, "pulse")
+        assert_problem(empty.get("/v1/response", params=POINT | {"method": "cube"}), 422, "pulse")
         until(lambda: ready_of(empty).status_code == 200, 60)  # loading the kernels
         assert empty.get("/ready").json()["status"] == "degraded"
         until(lambda: "no spectrum cubes" in caplog.text)
@@ -106,16 +93,16 @@ def test_with_a_damaged_cube_the_solver_is_used_until_it_is_repaired(client, own
     with client_of(own_results) as damaged:
         for content, problem in ((whole[: len(whole) // 2], "damaged"), (other, "holds cosine")):
             path.write_bytes(content)
-            result = damaged.get("/v1/response", params=QUERY).json()
-            solved = client.get("/v1/response", params=QUERY | {"method": "solver"}).json()
+            result = damaged.get("/v1/response", params=POINT).json()
+            solved = client.get("/v1/response", params=POINT | {"method": "solver"}).json()
             assert (result["source"], result["peak_rotation"]) == ("solver", solved["peak_rotation"])
             health = health_of(damaged)
             assert health["status"] == "degraded"
             assert problem in health["problems"][SINE]
             assert str(own_results) not in str(health)
-            assert_problem(damaged.get("/v1/response", params=QUERY | {"method": "cube"}), 503)
+            assert_problem(damaged.get("/v1/response", params=POINT | {"method": "cube"}), 503)
         path.write_bytes(whole)  # detected without a restart
-        assert damaged.get("/v1/response", params=QUERY).json()["source"] == "cube"
+        assert damaged.get("/v1/response", params=POINT).json()["source"] == "cube"
         assert health_of(damaged)["status"] == "ok"
 
 
@@ -123,24 +110,22 @@ def test_damaged_data_sets_make_it_alive_but_not_ready(own_results, caplog):
     names = [CURVES, SINE]
     paths = [own_results / f"{name}.nc" for name in names]
     whole = [path.read_bytes() for path in paths]
-    for path, content in zip(paths, whole, strict=True):
-        path.write_bytes(content[:1000])
     with caplog.at_level(logging.INFO, "rocking.service"), client_of(own_results) as client:
+        assert ready_of(client).status_code == 200
+        for path, content in zip(paths, whole, strict=True):
+            path.write_bytes(content[:1000])
         until(lambda: damaged_of(client) == dict.fromkeys(names, 1.0))  # of which nobody asked
         for _ in range(3):
             problem = assert_problem(ready_of(client), 503)
         assert [error["name"] for error in problem["errors"]] == names
         assert all("damaged" in error["value"] for error in problem["errors"])
-        assert all(name in problem["detail"] for name in names)
         assert client.get("/health").status_code == 200
-        lines = [record.args for record in caplog.records if record.msg.startswith("a data set is damaged")]
-        assert sorted(name for name, _ in lines) == names
+        assert caplog.text.count("a data set is damaged") == 2
         paths[0].write_bytes(whole[0])
         paths[1].unlink()
         assert ready_of(client).status_code == 200
         assert damaged_of(client) == dict.fromkeys(names, 0.0)
-        repaired = [record for record in caplog.records if record.msg.startswith("a data set is no longer damaged")]
-        assert len(repaired) == 2
+        assert caplog.text.count("a data set is no longer damaged") == 2
 
 
 def test_the_state_follows_a_folder_that_is_replaced_during_a_check_or_without_requests(monkeypatch):
@@ -150,18 +135,15 @@ def test_the_state_follows_a_folder_that_is_replaced_during_a_check_or_without_r
     present, long = [*names], Semaphore(0)
 
     def problem(name):
-        if name == names[2] and len(present) == 3:
+        if name == names[2]:
             long.acquire(timeout=20)  # a large file, which is read when the folder is replaced
         return "damaged" if name == names[1] else None
 
-    def problems():
-        return {names[1]: "damaged"} if names[1] in present else {}
-
     catalogue = SimpleNamespace(scan=lambda: ([*present], {}))
-    cubes = SimpleNamespace(catalogue=catalogue, problem=problem, problems=problems)
+    problems = lambda: {names[1]: "damaged"} if names[1] in present else {}  # noqa: E731
+    checker = DatasetChecker(SimpleNamespace(catalogue=catalogue, problem=problem, problems=problems))
 
     async def followed():
-        checker = DatasetChecker(cubes)
         while not checker.damaged:
             await checker.state()
         present[:] = names[:1]
@@ -179,9 +161,9 @@ def test_the_state_follows_a_folder_that_is_replaced_during_a_check_or_without_r
 
 def test_metrics_count_requests_and_points_by_source(results):
     with client_of(results) as client:
-        client.get("/v1/response", params=QUERY)
-        client.get("/v1/response", params=QUERY | {"method": "solver"})
-        client.post("/v1/response", json=QUERY | {"slenderness": [0.6, 0.6, 1.5]})
+        client.get("/v1/response", params=POINT)
+        client.get("/v1/response", params=POINT | {"method": "solver"})
+        client.post("/v1/response", json=POINT | {"slenderness": [0.6, 0.6, 1.5]})
         client.get("/v1/response")
         client.get("/v1/datasets/no/such")
         client.get("/no/such/route")
@@ -195,16 +177,6 @@ def test_metrics_count_requests_and_points_by_source(results):
     assert found["rocking_points_total", "solver"] == 2
     assert found["rocking_request_seconds_count", "/v1/response"] == 4
     assert found["rocking_heavy_running",] == found["rocking_heavy_waiting",] == 0
-
-
-def test_several_workers_are_one_service(results, tmp_path):
-    with serving(results, tmp_path / "log", workers=2) as server:
-        found = httpx2.get(f"{server.address}/v1/response", params=QUERY, timeout=120)
-        assert found.json()["outcome"]
-        metrics = httpx2.get(f"{server.address}/metrics", timeout=120).text
-        assert server.stop(120) == 0
-    assert 'rocking_points_total{source="cube"} 1.0' in metrics
-    assert " ERROR " not in server.log.read_text()
 
 
 def test_an_internal_error_leaves_its_traceback_and_its_id_in_the_log_only(results, caplog):
@@ -228,21 +200,20 @@ def test_settings_come_from_the_environment(monkeypatch, tmp_path):
     monkeypatch.setenv("ROCKING_CORS_ORIGINS", '["https://a.org"]')
     found = Settings()
     assert (found.results, found.max_points, found.cors_origins) == (tmp_path, 7, ("https://a.org",))
-    with pytest.raises(ValueError, match="name of a folder"):  # it would be the current one
-        Settings(results="")
     monkeypatch.setenv("ROCKING_RESULTS", "")
-    with pytest.raises(ValueError, match="name of a folder"):
+    with pytest.raises(ValueError, match="name of a folder"):  # it would be the current one
         Settings()
 
 
-@pytest.mark.parametrize("value", ["https://a.org", "[1]", '"https://a.org"', ""])
-def test_origins_that_are_no_list_are_refused_in_one_line(monkeypatch, capsys, value):
-    monkeypatch.setenv("ROCKING_CORS_ORIGINS", value)
-    with pytest.raises(typer.Exit) as caught:
-        main(None, "127.0.0.1", 0)
-    assert caught.value.exit_code == 2
-    allowed = 'a JSON list of origins, such as ["https://example.org"]'
-    assert capsys.readouterr().err == f"Error: ROCKING_CORS_ORIGINS = {value!r} is not allowed; allowed: {allowed}\n"
+def test_origins_that_are_no_list_are_refused_in_one_line(monkeypatch, capsys):
+    for value in ("https://a.org", "[1]", ""):
+        monkeypatch.setenv("ROCKING_CORS_ORIGINS", value)
+        with pytest.raises(typer.Exit) as caught:
+            main(None, "127.0.0.1", 0)
+        assert caught.value.exit_code == 2
+        allowed = 'a JSON list of origins, such as ["https://example.org"]'
+        text = f"Error: ROCKING_CORS_ORIGINS = {value!r} is not allowed; allowed: {allowed}\n"
+        assert capsys.readouterr().err == text
 
 
 def test_the_type_of_an_error_is_explained(client):

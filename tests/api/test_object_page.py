@@ -6,7 +6,6 @@ import struct
 import subprocess
 import sys
 import threading
-import time
 from html import unescape
 from urllib.parse import parse_qsl, urlsplit
 
@@ -18,6 +17,7 @@ from rocking_api.routers import object_page
 
 import rocking
 from tests.api.conftest import assert_problem
+from tests.api.test_uploads import TRIANGLE, scene
 from tests.api.test_uploads import glb_file as glb
 from tests.sampling import but_long, number
 
@@ -100,14 +100,13 @@ def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
 
 @pytest.mark.parametrize(
     ("fields", "name"),
-    [({"height": "-3"}, "height"), ({"height": ""}, "height"), ({"width": ""}, "width"), ({"width": "wide"}, "width"),
+    [({"height": "-3"}, "height"), ({"width": ""}, "width"),
      ({"offset_width": "30"}, "offset_width"), ({"pga": "much"}, "pga"), ({"pgv": "1e9"}, "pgv"),
-     ({"restitution": "2"}, "restitution"), ({"restitution": "much"}, "restitution"),
+     ({"restitution": "2"}, "restitution"),
      ({"floor_periods": "0," * 200}, "floor_periods"),
      ({"width": "9" * 5000}, "width"), ({"width_unit": "furlong"}, "width"),
      ({"shape": "outline", "vertices": "0, 0\nwide"}, "vertices"),
      ({"shape": "outline", "vertices": "0, 0\n1, 1\n1, 0\n0, 1"}, "vertices"),
-     ({"shape": "outline", "vertices": ""}, "vertices"),
      ({"shape": "outline", "vertices": "0 0\n" * 201}, "vertices"),
      ({"shape": "outline", "vertices": " " * 10_001}, "vertices")],
 )  # fmt: skip
@@ -155,24 +154,12 @@ def test_an_open_mesh_is_doubted_and_the_defect_of_another_named(client, slab):
     assert "MiB" not in problem["detail"]
 
 
-def scene(count, **parts):
-    """The tree of a GLB file with one mesh of some vertices."""
-    mesh = {"primitives": [{"attributes": {"POSITION": 0}}]}
-    start = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}]}
-    accessor = {"bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3"}
-    views = {"bufferViews": [{"buffer": 0, "byteLength": 12 * count}], "buffers": [{"byteLength": 12 * count}]}
-    return start | {"meshes": [mesh], "accessors": [accessor]} | views | parts
-
-
-TRIANGLE = np.eye(3, dtype="<f4").tobytes()
 AXES = b"".join(b"property float %s\n" % axis for axis in (b"x", b"y", b"z"))
 HEADER = b"ply\nformat %s 1.0\nelement vertex 99999999999\n" + AXES + b"end_header\n"
 HOSTILE = {
     "empty.stl": b"",
-    "text.ply": b"no mesh",
     "count.stl": bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(50),
     "count.ply": HEADER % b"binary_little_endian" + bytes(100),
-    "ascii.ply": HEADER % b"ascii" + b"0 0 0\n",
     "index.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999\n",
     "nan.obj": b"v nan 0 0\nv 1 0 0\nv 0 1 inf\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
     "point.obj": b"v 0 0 0\nv 1 0 1\nv 0 1 1\nv 1 1 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
@@ -184,7 +171,7 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", but_long(HOSTILE, "count.stl", "index.obj", "other.glb", "nested.glb"))
+@pytest.mark.parametrize("name", but_long(HOSTILE, "index.obj", "other.glb", "nested.glb"))
 def test_damaged_and_hostile_meshes_are_refused(client, name):
     problem = assert_problem(posted(client, HOSTILE[name], name), 422, "mesh")
     assert problem["value"] == name
@@ -204,44 +191,28 @@ def test_meshes_of_other_formats_units_and_sizes_are_refused(client, slab, monke
     assert "rocking[mesh]" in client.get("/object?shape=mesh").text
 
 
-def test_health_answers_while_a_mesh_takes_long_and_its_process_ends_at_the_limit(client, monkeypatch):
+def test_the_process_of_a_mesh_that_takes_long_ends_at_the_limit(client, monkeypatch):
     monkeypatch.setattr(client.app.state.service.parser, "_seconds", 1.0)
-    command = ["python", "-c", "import time; time.sleep(60)"]
-    run = limited_process._run
-    ended = threading.Event()
+    run, ended = limited_process._run, threading.Event()
 
     def slow(_, stop):
         try:
-            return run(command, stop)
+            return run(["python", "-c", "import time; time.sleep(60)"], stop)
         finally:
             ended.set()
 
     monkeypatch.setattr(limited_process, "_run", slow)
-    answers = []
-    thread = threading.Thread(target=lambda: answers.append(posted(client, b"", "a.stl")))
-    began = time.monotonic()
-    thread.start()
-    while thread.is_alive():
-        assert client.get("/health").status_code == 200
-        time.sleep(0.05)
-    assert_problem(answers[0], 504)
+    assert_problem(posted(client, b"", "a.stl"), 504)
     assert ended.wait(10)
-    assert time.monotonic() - began < 20
-
-
-def test_a_process_that_exceeds_its_memory_or_fails_is_an_error_of_the_file(client, monkeypatch):
-    monkeypatch.setattr(limited_process, "_run", lambda *_: (-9, b""))
-    problem = assert_problem(posted(client, b"", "a.stl"), 422, "mesh")
-    assert f"within {limited_process.SECONDS} s" in problem["detail"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
-@pytest.mark.parametrize("limit", but_long(["SECONDS = 0", "MEMORY = 2**20"], "MEMORY = 2**20"))
-def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path, limit):
+def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path):
     path = tmp_path / "slab.stl"
     slab.subdivide_loop(7).export(path)  # 196,608 triangles, of 50 bytes each
-    code = "from rocking_api import limited_process as m, mesh_process"
-    code += f"; m.{limit}; mesh_process.main({str(path)!r}, 'mm', '15')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
-    assert b"planes" not in done.stdout
-    assert done.returncode or b"allowed" in done.stdout
+    for limit in number(["MEMORY = 2**20"], ["MEMORY = 2**20", "SECONDS = 0"]):
+        code = "from rocking_api import limited_process as m, mesh_process"
+        code += f"; m.{limit}; mesh_process.main({str(path)!r}, 'mm', '15')"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
+        assert b"planes" not in done.stdout
+        assert done.returncode or b"allowed" in done.stdout

@@ -41,7 +41,7 @@ SAMPLE = (
     "tests/cli/test_cli.py::test_response_in_three_formats",
     "tests/cli/test_cli.py::test_options_name_their_units_and_shells_complete_names",
     "tests/cli/test_cli.py::test_help_and_version_import_nothing_heavy",
-    "tests/api/test_guide.py",
+    "tests/api/test_service_page.py::test_pages_of_the_built_guide",
     "tests/api/test_api_state.py::test_an_installation_serves_an_example_where_no_data_are",
 )
 INSIDE = number(SAMPLE, ("tests/cli", "tests/api", "--ignore=tests/api/explorer"))

@@ -8,11 +8,11 @@ from __future__ import annotations
 import hashlib
 import subprocess
 import sys
-import tarfile
-import tempfile
 from pathlib import Path
 
 from playwright.sync_api import Page
+
+from tests.api.explorer.chromium import npm_package
 
 PACKAGE = "axe-core@4.10.3"
 SHA256 = "880970c081707360e64f34cea25ff91892f5bc95675b0776925b9709dd8a68bb"
@@ -26,17 +26,11 @@ def fetch() -> bool:
     """Unpack the script; returns whether it is there."""
     if SCRIPT.exists():
         return True
-    with tempfile.TemporaryDirectory() as scratch:
-        try:
-            subprocess.run(
-                ["npm", "pack", "--silent", PACKAGE], cwd=scratch, check=True, timeout=120, capture_output=True
-            )
-        except (OSError, subprocess.SubprocessError):
-            return False
-        (archive,) = Path(scratch).glob("*.tgz")
-        with tarfile.open(archive) as packed:
-            packed.extractall(scratch, filter="data")
-        content = (Path(scratch) / "package" / "axe.min.js").read_bytes()
+    try:
+        with npm_package(PACKAGE) as package:
+            content = (package / "axe.min.js").read_bytes()
+    except (OSError, subprocess.SubprocessError):
+        return False
     if hashlib.sha256(content).hexdigest() != SHA256:
         raise RuntimeError(f"{PACKAGE} is not what was published")
     SCRIPT.parent.mkdir(parents=True, exist_ok=True)

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tarfile
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -33,6 +34,10 @@ FONTS = f"""<?xml version="1.0"?>
 """
 """The package brings a font, for machines without any, but looks for it where the package's own host keeps it."""
 
+# Python has no Brotli of its own
+PROGRAM = """const fs = require('fs'); for (const f of process.argv.slice(1))
+fs.writeFileSync(f.slice(0, -3), require('zlib').brotliDecompressSync(fs.readFileSync(f)))"""
+
 FLAGS = (
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync", "--hide-scrollbars"),
@@ -51,8 +56,7 @@ class Chromium:
 def find() -> Chromium | None:
     """The Chromium named by ROCKING_CHROMIUM, the machine's own, or the one that `fetch` unpacked."""
     named = os.environ.get("ROCKING_CHROMIUM")
-    paths = [named] if named else [shutil.which(name) for name in NAMES]
-    for path in filter(None, paths):
+    for path in filter(None, [named] if named else map(shutil.which, NAMES)):
         return Chromium(Path(path))
     executable = UNPACKED / "chromium"
     if executable.exists():
@@ -62,41 +66,19 @@ def find() -> Chromium | None:
 
 
 def fetch() -> None:
-    """Install the system's package as root, or else unpack the npm package.
-
-    Raises
-    ------
-    RuntimeError
-        If neither can be done here; the message says how to help.
-    """
+    """Install the system's package as root, or else unpack the npm package."""
     if os.geteuid() == 0 and shutil.which("apt-get"):
-        with contextlib.suppress(RuntimeError):
+        with contextlib.suppress(subprocess.SubprocessError):
             _run("apt-get", "update")
-            for package in (SHELL, "chromium"):
-                with contextlib.suppress(RuntimeError):
-                    _run("apt-get", "install", "--yes", "--no-install-recommends", package)
-                    return
-    if not (shutil.which("npm") and shutil.which("node")):
-        raise RuntimeError(HOW)
-    _unpack()
-
-
-def _unpack() -> None:
-    with tempfile.TemporaryDirectory() as scratch:
-        _run("npm", "pack", "--silent", PACKAGE, folder=scratch)
-        (archive,) = Path(scratch).glob("*.tgz")
-        with tarfile.open(archive) as packed:
-            packed.extractall(scratch, filter="data")
-        parts = Path(scratch) / "package" / "bin"
-        # Python has no Brotli of its own
-        program = "const fs = require('fs'); for (const f of process.argv.slice(1)) fs.writeFileSync(f.slice(0, -3), "
-        program += "require('zlib').brotliDecompressSync(fs.readFileSync(f)))"
-        _run("node", "-e", program, *(str(path) for path in parts.glob("*.br")))
+            _run("apt-get", "install", "--yes", "--no-install-recommends", SHELL)
+            return
+    with npm_package(PACKAGE) as package:
+        parts = package / "bin"
+        _run("node", "-e", PROGRAM, *map(str, parts.glob("*.br")))
         for path in parts.glob("*.tar"):
             with tarfile.open(path) as packed:
                 packed.extractall(parts / "lib" if "al2023" in path.name else parts, filter="data")
-            path.unlink()
-        for path in parts.glob("*.br"):
+        for path in (*parts.glob("*.tar"), *parts.glob("*.br")):
             path.unlink()
         (parts / "chromium").chmod(0o755)
         (parts / "fonts.conf").write_text(FONTS)
@@ -105,22 +87,27 @@ def _unpack() -> None:
         shutil.move(parts, UNPACKED)
 
 
+@contextlib.contextmanager
+def npm_package(name: str) -> Iterator[Path]:
+    """The unpacked folder of a package of the npm registry."""
+    with tempfile.TemporaryDirectory() as scratch:
+        _run("npm", "pack", "--silent", name, folder=scratch)
+        (archive,) = Path(scratch).glob("*.tgz")
+        with tarfile.open(archive) as packed:
+            packed.extractall(scratch, filter="data")
+        yield Path(scratch) / "package"
+
+
 def _run(*command: str, folder: str | None = None) -> None:
-    try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
-    except subprocess.TimeoutExpired:
-        raise RuntimeError(f"{' '.join(command[:3])} took more than five minutes\n{HOW}") from None
-    if done.returncode:
-        raise RuntimeError(f"{' '.join(command[:3])} failed: {(done.stderr or done.stdout).strip()[-500:]}\n{HOW}")
+    subprocess.run(command, cwd=folder, capture_output=True, check=True, timeout=300)
 
 
 if __name__ == "__main__":
     try:
         if find() is None:
-            print("Fetching Chromium for the tests of the page ...", file=sys.stderr)  # noqa: T201
+            sys.stderr.write("Fetching Chromium for the tests of the page ...\n")
             fetch()
-        found = find()
-    except RuntimeError as error:
+    except (OSError, subprocess.SubprocessError) as error:
         sys.stderr.write(f"{error}\nGoing on without: these tests will be skipped.\n")
-        found = None
+    found = find()
     sys.stdout.write(f"{found.path if found else HOW}\n")

@@ -10,6 +10,7 @@ import uvicorn
 from playwright.sync_api import expect, sync_playwright
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse
 
 from tests.api.explorer.chromium import HOW, find
@@ -76,35 +77,28 @@ class Service(uvicorn.Server):
 
     async def _answer_once(self, scope, receive, send):
         """Answer as when the same was asked before: the pages of most tests begin with the same requests."""
-        body, more = b"", True
-        while more:
-            message = await receive()
-            if message["type"] == "http.disconnect":
-                return
-            body, more = body + message["body"], message["more_body"]
+        try:
+            body = await Request(scope, receive).body()
+        except ClientDisconnect:
+            return
         headers = tuple(one for one in scope["headers"] if one[0] in VARYING)
         request = (scope["method"], scope["path"], scope["query_string"], headers, body)
-        if request not in self.kept:
-            messages, whole = [], [{"type": "http.request", "body": body, "more_body": False}]
-
-            async def received():
-                return whole.pop() if whole else await receive()
-
-            async def sent(message):
-                messages.append(message)
-                await send(message)
-
-            await self.app(scope, received, sent)
-            if (
-                messages
-                and messages[0]["status"] < 500
-                and messages[-1].get("body")
-                and not messages[-1].get("more_body")
-            ):
-                self.kept[request] = messages
-            return
-        for message in self.kept[request]:
+        for message in self.kept.get(request, ()):
             await send(message)
+        if request in self.kept:
+            return
+        messages, whole = [], [{"type": "http.request", "body": body, "more_body": False}]
+
+        async def received():
+            return whole.pop() if whole else await receive()
+
+        async def sent(message):
+            messages.append(message)
+            await send(message)
+
+        await self.app(scope, received, sent)
+        if messages and messages[0]["status"] < 500 and messages[-1].get("body") and not messages[-1].get("more_body"):
+            self.kept[request] = messages
 
 
 @pytest.fixture(scope="package")
@@ -130,27 +124,17 @@ def address(running_service):
 
 
 @pytest.fixture(scope="package")
-def launch():
-    """Starts a browser, with variables of the environment."""
+def browser():
     if os.environ.get("ROCKING_NO_BROWSER"):
         pytest.skip("ROCKING_NO_BROWSER is set")
     found = find()
     if found is None:
         pytest.skip(HOW)
     with sync_playwright() as playwright:
-
-        def launched(**environment):
-            environment = {**os.environ, **found.environment, **environment}
-            return playwright.chromium.launch(executable_path=found.path, args=list(found.flags), env=environment)
-
-        yield launched
-
-
-@pytest.fixture(scope="package")
-def browser(launch):
-    browser = launch()
-    yield browser
-    browser.close()
+        environment = {**os.environ, **found.environment}
+        browser = playwright.chromium.launch(executable_path=found.path, args=list(found.flags), env=environment)
+        yield browser
+        browser.close()
 
 
 @pytest.fixture(scope="module")
@@ -175,17 +159,15 @@ def open_page(context_of, address):
     """Opens a page of the service; afterwards, its console has no message, and no other host was asked."""
     wrong, pages = [], []
 
-    def opened(path="/", *, failing=False, width=1280, height=720, scheme="light", motion="reduce", **options):
+    def opened(path="/", *, failing=False, width=1280, height=720, motion="reduce", **options):
         page = context_of(**options).new_page()
         pages.append(page)
         page.set_viewport_size({"width": width, "height": height})
-        page.emulate_media(color_scheme=scheme, reduced_motion=motion)  # an animation occupies a processor
+        page.emulate_media(color_scheme="light", reduced_motion=motion)  # an animation occupies a processor
         page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("console", lambda message: _is_unexplained(message.text, failing) and wrong.append(message.text))
-        page.on(
-            "request",
-            lambda request: wrong.append(request.url) if not request.url.startswith(("blob:", address)) else None,
-        )
+        known = "Failed to load resource" if failing else "status of 422"  # which the page explains
+        page.on("console", lambda message: known in message.text or wrong.append(message.text))
+        page.on("request", lambda request: request.url.startswith(("blob:", address)) or wrong.append(request.url))
         page.goto(path)
         return page
 
@@ -193,8 +175,3 @@ def open_page(context_of, address):
     for page in pages:
         page.close()
     assert wrong == []
-
-
-def _is_unexplained(text, failing):
-    # the browser reports what the page explains
-    return ("Failed to load resource" if failing else "status of 422") not in text

@@ -3,8 +3,6 @@
 And the record that both upload.
 """
 
-from typing import ClassVar
-
 import pytest
 
 import rocking
@@ -21,8 +19,6 @@ PHONE = {"has_touch": True, "width": 390, "height": 844}
 
 class Keyboard:
     """Keys alone: a field is reached from where the focus is, by the key Tab."""
-
-    options: ClassVar = {}
 
     def __init__(self, page):
         self.page = page
@@ -61,8 +57,6 @@ class Keyboard:
 class Touch:
     """Taps on a phone; text comes from its keyboard, and choices and files from dialogs of its own."""
 
-    options = PHONE
-
     def __init__(self, page):
         self.page = page
 
@@ -73,16 +67,6 @@ class Touch:
         self.press(selector)
         self.page.locator(selector).fill(text)
         self.page.locator(selector).dispatch_event("change")
-
-    def choose(self, selector, label):
-        self.page.locator(selector).select_option(label=label)
-
-    def slide(self, selector, share):
-        """By a tap on the track, which begins and ends half a thumb within the field."""
-        field = self.page.locator(selector)
-        field.scroll_into_view_if_needed()
-        box = field.bounding_box()
-        self.page.touchscreen.tap(box["x"] + 8 + share * (box["width"] - 16), box["y"] + box["height"] / 2)
 
 
 def short_record():

@@ -70,22 +70,25 @@ def window(page):
     return {name: float(value) for name, value in query(page).items() if name.endswith(("_min", "_max"))}
 
 
-def is_part(url):
-    return "slenderness_max" in url
+def expect_half(page):
+    """Wait until half the range of the slenderness is shown; returns the window."""
+    page.wait_for_url(lambda url: "slenderness_max" in url)
+    found = window(page)
+    assert found["slenderness_max"] - found["slenderness_min"] == pytest.approx(0.52, abs=2e-3)
+    return found
 
 
-def is_whole(url):
-    return "slenderness_max" not in url
+def expect_whole(page):
+    page.wait_for_url(lambda url: "slenderness_max" not in url and "frequency_ratio_min" not in url)
 
 
 def test_buttons_wheel_and_fingers_zoom_and_a_drag_pans(open_page):
     page = open_page(MAP, has_touch=True)
     settle(page)
     page.locator("#zoom-in").click()
-    page.wait_for_url(is_part)
-    assert window(page)["slenderness_max"] - window(page)["slenderness_min"] == pytest.approx(0.52, abs=1e-3)
+    expect_half(page)
     page.locator("#whole").click()
-    page.wait_for_url(is_whole)
+    expect_whole(page)
 
     page.locator("#map-marks").scroll_into_view_if_needed()
     box, place = page.locator("#map-marks").bounding_box(), place_of(page, 2.0, 0.5)
@@ -99,7 +102,7 @@ def test_buttons_wheel_and_fingers_zoom_and_a_drag_pans(open_page):
     assert window(page)["frequency_ratio_min"] == pytest.approx(0.5 * ratio, rel=1e-3)
     assert "frequency_ratio" not in query(page)  # no point is chosen
     page.go_back()
-    page.wait_for_url(lambda url: "frequency_ratio_min" not in url)
+    expect_whole(page)
 
     page.evaluate(
         """([x, y]) => {
@@ -116,22 +119,18 @@ def test_buttons_wheel_and_fingers_zoom_and_a_drag_pans(open_page):
         }""",
         [place["x"], place["y"]],
     )
-    page.wait_for_url(is_part)
-    assert window(page)["slenderness_max"] - window(page)["slenderness_min"] == pytest.approx(0.52, abs=2e-3)
+    expect_half(page)
     page.locator("#whole").click()
-    page.wait_for_url(is_whole)
+    expect_whole(page)
 
     page.locator("#map-marks").hover(position=place_of(page, 4.0, 0.5))
     page.mouse.wheel(0, -300)
-    page.wait_for_url(is_part)
-    zoomed = window(page)
-    assert zoomed["slenderness_max"] - zoomed["slenderness_min"] == pytest.approx(0.52, abs=1e-3)
     share = (0.5 - 0.01) / 1.04  # the point under the pointer stays there
-    assert (0.5 - zoomed["slenderness_min"]) / 0.52 == pytest.approx(share, abs=0.01)
+    assert (0.5 - expect_half(page)["slenderness_min"]) / 0.52 == pytest.approx(share, abs=0.01)
     for _ in range(3):
         page.mouse.wheel(0, 300)
         page.wait_for_timeout(50)
-    page.wait_for_url(is_whole)
+    expect_whole(page)
     page.mouse.wheel(0, 200)  # what it cannot zoom it scrolls
     page.wait_for_function("scrollY > 0")
 
@@ -151,10 +150,9 @@ def test_changes_on_the_map_are_undone(open_page):
         step()
         page.wait_for_function("before => location.search !== before", arg=states[-1])
         states.append(page.evaluate("location.search"))
-    undo.click()
-    page.wait_for_function("before => location.search === before", arg=states[2])
-    page.locator("#map-marks").press("ControlOrMeta+z")
-    page.wait_for_function("before => location.search === before", arg=states[1])
+    for back, state in ((undo.click, 2), (lambda: page.locator("#map-marks").press("ControlOrMeta+z"), 1)):
+        back()
+        page.wait_for_function("before => location.search === before", arg=states[state])
     page.reload()  # the history of the browser is still there
     undo.click()
     expect(undo).to_be_disabled()
@@ -223,9 +221,3 @@ def test_spectrum_and_motion_of_a_point_are_those_of_the_solver_and_can_be_saved
     assert float(page.locator("#stage").get_attribute("data-ground")) == pytest.approx(way, rel=1e-3)
     page.goto("/?frequency_ratio=4&slenderness=0.3")
     expect(page.locator("#charts-caption")).to_contain_text("Dashed: α, past which its weight turns it over, and the")
-
-
-def test_a_bad_address_is_explained(open_page):
-    page = open_page("/?restitution=2")
-    expect(page.locator("#eta-problem")).to_contain_text("[0, 1]")
-    expect(page.locator("#map-status")).to_contain_text("No answer")

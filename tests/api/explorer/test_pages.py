@@ -5,21 +5,18 @@ import io
 import re
 
 import numpy as np
-import pytest
 import xarray as xr
 from playwright.sync_api import expect
 
 from tests.api.conftest import NAMES
-from tests.api.explorer.hands import Keyboard, Touch
+from tests.api.explorer.hands import Keyboard
 from tests.api.explorer.reading import query
-from tests.sampling import but_long
 
 
-@pytest.mark.parametrize("by", but_long([Keyboard, Touch], Keyboard))
-def test_data_sets_are_listed_filtered_and_opened(open_page, address, by):
-    page = open_page("/datasets?pulse=sine&eta=0.85", **by.options)
+def test_data_sets_are_listed_filtered_and_opened_by_keyboard(open_page, address):
+    page = open_page("/datasets?pulse=sine&eta=0.85")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    status, hand = page.locator("#status"), by(page)
+    status, hand = page.locator("#status"), Keyboard(page)
     expect(status).to_contain_text("2 of")
     page.locator("#filter").fill("nothing of this name")
     expect(status).to_contain_text("0 of")
@@ -65,13 +62,6 @@ def test_data_sets_are_listed_filtered_and_opened(open_page, address, by):
             assert opened.sizes.items() >= part.items()
 
 
-def test_the_state_is_told(open_page):
-    page = open_page("/state")
-    expect(page.locator("#status")).to_have_text("The service answers.")
-    expect(page.locator("#facts")).to_contain_text("Data sets")
-    expect(page.locator("#problems")).to_be_hidden()
-
-
 def test_a_suite_is_reported_for_each_limit_state(open_page):
     page = open_page("/suites")
     report = page.locator("#suite-report")
@@ -108,9 +98,12 @@ def test_a_suite_is_reported_for_each_limit_state(open_page):
     expect(page.locator("#suite")).to_be_hidden()
 
 
-def test_numbers_of_labels_are_round_and_on_the_safe_side(open_page):
-    """Of axes, and of values at which the outcome changes."""
+def test_the_state_is_told_and_numbers_of_labels_are_round_and_on_the_safe_side(open_page):
+    """Numbers of axes, and of values at which the outcome changes."""
     page = open_page("/state")
+    expect(page.locator("#status")).to_have_text("The service answers.")
+    expect(page.locator("#facts")).to_contain_text("Data sets")
+    expect(page.locator("#problems")).to_be_hidden()
     ticks = "async () => (await import('/static/explorer/chart.js')).logAxis('PGV').splits(null, 0, 11.7, 145)"
     assert page.evaluate(ticks) == [20, 30, 40, 50, 60, 70, 80, 90, 100]
     values = [4.700067, 13.1270943, 1.1338454, 0.0099999, 999.99951, 1e-7, 5.0]
