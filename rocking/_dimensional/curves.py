@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking._base import quantities as q
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.units import Scalar
@@ -129,6 +130,7 @@ def release(
     groups = problem.groups if problem.is_block else {}
     cell = block_cell(1.0, 1.0, groups["restitution"], groups["alpha"] or 0.0) if groups else problem.cells[0]
     p, alpha = float(body.right.frequency_parameter), float(body.right.alpha)
+    in_range("alpha", alpha, q.SMALLEST_ALPHA, math.inf, unit="rad")
     horizon = RELEASED if duration is None else p * duration
     inertia = float(body.right.inertia_ratio), float(body.left.inertia_ratio)
     moving = FreeMotion(cell, horizon, stop, start / alpha, inertia_ratio=inertia, tilt=float(body.tilt))

@@ -214,8 +214,10 @@ class Problem(EqualByValue):
         cells = np.zeros(self.shape, BODY_CELL)
         for name, value in columns.items():
             cells[name] = value
-        for side, edge in enumerate((right, left)):
-            cells["slenderness"][..., side] = body.gravity * edge.resistance / self.peak_acceleration  # (5.3)
+        for side, (name, edge) in enumerate((("right", right), ("left", left))):
+            slenderness = body.gravity * edge.resistance / self.peak_acceleration  # (5.3); infinite against a wall
+            in_range(f"slenderness of the {name} edge", np.minimum(slenderness, 1.0), q.SLENDERNESS.lower, math.inf)
+            cells["slenderness"][..., side] = slenderness
             cells["eta"][..., side] = np.maximum(etas[side], 0.0)  # departs from (2.4) where that is negative
         return cells.ravel()
 
