@@ -297,13 +297,3 @@ def test_angles_in_degrees_are_asked_about():
     for wrong in (1000.0, -20.0, np.inf, "95 deg"):
         with pytest.raises(InvalidArgumentError, match=r"\[rad\]$"):
             rocking.peak_response("sine", **PROBLEM | {"alpha": wrong})
-
-
-@pytest.mark.parametrize(
-    ("argument", "text", "allowed"),
-    [("alpha", "45%", "a number with its unit, such as 20 deg, 0.35 rad"),
-     ("restitution", "145%", r"\[0, 1\] \[-\]"), ("restitution", "0.45", None), ("slenderness", "45 deg", None)],
-)  # fmt: skip
-def test_percentages_say_what_is_allowed(argument, text, allowed):
-    with pytest.raises(InvalidArgumentError, match=allowed or "a percentage such as '45 %'"):
-        rocking.peak_response("sine", **PROBLEM | {argument: text})

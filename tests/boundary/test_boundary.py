@@ -265,17 +265,6 @@ def test_thresholds_separate_the_outcomes(pulse, alpha):
         np.testing.assert_array_equal(impacts, found.impacts)
 
 
-@pytest.mark.parametrize(("pulse", "omega"), [("sine", 4.0), ("half_sine", 3.0), ("rectangular", 3.0)])
-def test_thresholds_and_curves_agree(pulse, omega):
-    found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.85, highest=20.0)
-    boundary = rocking.overturning_boundary(
-        pulse, restitution=0.85, frequency_ratio=(omega / 1.001, omega * 1.001), slenderness=(0.05, 1.0), nodes=33
-    )
-    s, frequency_ratio, _, neighbour = curves(boundary)
-    middle = (np.abs(frequency_ratio / omega - 1) < 1e-12) & (neighbour == 0)
-    np.testing.assert_allclose(np.unique(s[middle].round(13)), np.sort(1 / found.amplitude), rtol=0, atol=1e-10)
-
-
 @pytest.mark.long
 def test_thresholds_of_a_block_that_strikes_thousands_of_times():
     # when each of the thousands of numbers of impacts was a region of its own, this took minutes
@@ -339,12 +328,6 @@ def test_threads(monkeypatch):
     assert pools == []
     assert one.identical(rocking.overturning_boundary("sine", **case, threads=2))
     assert set(pools) == {2}
-
-
-@pytest.mark.parametrize("value", [1.0, math.inf])
-def test_wrong_thresholds(value):
-    with pytest.raises(rocking.InvalidArgumentError, match="highest"):
-        rocking.thresholds("sine", frequency_ratio=2.0, restitution=0.9, highest=value)
 
 
 @pytest.mark.parametrize(("thinnest", "regions"), [(8e-4, [0, 1, 2, 3, 4]), (2e-3, [0, 1, 3, 4])])

@@ -71,14 +71,6 @@ def test_cells_of_a_curve(seed):
     assert not (crossed & ~grown(held[0] | held[1])).any()  # in particular none between one curve and the next
 
 
-def test_a_curve_within_one_cell_marks_this_cell_only():
-    middle = [0.5 * (axis[5] + axis[6]) for axis in AXES]
-    size = [axis[6] - axis[5] for axis in AXES]
-    line = middle + 0.3 * np.array(size) * np.array([[-1, -1], [1, 1], [1, -1], [-1, -1]])
-    crossed = crossed_cells(curves([line]), 0.0, ROWS, COLUMNS)
-    assert np.argwhere(crossed).tolist() == [[5, 5]]
-
-
 def test_curves_of_other_angles_do_not_count():
     line = np.array([[0.3, 0.0], [0.7, 2.0]])
     assert not crossed_cells(curves([line], alpha=0.2), 0.0, ROWS, COLUMNS).any()

@@ -11,7 +11,6 @@ import pytest
 import rocking._lookup.cube
 from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
-from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import read_spectrum, write_dataset
 from rocking._lookup.cube import Cube, Points, open_cube
 from rocking._lookup.cube_slice import slice_of
@@ -52,19 +51,6 @@ def test_cube_is_opened_by_its_address(path):
     finally:
         server.shutdown()
         server.server_close()
-
-
-def test_cells_crossed_by_a_boundary_have_no_stencil(path):
-    stencil = read_spectrum(path)["stencil"].values[0, :-1, :-1]
-    curves = overturning_boundary(
-        "sine", restitution=ETA, nodes=301, slenderness=(0.05, 0.95), frequency_ratio=(0.5, 12.0)
-    )
-    row = np.searchsorted(GRID["slenderness"], curves.slenderness.values) - 1
-    column = np.searchsorted(GRID["frequency_ratio"], curves.frequency_ratio.values) - 1
-    inside = (row >= 0) & (column >= 0) & (row < stencil.shape[0]) & (column < stencil.shape[1])
-    assert inside.sum() > 500
-    # points of a finer tracing; a few are on the edge of a cell or on islands that the coarse tracing does not find
-    assert (stencil[row[inside], column[inside]] == -1).mean() > 0.97
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6])
@@ -115,23 +101,6 @@ def test_a_number_of_impacts_is_certain_or_absent(case):
         np.testing.assert_array_equal(getattr(found, name)[known], getattr(expected, name)[known])
     assert 0.05 * n < known.sum()
     assert counted.sum() < known.sum()
-
-
-def test_method_cube_raises_or_is_correct(cube):
-    points = random_points(300, seed=6)
-    refused = 0
-    for s, w in zip(*points.values(), strict=True):
-        try:
-            found = cube.response(slenderness=s, frequency_ratio=w, method="cube")
-        except OutsideCubeError as error:
-            assert error.parameter in ("method", "absolute_tolerance")  # noqa: PT017  (many points in one test)
-            refused += 1
-            continue
-        expected = peak_response("sine", slenderness=s, frequency_ratio=w, restitution=ETA)
-        assert found.source == "cube"
-        assert found.outcome == expected.outcome
-        assert expected.overturned or abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound <= 1e-4
-    assert 0 < refused < 150
 
 
 @pytest.mark.parametrize(
@@ -236,15 +205,6 @@ def test_cubes_of_other_axes_answer_points_on_their_own_restitution(tmp_path, cu
         np.testing.assert_array_equal(found.peak_rotation[on], expected.peak_rotation)
         np.testing.assert_array_equal(found.source[on], expected.source)
         assert alone is None or (found.source[on] == "cube").any()
-
-
-def test_missing_and_damaged_files_raise(tmp_path, path):
-    with pytest.raises(DatasetError, match="no such data set"):
-        open_cube(tmp_path / "none.nc")
-    damaged = tmp_path / "damaged.nc"
-    damaged.write_bytes(path.read_bytes()[:2000])
-    with pytest.raises(DatasetError, match="damaged"):
-        open_cube(damaged)
 
 
 def test_solver_bound_is_the_change_when_all_groups_shrink_together():

@@ -90,14 +90,6 @@ def test_bounds_hold_at_a_crease_near_a_slice(tmp_path):
     assert (np.abs(found.peak_rotation - exact.peak_rotation) <= found.error_bound)[counts].all()
 
 
-def test_no_interpolation_where_a_slice_of_the_window_is_missing(folder, tmp_path):
-    for eta in (0.80, 0.85, 0.88, 0.90, 0.94):  # 0.83 is missing
-        shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)
-    point = {"slenderness": 0.4, "frequency_ratio": 9.0, "restitution": 0.82}
-    assert open_cube(folder).response(**point).source == "cube"
-    assert open_cube(tmp_path).response(**point).source == "solver"
-
-
 def test_solver_is_used_only_where_a_missing_cube_is_needed(folder, tmp_path):
     for eta in ETAS[:-1]:
         shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)

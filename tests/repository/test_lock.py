@@ -64,10 +64,6 @@ def test_lock_of_the_service_is_the_part_of_the_lock_that_it_requires() -> None:
     assert part == {name: block for name, block in blocks(LOCK).items() if name in part}
 
 
-def test_no_host_path_or_index() -> None:
-    assert not re.search(r"https?:|file:|--index|--extra-index|--find-links|@|/", LOCK)
-
-
 @pytest.mark.parametrize("line", DIRECT)
 def test_direct_requirement_is_pinned_within_its_bound(line: str) -> None:
     requirement = Requirement(line)

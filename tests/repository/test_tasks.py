@@ -61,7 +61,7 @@ def perform(path: Path, step: re.Match[str]) -> None:
     path.write_text(f"{before}\n{parts[step['where']]}{after}")
 
 
-@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure"))
+@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure", "field"))
 def test_task(copy: Path, task: str) -> None:
     environment = os.environ | {"PYTHONPATH": f"{copy}{os.pathsep}{copy / 'api'}", "PYTHONWARNINGS": "error"}
     (step,) = [step for step in STEP.finditer(TASKS[task]) if not step["path"]]

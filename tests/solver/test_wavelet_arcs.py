@@ -95,22 +95,6 @@ def test_few_cells_are_left_to_taylor_steps(name):
     assert_equal(found[left], by_event_loop(pulse, s[left], w[left], eta[left]))
 
 
-@pytest.mark.parametrize("name", ["ricker", "ricker_antisymmetric"])
-def test_low_frequencies_are_solved_by_taylor_steps(name):
-    pulse = PULSES[name]
-    least = pulse.series.least_arc_frequency
-    s, w, eta = np.full(40, 0.37), least * np.linspace(0.9, 1.1, 40), np.full(40, 0.8)
-    found, steps = (
-        rocking.peak_response(pulse, slenderness=s, frequency_ratio=w, restitution=eta),
-        by_event_loop(pulse, s, w, eta),
-    )
-    below = w < least
-    assert 0 < np.count_nonzero(below) < 40
-    np.testing.assert_array_equal(found.peak_rotation[below], steps["peak_rotation"][below])
-    assert (found.peak_rotation[~below] != steps["peak_rotation"][~below]).any()
-    np.testing.assert_allclose(found.peak_rotation, steps["peak_rotation"], rtol=1e-12)
-
-
 @pytest.mark.parametrize("name", PULSES)
 def test_derivatives_and_their_bound(name):
     """f is the sum of h_k times the derivatives of the Gaussian; its n-th derivative is at most growth_rate^n."""

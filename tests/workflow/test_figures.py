@@ -7,23 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 import yaml
 
-from rocking._boundary.curves import join_curves
-from rocking._datasets.cube import read_dataset, write_dataset
+from rocking._datasets.cube import read_dataset
 from rocking._dimensional.block import Block
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._solver.peak_response import peak_response
 from rocking.paper import overturning_amplitudes
-from rocking.plot.boundary_lines import Lines
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_09, figure_10, figure_scale_law_excitations, similar_histories
+from workflow.figures import figure_09, figure_scale_law_excitations, similar_histories
 from workflow.figures.boundary_lines import lines_of
 from workflow.scripts.figure import main
-from workflow.scripts.overturning import curves_of, described
 
-CONFIG = PROJECT / "workflow/config"
 PROVENANCE = ("code_sha256", "settings_sha256", "configuration", "product_version")
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
@@ -105,39 +100,6 @@ def test_upper_surviving_region_of_figure_9_is_bounded_where_the_outcome_changes
     assert recovers(high * (1 - 1e-9)).all()
     assert not recovers(low * (1 - 1e-9)).any()
     assert not recovers(high * (1 + 1e-9)).any()
-
-
-def along_frequency(lines: Lines, omega: np.ndarray) -> np.ndarray:
-    """Largest amplitude of the lines at each frequency ratio: the curve of overturning without impact."""
-    joined = [~np.isnan(lines.amplitude[:-1] + lines.amplitude[1:])]
-    x, y = (np.stack([v[:-1][*joined], v[1:][*joined]]) for v in (lines.frequency_ratio, lines.amplitude))
-    inside = (x.min(axis=0)[:, None] <= omega) & (omega <= x.max(axis=0)[:, None])
-    slope = (y[1] - y[0]) / np.where(x[1] == x[0], np.inf, x[1] - x[0])
-    return np.where(inside, y[0][:, None] + slope[:, None] * (omega - x[0][:, None]), -np.inf).max(axis=0)
-
-
-@pytest.fixture(scope="module")
-def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """Figure 10 at more angles than the smallest configuration has."""
-    files = {}
-    for pulse in ("sine", "cosine"):
-        window = {"slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
-        parts = curves_of(pulse, 0.85, (0, 5, 10, 20), nodes=61, nodes_rigid=61, **window)
-        files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
-        write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
-    return figure_10.data(**files, restitution=0.85, alpha_deg=[5, 10, 20])
-
-
-@pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])
-def test_boundaries_of_figure_10_converge_to_the_slender_limit(overturning_at_angles: xr.Dataset, pulse: int) -> None:
-    data = overturning_at_angles
-    omega = np.linspace(1.5, 2.4, 10)
-    slender, *others = (
-        along_frequency(lines_of(data, pulse, alpha), omega) for alpha in np.radians([0.0, 5.0, 10.0, 20.0])
-    )
-    distance = [np.abs(other / slender - 1).max() for other in others]
-    assert distance[0] < distance[1] < distance[2] < 0.05
-    assert distance[0] < 0.2 * distance[2]  # as alpha squared, and so by 16
 
 
 def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> None:
