@@ -156,12 +156,6 @@ def test_other_schema(cube: xr.Dataset, tmp_path: Path, change: str) -> None:
         read_spectrum(tmp_path / "other.nc")
 
 
-def test_nodes_are_the_responses_of_the_solver(cube: xr.Dataset) -> None:
-    solved = peak_response("sine", slenderness=SLENDERNESS[:, None], frequency_ratio=FREQUENCY_RATIO, restitution=0.85)
-    np.testing.assert_array_equal(cube.peak_rotation.values[0], solved.peak_rotation)
-    np.testing.assert_array_equal(cube.outcome.values[0], solved.outcome)
-
-
 def test_interpolation_error_marks_smooth_cells_only(cube: xr.Dataset) -> None:
     error = cube.interpolation_error.values[0]
     assert np.isnan(error[-1]).all()

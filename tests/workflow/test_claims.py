@@ -354,18 +354,6 @@ def test_thresholds_converge_to_the_closed_forms_with_the_square_of_alpha() -> N
     assert 1.98 < claim.numbers["lowest_order"] <= claim.numbers["highest_order"] < 2.02
 
 
-def test_groups_of_6_1_reduce_the_spread_over_slenderness() -> None:
-    spreads = small_rotations.spreads(["sine", "cosine"], ETA)
-    for one in spreads.values():
-        band = one.band(0.5, 1.0)
-        # (6.1) is exact for small rotations, (4.11) misses the uplift itself
-        assert np.median(one.rigid[band]) < 0.005
-        assert np.median(one.slender[band]) > 0.5
-    claims = by_key([*small_rotations.practical_similarity(spreads), *small_rotations.larger_slenderness(spreads)])
-    assert claims["practical-similarity"].numbers["sine, 0.5 to 1"] > 0.9
-    assert claims["small-rotations"].verdict == HOLDS
-
-
 def test_measured_values_are_those_of_the_pages() -> None:
     for page in ("restitution", "shaking-table"):
         text = (PROJECT / f"docs/{page}.md").read_text()
