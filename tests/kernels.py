@@ -12,7 +12,6 @@ from rocking._solver.taylor.step import take_step
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:
-    """Return the record of a block at rest before the pulse."""
     flight = pulse_state(rocking.pulse(pulse) if isinstance(pulse, str) else pulse).copy()
     set_body(flight, block_cell(omega, slenderness, eta, alpha), False)
     init_state(flight, omega)
@@ -20,21 +19,18 @@ def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: fl
 
 
 def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
-    """The record of a block at the start of its first flight."""
     flight = cell(pulse, slenderness, omega, alpha)
     assert start_flight(flight)
     return flight
 
 
 def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
-    """Return the record at the start of a flight after an impact at `phase`."""
     flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
     assert start_flight(flight)
     return flight
 
 
 def edge(alpha: float) -> Record:
-    """The record of a block of this slenderness angle, for a lane of Taylor steps."""
     return cell("sine", 0.5, 1.0, alpha)
 
 

@@ -9,7 +9,6 @@ GRID = {"slenderness": np.linspace(0.05, 0.95, 91), "frequency_ratio": np.geomsp
 
 
 def crossed(eta, alpha):
-    """Cells that a boundary crosses."""
     window = {name: (axis[0], axis[-1]) for name, axis in GRID.items()}
     curves = overturning_boundary("sine", restitution=eta, alpha=alpha or None, nodes=101, **window)
     curves["alpha"] = "curve", np.full(curves.sizes["curve"], alpha)

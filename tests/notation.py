@@ -50,7 +50,6 @@ def python_arguments() -> Iterator[str]:
 
 
 def options() -> Iterator[str]:
-    """Options of the commands, and what they take without a name."""
     commands = [typer.main.get_command(app)]
     for command in commands:  # grows by those of each group
         commands += getattr(command, "commands", {}).values()
@@ -79,7 +78,6 @@ def http_parameters() -> Iterator[str]:
 
 
 def columns() -> Iterator[str]:
-    """Columns of the tables of blocks and of objects."""
     yield from (one.name for one in (*COLUMNS, *INPUTS, *SHAPES))
 
 
@@ -133,7 +131,6 @@ def _present(names: list[str], found: set[str]) -> list[str]:
 
 
 def fields_table() -> Iterator[list[str]]:
-    """The rows of the table of the fields of a response."""
     for one in dict.fromkeys((*RESPONSE_FIELDS, *COLUMN_FIELDS)):
         dtype = {"?": "bool", "U": "text", "i1": "int8", "i4": "int32", "f8": "float64"}[one.dtype]
         text = re.sub(r"\|(.+?)\|", r"abs(\1)", one.description("nan").replace(" [-]", ""))
@@ -141,7 +138,6 @@ def fields_table() -> Iterator[list[str]]:
 
 
 def assessment_table() -> Iterator[list[str]]:
-    """The rows of the table of the columns of an assessment."""
     for one in OUTPUTS:
         yield [f"`{one.name}`", one.unit or "text", one.meaning]
 

@@ -126,7 +126,6 @@ def http_names() -> Iterator[str]:
 
 
 def column_names() -> Iterator[str]:
-    """Fields of responses, columns of tables, variables of data sets."""
     window = {"frequency_ratio": (0.2, 15.0), "slenderness": (0.02, 1.0)}
     (curves,) = curves_of("sine", 0.85, [0.0], nodes=16, nodes_rigid=16, **window)
     yield entry("fields of a response", [field.name for field in RESPONSE_FIELDS])
@@ -136,7 +135,6 @@ def column_names() -> Iterator[str]:
 
 
 def present() -> str:
-    """The interface of the code as it is."""
     return "\n".join([*python_names(), *command_names(), *http_names(), *column_names(), ""])
 
 

@@ -99,7 +99,6 @@ def record(text: str) -> None:
 
 
 def pulse(text: str) -> None:
-    """Read a file of a sampled pulse."""
     with tempfile.TemporaryDirectory() as folder, suppress(InvalidArgumentError):
         path = Path(folder) / "pulse.csv"
         path.write_text(text, encoding="utf-8", newline="")
@@ -107,20 +106,17 @@ def pulse(text: str) -> None:
 
 
 def table(text: str) -> None:
-    """Read a table of blocks."""
     with suppress(InvalidArgumentError):
         read_table(text, "sine")
 
 
 def quantity(text: str) -> None:
-    """Read a quantity of each dimension."""
     for unit in ("m", "m/s2", "s", "rad"):
         with suppress(InvalidArgumentError):
             positive("x", text, unit)
 
 
 def suite_file(text: str, suffix: str) -> None:
-    """Read the configuration of a suite from a file."""
     with tempfile.TemporaryDirectory() as folder, suppress(typer.BadParameter):
         path = Path(folder) / f"suite.{suffix}"
         path.write_text(text, encoding="utf-8", newline="")
@@ -146,19 +142,16 @@ def suite_values(text: str) -> None:
 
 @cache
 def service() -> Any:
-    """A service without data sets."""
     return create_app(Settings(results=Path(tempfile.gettempdir()) / "rocking-no-results", access_log=False))
 
 
 def request(text: str, path: str, header: str = "") -> None:
-    """Send a request with the text as its query, or as a header."""
     line = text.translate(dict.fromkeys(b"\r\n\0 ", "+")).encode().decode("latin-1")
     headers = [(header, line)] if header else []
     asyncio.run(exchange(service(), Sent("GET", path, "" if header else line, headers, b"", leaves=False)))
 
 
 def body(text: str, form: str) -> None:
-    """Read the body of a request for many points, or for many blocks."""
     with suppress(InvalidArgumentError):
         if form == "csv":
             parse_csv(text.encode(), 10_000, StopFlag())
@@ -229,7 +222,6 @@ class Fragments(NamedTuple):
     suffix: str
 
     def text(self, length: int) -> str:
-        """A text of about this length."""
         count = length // len(self.fragment)
         if NUMBER in self.fragment:
             repeated = "".join(self.fragment.replace(NUMBER, str(k)) for k in range(count))
@@ -250,7 +242,6 @@ def fragments(name: str, reader: Reader, seed: int) -> Iterator[Fragments]:
 
 
 def seconds(reader: Reader, text: str) -> float:
-    """Processor time of reading a text [s]."""
     start = time.process_time()
     reader.read(text)
     return time.process_time() - start

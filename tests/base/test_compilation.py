@@ -86,7 +86,6 @@ def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
 
 
 def script(code, **environment):
-    """Output of a new process that runs some code."""
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=os.environ | environment
     )

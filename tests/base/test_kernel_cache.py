@@ -70,7 +70,6 @@ def empty(request, fork, tmp_path_factory):
 
 @pytest.fixture
 def run(empty, fork, tmp_path):
-    """Runs small kernels in a process of its own, with the cache of this test; returns what they print."""
     folder, way = empty
     kept = Path(shutil.copytree(folder, tmp_path / "kept"))
     (tmp_path / "small_kernels.py").write_text(KERNELS)
@@ -92,7 +91,6 @@ def run(empty, fork, tmp_path):
 
 
 def files_of(cache):
-    """Index and machine code of the kernels."""
     (index,), (code,) = cache.rglob("*.nbi"), cache.rglob("*.nbc")
     return {"index": index, "machine code": code}
 
@@ -239,7 +237,6 @@ print(rocking.__file__, sum(solve_batch.stats.cache_hits.values()), sum(solve_ba
 
 @pytest.fixture
 def package(tmp_path):
-    """An empty package."""
     (tmp_path / "rocking" / "inner").mkdir(parents=True)
     return tmp_path / "rocking"
 

@@ -15,7 +15,6 @@ AXES = ROWS, np.log(COLUMNS)
 
 
 def curves(polylines, alpha=0.0):
-    """Polylines (points, 2) of 1/a and log omega as a data set."""
     points = np.concatenate(polylines)
     return xr.Dataset(
         {
@@ -45,7 +44,6 @@ def cells_on_the_line(line):
 
 
 def grown(cells):
-    """The cells and the eight around each."""
     padded = np.pad(cells, 1)
     n, m = cells.shape
     return np.any([padded[i : i + n, j : j + m] for i in range(3) for j in range(3)], axis=0)

@@ -22,7 +22,6 @@ POINT = {"slenderness": 0.7, "frequency_ratio": 7.0, "restitution": 0.85}
 
 @pytest.fixture(scope="module")
 def contents(tmp_path_factory):
-    """Two versions of a cube, as bytes."""
     made = spectrum(
         "sine", restitution=0.85, slenderness=np.linspace(0.6, 0.8, 21), frequency_ratio=np.geomspace(6.0, 8.0, 21)
     )
@@ -115,7 +114,6 @@ def test_response_names_the_version_it_was_read_from(cubes, path, contents, monk
 
 
 def is_open(cubes, restitution=0.85):
-    """Whether no file has to be read for a response."""
     try:
         points = Points.of(*(POINT | {"restitution": restitution}).values(), None)[0]
         cubes.cube("sine", may_read=False).evaluate(points, 1e-4, "auto")

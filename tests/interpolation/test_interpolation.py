@@ -24,7 +24,6 @@ UNEVEN = np.cumsum([0.1, 0.1, 0.1, 0.05, 0.05, 0.02, 0.02, 0.3, 0.1, 0.1, 0.2, 0
 
 
 def interpolate(values, mesh, cells, codes, place):
-    """Interpolated values at one point of each of some cells."""
     found = np.empty(cells[0].size)
     interpolate_cells(values, *cells, codes, *mesh.within(cells, place), mesh, found)
     return found

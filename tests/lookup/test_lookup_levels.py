@@ -18,7 +18,6 @@ ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Cubes of several restitutions and angles."""
     folder = tmp_path_factory.mktemp("sine")
     barred = np.array([[crossed(eta, float(alpha)) for alpha in ANGLES] for eta in ETAS])
     for cube in spectra("sine", restitution=ETAS, alpha=ANGLES, barred=barred, **GRID):

@@ -34,7 +34,6 @@ VARIABLES = {f"ROCKING_{name.upper()}" for name in Settings.model_fields}
 
 @pytest.fixture(scope="module")
 def unit():
-    """Keys of the unit with their values in order; one key may occur several times."""
     found = {}
     for line in (DEPLOY / "rocking.service").read_text().splitlines():
         if "=" in line and not line.startswith("#"):

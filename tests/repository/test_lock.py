@@ -39,12 +39,10 @@ def test_every_line_is_a_pin_or_a_hash() -> None:
 
 
 def blocks(lock: str) -> dict[str, str]:
-    """Return the pins of a lock with their hashes, by name."""
     return {canonicalize_name(block.partition("==")[0]): block for block in re.split(r"\n(?=\S)", lock.rstrip())}
 
 
 def required_by(lines: list[str]) -> set[str]:
-    """Return the packages that requirements lead to, with Python 3.11."""
     waiting, seen = [Requirement(line) for line in lines], set()
     while waiting:
         requirement = waiting.pop()

@@ -49,7 +49,6 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def perform(path: Path, step: re.Match[str]) -> None:
-    """Make one change."""
     if step["how"] == "New file":
         assert not path.exists(), path
         path.write_text(step["text"])

@@ -30,7 +30,6 @@ pytestmark = pytest.mark.slow
 
 
 def printed(shown: str) -> re.Pattern[str]:
-    """The pattern of an output that a page shows."""
     return re.compile("".join("(?s:.*)" if line == "..." else f"{re.escape(line)}\n" for line in shown.splitlines()))
 
 

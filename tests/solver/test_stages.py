@@ -49,7 +49,6 @@ def by_stages(pulse, s, w, eta):
 
 
 def by_event_loop(pulse, s, w, eta):
-    """The event loop that serves all bodies and pulses."""
     found = np.zeros(s.size, RESPONSE_RECORD)
     state = solver_state.of_steps(pulse, FULL_PRECISION)
     cells = block_cells(w, s, eta, np.zeros(s.size))

@@ -18,7 +18,6 @@ def random_cells(n: int, seed: int) -> dict[str, np.ndarray]:
 
 
 def shifted(pulse: SinusoidalPulse, by: float) -> SinusoidalPulse:
-    """The same acceleration with a shifted phase."""
     terms = tuple((c, w, d - w * by) for c, w, d in pulse.terms)
     stationary = tuple(phi + by for phi in pulse.stationary)
     return SinusoidalPulse(f"shifted {pulse.name}", pulse.start + by, pulse.end + by, stationary, terms)

@@ -50,14 +50,12 @@ def velocity(steps, h: float, lane: int = 3) -> float:
 
 
 def one_lane(coefficients: np.ndarray) -> np.ndarray:
-    """A series in the second lane."""
     series = np.full((MAX_ORDER + 1, LANES), np.nan)
     series[:, 1] = coefficients
     return series
 
 
 def bend_of(coefficients: np.ndarray, h: float) -> float:
-    """Bound of the second derivative on [0, h]."""
     return float(sum(n * (n - 1) * abs(c) * h ** max(n - 2, 0) for n, c in enumerate(coefficients)))
 
 

@@ -30,12 +30,10 @@ PULSES = {name: rocking.pulse(name) for name in NAMES} | {"cubic": cubic_wavelet
 
 
 def frequencies(pulse, s, w):
-    """The cells with exact arcs."""
     return s, np.maximum(w, pulse.series.least_arc_frequency)
 
 
 def exact_shape(pulse, phi):
-    """f of the pulse in multi-precision."""
     if isinstance(pulse, WaveletPulse):
         return mpmath.polyval(pulse.polynomial, phi, asc=True) * mpmath.exp(-phi * phi / mpmath.mpf(pulse.spread))
     return sum(c * mpmath.cos(w * phi + d) for c, w, d in pulse.terms)

@@ -110,7 +110,6 @@ def curve(**replaced: np.ndarray) -> impact_times.Curve:
 
 
 def thresholds(amplitude: float, count: int = 1) -> Thresholds:
-    """`count` thresholds of which the first is given."""
     return Thresholds(
         amplitude + np.arange(count),
         np.arange(count) % 2 == 0,
@@ -182,13 +181,11 @@ def two_histories() -> xr.Dataset:
 
 
 def swings() -> spectra.Swings:
-    """Periods and velocities that fall as restitution rises."""
     falling = np.array([[3.0, 2.0, 1.0]] * 4)
     return spectra.Swings(np.array([0.8, 0.85, 0.9]), falling, falling, falling)
 
 
 def law_of_excitations(*shares: float) -> xr.Dataset:
-    """The figure of the scale law with these shares of area."""
     return xr.Dataset(
         {"share": ("excitation", [*shares]), "median_exponent": ("excitation", [2.0] * len(shares))},
         attrs={"excitation_names": " ".join("abc"[: len(shares)])},

@@ -25,7 +25,6 @@ def archive(smoke_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(archive: Path, tmp_path: Path) -> Path:
-    """The content of the archive; a test may spoil it."""
     zipfile.ZipFile(archive).extractall(tmp_path)
     return tmp_path / "rocking-data"
 

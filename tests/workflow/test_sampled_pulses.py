@@ -25,7 +25,6 @@ RAMP = rocking.SampledPulse([0.0, 3.0, -1.0, 0.0], [0.0, 0.1, 0.3, 0.7], 0.5, "r
 
 
 def configuration(pulses: list[Any]) -> dict[str, Any]:
-    """The data sets of some pulses on a tiny grid."""
     found: dict[str, Any] = yaml.safe_load(SMOKE.read_text())
     for name in ("figures", "claims"):
         del found[name]

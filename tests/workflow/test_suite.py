@@ -28,7 +28,6 @@ RECORDS = ("napa_HNE", "napa_HNN")
 
 @pytest.fixture(scope="module")
 def configuration(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """File of suite.yaml with two of its five records."""
     given = yaml.safe_load(CONFIGURATION.read_text())
     given["suite"]["records"] |= {"folder": str(PROJECT / "workflow/motions"), "pattern": "napa_*.csv"}
     path = tmp_path_factory.mktemp("configuration") / "suite.yaml"

@@ -32,7 +32,6 @@ def test_a_sine_sampled_ever_finer_converges_with_second_order(
 
 
 def responses_equal(first: rocking.Response, second: rocking.Response, rtol: float = 1e-9) -> None:
-    """Outcomes are equal, peaks and times close."""
     np.testing.assert_array_equal(first.outcome, second.outcome)
     np.testing.assert_allclose(first.peak_rotation, second.peak_rotation, rtol=rtol)
     np.testing.assert_allclose(first.uplift_time, second.uplift_time, rtol=rtol)
