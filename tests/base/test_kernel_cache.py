@@ -5,6 +5,7 @@ import platform
 import shutil
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -129,40 +130,22 @@ def test_machine_code_of_a_named_processor_is_found_on_another_machine(run, name
     assert run.started().split() == (["1", "0", "0"] if named else ["0", "1", "0"])
 
 
-@pytest.mark.parametrize(("file", "damage"), [("index", truncated), ("machine code", flipped)])
-def test_a_damaged_file_is_made_again_with_one_warning(run, file, damage):
+PLACES = 0.5, 0.0, 0.98, 1.0 - 1e-9
+DAMAGE = [(share, *one) for share in PLACES for one in product(("index", "machine code"), (truncated, flipped))]
+
+
+@pytest.mark.parametrize("given", but_long(DAMAGE, (0.5, "index", truncated), (0.5, "machine code", flipped)))
+def test_a_damaged_file_is_made_again_with_one_warning(run, given):
+    share, file, damage = given
     run()
     damaged = files_of(run.kept)[file]
-    damaged.write_bytes(damage(damaged.read_bytes(), 0.5))
+    damaged.write_bytes(damage(damaged.read_bytes(), share))
     hits, misses, warned, text = run().split(maxsplit=3)
     assert (hits, misses, warned) == ("0", "1", "1")
     assert str(run.kept) in text
     assert "damaged" in text
     assert run().split() == ["1", "0", "0"]
     assert [path.name for path in run.kept.rglob("*total.*")] == []  # what was damaged is gone
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("damage", [truncated, flipped])
-def test_damage_is_found_at_any_place(run, damage):
-    code = f"""
-from pathlib import Path
-from tests.base.test_kernel_cache import {damage.__name__}, files_of
-kernel_cache.LATENCY = 0.0
-entry(total)(np.ones(3))
-for share in (0.0, 0.02, 0.3, 0.7, 0.98, 1.0 - 1e-9):
-    for name in ("index", "machine code"):
-        damaged = files_of(Path({str(run.kept)!r}))[name]
-        damaged.write_bytes({damage.__name__}(damaged.read_bytes(), share))
-        kernel_cache._WARNED.clear()
-        said.clear()
-        compiled = entry(total)
-        assert compiled(np.ones(3)) == 6.0
-        assert hits_and_misses(compiled) == [0, 1], (name, share)
-        assert ["damaged" in text for text in said] == [True], (name, share)
-"""
-    run(code)
-    assert run().split() == ["1", "0", "0"]
 
 
 NOT_REMOVED = """

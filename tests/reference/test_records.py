@@ -35,17 +35,10 @@ def test_the_amplification_of_a_small_single_flight_follows_from_its_threshold()
 
 
 def test_random_cases() -> None:
-    verdicts = [judge(*random_case(seed)) for seed in range(number(5, 25))]
-    found = summary(verdicts)
+    """`python -m stress.records` runs a thousand."""
+    found = summary([judge(*random_case(seed)) for seed in range(number(5, 50))])
     assert found["wrong"] == 0
     assert found["overturned"] > 0
-
-
-@pytest.mark.long
-def test_more_random_cases() -> None:
-    """`python -m stress.records` runs a thousand."""
-    found = summary([judge(*random_case(seed)) for seed in range(100, 125)])
-    assert found["wrong"] == 0
     assert found["largest error over allowed"] < 0.1
 
 

@@ -101,12 +101,8 @@ def test_values_are_compared_with_another_manifest(
         f"{DATA}: not in the other manifest",
         f"{CUBE}: other values; processors: {processor()} here, generic there",
     ]
-    done = subprocess.run(
-        [sys.executable, "-m", "workflow.verify", run, "--against", other],
-        cwd=PROJECT,
-        capture_output=True,
-        check=False,
-    )
+    command = [sys.executable, "-m", "workflow.verify", run, "--against", other]
+    done = subprocess.run(command, cwd=PROJECT, capture_output=True, check=False)
     assert done.returncode == 1
     assert b"2 found" in done.stderr
 
