@@ -30,10 +30,6 @@ def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
     return flight
 
 
-def edge(alpha: float) -> Record:
-    return cell("sine", 0.5, 1.0, alpha)
-
-
 def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, float, int]:
     """From z and w at the end of the motion: impacts until it overturns plus one, or 0; peak; impacts before it."""
     state = cell("sine", 2.0, 1.0, alpha, eta)

@@ -119,17 +119,12 @@ def test_a_pulse_of_the_catalogue_has_its_parameters_in_its_text(tmp_path):
 
 
 def _check_cube(results: Path, pulse: rocking.SampledPulse) -> None:
-    """The nodes of a cube are those of the solver, and another process asks the solver by the stored samples."""
+    """Files hold the samples, by which another process asks the solver; `workflow/checks` compares their nodes."""
     path = results / f"spectra/{pulse.name}/eta-0.85.nc"
     cube = read_spectrum(path)
     assert stored_pulse(cube) == pulse
     assert int(cube.pulse) == -1
     assert cube.pulse.attrs["pulse_digest"] == pulse.digest
-    axes = {"slenderness": cube.slenderness.values[:, None], "frequency_ratio": cube.frequency_ratio.values}
-    slender = cube.sel(alpha=0.0)
-    solved = rocking.peak_response(pulse, **axes, restitution=0.85)
-    np.testing.assert_array_equal(slender.peak_rotation, solved.peak_rotation)
-    np.testing.assert_array_equal(slender.outcome, solved.outcome)
     curves = read_dataset(results / f"overturning/{pulse.name}/eta-0.85.nc")
     assert stored_pulse(curves) == pulse
     assert curves.sizes["curve"] > 0
