@@ -92,23 +92,25 @@ def command_names() -> Iterator[str]:
     return options("rocking", typer.main.get_command(command_line))
 
 
+def schema_fields(document: dict[str, Any], schema: dict[str, Any], path: str = "") -> Iterator[str]:
+    """The fields of a schema of an OpenAPI document, those of parts below the names of these."""
+    if "$ref" in schema:
+        schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
+    for name, field in schema.get("properties", {}).items():
+        yield f"{path}{name}"
+        yield from schema_fields(document, field, f"{path}{name}.")
+    for part in (*schema.get("anyOf", ()), *schema.get("allOf", ()), schema.get("items")):
+        if isinstance(part, dict):
+            yield from schema_fields(document, part, path)
+
+
 def http_names() -> Iterator[str]:
     """Parameters of each route, and the fields of its body and of its answers, from the OpenAPI document."""
     document = create_app(Settings(results=STORED.parent)).openapi()
 
-    def fields(schema: dict[str, Any], path: str = "") -> Iterator[str]:
-        if "$ref" in schema:
-            schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
-        for name, field in schema.get("properties", {}).items():
-            yield f"{path}{name}"
-            yield from fields(field, f"{path}{name}.")
-        for part in (*schema.get("anyOf", ()), *schema.get("allOf", ()), schema.get("items")):
-            if isinstance(part, dict):
-                yield from fields(part, path)
-
     def contents(name: str, message: dict[str, Any]) -> Iterator[str]:
         for media_type, content in message.get("content", {}).items():
-            yield entry(f"{name} {media_type}", sorted(set(fields(content.get("schema", {})))))
+            yield entry(f"{name} {media_type}", sorted(set(schema_fields(document, content.get("schema", {})))))
 
     errors: set[str] = set()
     for path, operations in sorted(document["paths"].items()):
