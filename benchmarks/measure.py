@@ -53,6 +53,16 @@ def in_rounds(tasks: Mapping[Name, Task], rounds: int, title: str) -> dict[Name,
     return times
 
 
+def shortest(call: Callable[[], Any], rounds: int) -> float:
+    """Return the least processor time of a call in some rounds [s]."""
+    times = []
+    for _ in range(rounds):
+        start = time.process_time()
+        call()
+        times.append(time.process_time() - start)
+    return min(times)
+
+
 def progress(text: str) -> None:
     """Print a progress message to stderr."""
     print(text, file=sys.stderr, flush=True)
@@ -94,7 +104,7 @@ def versions(*packages: str) -> dict[str, str]:
     return found
 
 
-def columns(rows: Iterable[Mapping[str, Any]], **titles: str) -> str:
+def columns(rows: pd.DataFrame | Iterable[Mapping[str, Any]], **titles: str) -> str:
     """Format the columns of rows that have a title."""
     found = pd.DataFrame(rows)[[*titles]]
     return found.to_string(index=False, header=[*titles.values()], float_format="{:.4g}".format)
@@ -107,17 +117,10 @@ def save(record: dict[str, Any], path: Path) -> None:
 
 
 def arguments(about: str | None, given: Sequence[str] | None = None, **options: Any) -> argparse.Namespace:
-    """Read a command line whose help is the docstring of a module.
+    """Read a command line, that of the process unless it is given; its help is `about`, the docstring of a module.
 
-    Parameters
-    ----------
-    about : str
-        The docstring.
-    given : sequence of str, optional
-        The command line; that of the process if omitted.
-    options
-        An option for each name, with its default, whose type it has; a list takes several values of the type of its
-        first one. A type in place of a default: an argument that must be given, by its place.
+    Each option has its default, and the type of it; a list takes several values of the type of its first one. A type in
+    place of a default: an argument that must be given, by its place.
     """
     parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, default in options.items():

@@ -81,8 +81,7 @@ def solved(row: dict[str, str]) -> dict[str, str]:
     return {name: found[name] for name in row}
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", type=Path, nargs="+")
     for path in parser.parse_args().files:
@@ -94,7 +93,3 @@ def main() -> None:
             writer.writerows(map(solved, rows))
         unfinished.replace(path)
         progress(f"{path}: {len(rows)} rows")
-
-
-if __name__ == "__main__":
-    main()

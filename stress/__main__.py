@@ -17,9 +17,7 @@ from stress.figure import draw
 from stress.report import evaluate_family, markdown, violations
 from stress.speed import relative_times, single_times, time_summary
 
-
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     options = arguments(__doc__, family=[*BY_NAME], out=Path("results/stress/stress.json"))
     out = options.out
     records: dict[str, dict[str, Any]] = {}
@@ -41,7 +39,3 @@ def main() -> None:
     print(f"written to {out}, and .md, .png and .svg with the same name")
     if violated:
         sys.exit("\n".join(["requirements violated:", *violated]))
-
-
-if __name__ == "__main__":
-    main()

@@ -54,13 +54,7 @@ def sample(session: Path, count: int, seed: int, folders: list[str]) -> None:
 
 
 class ImportGraph:
-    """The imports between the Python files of a tree, read from the source text: nothing is executed.
-
-    Parameters
-    ----------
-    root : Path
-        Folder that holds the packages; those of `api/` are found as well.
-    """
+    """The imports between the Python files below `root` and in its `api/`, read from the text: nothing is executed."""
 
     def __init__(self, root: Path) -> None:
         self.root = root

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import rocking
+from benchmarks.measure import shortest
 from benchmarks.tables import Table
 
 FEW, MANY = 8, 256
@@ -82,11 +83,6 @@ def _time_of_copies(table: Table, k: int, copies: int, rounds: int) -> float:
     times = []
     for first in (2.0, cell["slenderness"]):
         slenderness[::2] = first
-        times.append(min(_seconds(str(table.pulse[k]), cell | {"slenderness": slenderness}) for _ in range(rounds)))
+        groups = cell | {"slenderness": slenderness}
+        times.append(shortest(partial(rocking.peak_response, str(table.pulse[k]), **groups, threads=1), rounds))
     return 1e6 * max(times[1] - times[0], 0.0) / copies
-
-
-def _seconds(pulse: str, groups: dict[str, Any]) -> float:
-    began = time.process_time()
-    rocking.peak_response(pulse, threads=1, **groups)
-    return time.process_time() - began

@@ -26,10 +26,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from benchmarks.checkouts import INPUTS, Checkout
-from benchmarks.measure import arguments, progress, save
+from benchmarks.measure import arguments, columns, progress, save
 from rocking._base.source_tree import PROJECT, SourceTree
 from rocking._excitation.pulses import PULSE_NAMES
 
@@ -150,21 +151,15 @@ def summary(kind: dict[str, Any], chunks: Sequence[dict[str, Any]]) -> dict[str,
     return {"kind": name, **total, "differences": differences}
 
 
-def markdown(rows: Sequence[dict[str, Any]]) -> str:
-    """The comparison as a table."""
-    names = ("cells", "number", "equal peaks", "largest difference", "over conditioning")
-    names += ("outcomes", "impacts", "unexplained", "us here", "us there")
-    lines = [f"| {' | '.join(names)} |", "| --- " * len(names) + "|"]
-    for row in rows:
-        cells = row["cells"]
-        values = (
-            *(row["kind"], f"{cells}", f"{100.0 * row['equal_peaks'] / cells:.1f} %", f"{row['largest_change']:.1e}"),
-            *(f"{row['largest_over_conditioning']:.2g}", f"{row['outcomes']}", f"{row['impacts']}"),
-            f"{len(unexplained(row))}",
-            *(f"{1e6 * row[name] / cells:.3g}" for name in ("seconds", "seconds_there")),
-        )
-        lines.append(f"| {' | '.join(values)} |")
-    return "\n".join(lines)
+def table(rows: Sequence[dict[str, Any]]) -> str:
+    """The comparison as text."""
+    found = pd.DataFrame(rows)
+    found["unexplained"] = [len(unexplained(row)) for row in rows]
+    for name, seconds in {"equal": "equal_peaks", "us_here": "seconds", "us_there": "seconds_there"}.items():
+        found[name] = (100.0 if name == "equal" else 1e6) * found[seconds] / found["cells"]
+    peaks = {"equal": "equal peaks [%]", "largest_change": "largest", "largest_over_conditioning": "over conditioning"}
+    events = {"outcomes": "outcomes", "impacts": "impacts", "unexplained": "unexplained"}
+    return columns(found, kind="", cells="cells", **peaks, **events, us_here="us here", us_there="us there")
 
 
 def unexplained(row: dict[str, Any]) -> list[dict[str, Any]]:
@@ -198,9 +193,7 @@ def main() -> None:
     for tree in trees:
         tree.close()
     rows = [summary(kind, chunks[k :: len(kinds())]) for k, kind in enumerate(kinds()[: len(chunks)])]
-    table = markdown(rows)
-    options.out.with_suffix(".md").write_text(table + "\n", encoding="utf-8")
-    print(table)
+    print(table(rows))
     left = [f"{row['kind']}: {one}" for row in rows for one in unexplained(row)]
     if left:
         sys.exit("\n".join(["events that the rounding of the inputs does not explain:", *left]))

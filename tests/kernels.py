@@ -4,7 +4,7 @@ import rocking
 from rocking._excitation.pulses import AbstractPulse
 from rocking._numba.compilation import Record, kernel
 from rocking._solver.kernels.event_loop import init_state, start_flight
-from rocking._solver.rules import RECOVERS, final_outcome, set_body, set_sign
+from rocking._solver.rules import set_body
 from rocking._solver.state import IN_FLIGHT, block_cell, pulse_state
 from rocking._solver.taylor.flight import process_step, start_steps
 from rocking._solver.taylor.lane_events import locate_events
@@ -12,7 +12,6 @@ from rocking._solver.taylor.step import take_step
 
 
 def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0, eta: float = 0.9) -> Record:
-    """Return the record of a block at rest before the pulse."""
     flight = pulse_state(rocking.pulse(pulse) if isinstance(pulse, str) else pulse).copy()
     set_body(flight, block_cell(omega, slenderness, eta, alpha), False)
     init_state(flight, omega)
@@ -20,33 +19,15 @@ def cell(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: fl
 
 
 def first_flight(pulse: str | AbstractPulse, slenderness: float, omega: float, alpha: float = 0.0) -> Record:
-    """The record of a block at the start of its first flight."""
     flight = cell(pulse, slenderness, omega, alpha)
     assert start_flight(flight)
     return flight
 
 
 def flight_from(flight: Record, phase: float, w: float, sign: float) -> Record:
-    """Return the record at the start of a flight after an impact at `phase`."""
     flight["at_rest"], flight["next_phase"], flight["next_w"], flight["next_sign"] = 0, phase, w, sign
     assert start_flight(flight)
     return flight
-
-
-def edge(alpha: float) -> Record:
-    """The record of a block of this slenderness angle, for a lane of Taylor steps."""
-    return cell("sine", 0.5, 1.0, alpha)
-
-
-def free_outcome(z: float, w: float, eta: float, alpha: float) -> tuple[int, float, int]:
-    """From z and w at the end of the motion: impacts until it overturns plus one, or 0; peak; impacts before it."""
-    state = cell("sine", 2.0, 1.0, alpha, eta)
-    set_sign(state, 1.0)
-    state["outcome"], state["uplifts"] = RECOVERS, 1
-    final_outcome(state, z, w, False)
-    overturns = int(state["outcome"]) > RECOVERS
-    after = 0 if overturns else max(int(state["peak_mode"]), 0) // 2
-    return int(state["impacts"]) + 1 if overturns else 0, float(state["peak_rotation"]), after
 
 
 @kernel

@@ -9,7 +9,6 @@ import inspect
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import typer
 from rocking_api.app import create_app
@@ -25,6 +24,7 @@ from rocking._dimensional.body_kinds import BODIES
 from rocking._dimensional.table import COLUMNS
 from rocking._excitation.pulses import PULSE_NAMES, pulse_parameters
 from rocking._model.fields import COLUMN_FIELDS, RESPONSE_FIELDS
+from tests.public_names import schema_fields
 
 PAGE = Path(__file__).parents[1] / "docs" / "notation.md"
 
@@ -50,7 +50,6 @@ def python_arguments() -> Iterator[str]:
 
 
 def options() -> Iterator[str]:
-    """Options of the commands, and what they take without a name."""
     commands = [typer.main.get_command(app)]
     for command in commands:  # grows by those of each group
         commands += getattr(command, "commands", {}).values()
@@ -61,25 +60,15 @@ def http_parameters() -> Iterator[str]:
     """Parameters of the routes, fields of their JSON bodies, and the fields that every answer has."""
     yield from (*Answer.model_fields, *Answer.model_computed_fields)
     document = create_app(Settings()).openapi()
-    models = document["components"]["schemas"]
-
-    def fields(schema: dict[str, Any]) -> Iterator[str]:
-        schema = models[schema["$ref"].rpartition("/")[2]] if "$ref" in schema else schema
-        yield from schema.get("properties", {})
-        for part in (*schema.get("properties", {}).values(), *schema.get("anyOf", ())):
-            yield from fields(part)
-        if "items" in schema:
-            yield from fields(schema["items"])
-
     for operations in document["paths"].values():
         for operation in operations.values():
             yield from (one["name"] for one in operation.get("parameters", ()))
             body = operation.get("requestBody", {}).get("content", {})
-            yield from fields(body.get("application/json", {}).get("schema", {}))
+            schema = body.get("application/json", {}).get("schema", {})
+            yield from (name.rpartition(".")[2] for name in schema_fields(document, schema))
 
 
 def columns() -> Iterator[str]:
-    """Columns of the tables of blocks and of objects."""
     yield from (one.name for one in (*COLUMNS, *INPUTS, *SHAPES))
 
 
@@ -133,7 +122,6 @@ def _present(names: list[str], found: set[str]) -> list[str]:
 
 
 def fields_table() -> Iterator[list[str]]:
-    """The rows of the table of the fields of a response."""
     for one in dict.fromkeys((*RESPONSE_FIELDS, *COLUMN_FIELDS)):
         dtype = {"?": "bool", "U": "text", "i1": "int8", "i4": "int32", "f8": "float64"}[one.dtype]
         text = re.sub(r"\|(.+?)\|", r"abs(\1)", one.description("nan").replace(" [-]", ""))
@@ -141,7 +129,6 @@ def fields_table() -> Iterator[list[str]]:
 
 
 def assessment_table() -> Iterator[list[str]]:
-    """The rows of the table of the columns of an assessment."""
     for one in OUTPUTS:
         yield [f"`{one.name}`", one.unit or "text", one.meaning]
 

@@ -92,23 +92,25 @@ def command_names() -> Iterator[str]:
     return options("rocking", typer.main.get_command(command_line))
 
 
+def schema_fields(document: dict[str, Any], schema: dict[str, Any], path: str = "") -> Iterator[str]:
+    """The fields of a schema of an OpenAPI document, those of parts below the names of these."""
+    if "$ref" in schema:
+        schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
+    for name, field in schema.get("properties", {}).items():
+        yield f"{path}{name}"
+        yield from schema_fields(document, field, f"{path}{name}.")
+    for part in (*schema.get("anyOf", ()), *schema.get("allOf", ()), schema.get("items")):
+        if isinstance(part, dict):
+            yield from schema_fields(document, part, path)
+
+
 def http_names() -> Iterator[str]:
     """Parameters of each route, and the fields of its body and of its answers, from the OpenAPI document."""
     document = create_app(Settings(results=STORED.parent)).openapi()
 
-    def fields(schema: dict[str, Any], path: str = "") -> Iterator[str]:
-        if "$ref" in schema:
-            schema = document["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
-        for name, field in schema.get("properties", {}).items():
-            yield f"{path}{name}"
-            yield from fields(field, f"{path}{name}.")
-        for part in (*schema.get("anyOf", ()), *schema.get("allOf", ()), schema.get("items")):
-            if isinstance(part, dict):
-                yield from fields(part, path)
-
     def contents(name: str, message: dict[str, Any]) -> Iterator[str]:
         for media_type, content in message.get("content", {}).items():
-            yield entry(f"{name} {media_type}", sorted(set(fields(content.get("schema", {})))))
+            yield entry(f"{name} {media_type}", sorted(set(schema_fields(document, content.get("schema", {})))))
 
     errors: set[str] = set()
     for path, operations in sorted(document["paths"].items()):
@@ -126,7 +128,6 @@ def http_names() -> Iterator[str]:
 
 
 def column_names() -> Iterator[str]:
-    """Fields of responses, columns of tables, variables of data sets."""
     window = {"frequency_ratio": (0.2, 15.0), "slenderness": (0.02, 1.0)}
     (curves,) = curves_of("sine", 0.85, [0.0], nodes=16, nodes_rigid=16, **window)
     yield entry("fields of a response", [field.name for field in RESPONSE_FIELDS])
@@ -136,7 +137,6 @@ def column_names() -> Iterator[str]:
 
 
 def present() -> str:
-    """The interface of the code as it is."""
     return "\n".join([*python_names(), *command_names(), *http_names(), *column_names(), ""])
 
 

@@ -14,8 +14,6 @@ from rocking._numba import kernel_cache
 
 
 class Installation(NamedTuple):
-    """A virtual environment with the wheel."""
-
     folder: Path
     packages: Path
 

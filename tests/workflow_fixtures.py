@@ -33,12 +33,10 @@ def snakemake(
 
 
 def reproduce(directory: Path) -> subprocess.CompletedProcess[str]:
-    """Run what `make reproduce` runs."""
     return snakemake(directory, module="workflow.run")
 
 
 def rules_to_run(output: str) -> set[str]:
-    """Return the rule names in the job table of a dry run."""
     table = output.partition("Job stats:")[2].partition("total")[0]
     return set(re.findall(r"^(\w+) +\d+$", table, flags=re.MULTILINE))
 
@@ -58,5 +56,4 @@ def smoke_run(once: Callable[[str, Callable[[Path], None]], Path]) -> Path:
 
 @pytest.fixture(scope="session")
 def smoke_results(smoke_run: Path) -> Path:
-    """The results of that run: spectra, overturning, figures, claims and manifest.json."""
     return smoke_run / "results"

@@ -9,7 +9,6 @@ threshold to the next one, of the lines that have another one.
 
 from __future__ import annotations
 
-import time
 from itertools import product
 
 import numpy as np
@@ -54,9 +53,7 @@ class Chords:
 
 def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution: float) -> dict[str, float]:
     """Trace curves and compare them with thresholds on random lines."""
-    begin = time.process_time()
     curves = rocking.overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=nodes)
-    seconds = time.process_time() - begin
     chords = Chords(curves)
     limits = curves.chord_error + 1.1 * END, curves.uncounted_chord_error + 1.1 * curves.end_distance
     thresholds = unlisted = few = crossings = wrong = 0
@@ -86,15 +83,13 @@ def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution
         wrong += x.size
     sizes = curves.row_size.values
     return {
-        "curves": sizes.size, "short": int((sizes < 6).sum()), "points": int(sizes.sum()), "seconds": seconds,
-        "open_ends": curves.open_ends, "chord_error": curves.chord_error,
+        "curves": sizes.size, "short": int((sizes < 6).sum()),
         "thresholds": thresholds, "unlisted": unlisted, "few": few, "widest": widest,
         "crossings": crossings, "wrong": wrong,
     }  # fmt: skip
 
 
-def main() -> None:
-    """Print one line for each pulse and angle."""
+if __name__ == "__main__":
     options = arguments(
         __doc__, lines=400, restitution=0.85, nodes=301, pulses=["sine", "cosine"], degrees=[0.0, 10.0, 20.0, 30.0]
     )
@@ -104,7 +99,3 @@ def main() -> None:
         print(
             f"{pulse} {degrees:g} deg:", ", ".join(f"{name} {value:.3g}" for name, value in found.items()), flush=True
         )
-
-
-if __name__ == "__main__":
-    main()

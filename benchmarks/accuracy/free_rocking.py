@@ -88,8 +88,7 @@ def errors(traces: int, seed: int, edges: int = 1) -> tuple[Array, NDArray[np.bo
     return np.concatenate(found), np.concatenate(within)
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     given = arguments(__doc__, traces=200, seed=1, edges=1)
     found, within = errors(given.traces, given.seed, given.edges)
     print(f"{len(found)} edges" if given.edges == 2 else f"{len(found)} traces")
@@ -98,7 +97,3 @@ def main() -> None:
         size = np.abs(found[:, n])
         row = np.median(size), np.percentile(size, 95), size.max()
         print(f"{name:22}" + "".join(f"{value:10.5f}" for value in row) + f"{within[:, n].mean():10.1%}")
-
-
-if __name__ == "__main__":
-    main()

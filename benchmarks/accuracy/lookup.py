@@ -1,8 +1,9 @@
 """Check the error bounds of interpolated responses: `python -m benchmarks.accuracy.lookup` after `make reproduce`.
 
-Random points over the whole range of the cubes of a pulse are evaluated by interpolation and by the solver. Reported
-are the share that the cubes answer, that of the points that survive ("survive"), and of the answers that with a number
-of impacts, wrong outcomes and numbers, errors above the bound of the response, and the time per point.
+Random points over the whole range of the cubes of a pulse are evaluated by interpolation and by the solver; `--spectra`
+holds a folder for each pulse, `--count` is the number of points of each kind and tolerance. Reported are the share that
+the cubes answer, that of the points that survive ("survive"), and of the answers that with a number of impacts, wrong
+outcomes and numbers, errors above the bound of the response, and the time per point.
 """
 
 from __future__ import annotations
@@ -97,8 +98,7 @@ def table(record: dict[str, Any]) -> str:
     return columns(record["rows"], pulse="", tolerance="", kind="", **shares, **errors, **bounds)
 
 
-def main() -> None:
-    """Command line; `--spectra` holds a folder for each pulse, `--count` points of each kind and tolerance."""
+if __name__ == "__main__":
     out = Path("results/benchmarks/lookup.json")
     options = arguments(__doc__, spectra=Path("results/spectra"), count=1_000_000, seed=1, out=out)
     rows = []
@@ -108,7 +108,3 @@ def main() -> None:
                 rows.append({"pulse": folder.name, "tolerance": tolerance, "kind": kind} | found)
                 progress(f"{folder.name}, {tolerance:.0e}, {kind}")
     finish({"rows": rows}, options.out, table)
-
-
-if __name__ == "__main__":
-    main()

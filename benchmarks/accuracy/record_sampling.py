@@ -38,15 +38,10 @@ def changes(motion: Record) -> tuple[int, int, NDArray[np.float64]]:
     return survives.size, int((linear.overturned != smooth.overturned).sum()), difference
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     print(f"{'record':20}{'runs':>6}{'other outcome':>15}{'median change':>15}{'large':>8}")
     rows = [(path.stem, *changes(read_record(path))) for path in arguments(__doc__, files=FILES).files]
     runs, changed = sum(row[1] for row in rows), sum(row[2] for row in rows)
     for name, *found in [*rows, ("all", runs, changed, np.concatenate([row[3] for row in rows]))]:
         count, outcomes, difference = found
         print(f"{name:20}{count:6d}{outcomes:15d}{np.median(difference):15.1%}{(difference > LARGE).mean():8.1%}")
-
-
-if __name__ == "__main__":
-    main()

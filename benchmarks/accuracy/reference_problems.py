@@ -91,12 +91,15 @@ def ground_of(problem: dict[str, Any]) -> tuple[Callable[[float], tuple[float, f
     if motion["kind"] == "release":
         return lambda _: (0.0, 0.0), [0.0, 60.0]
     if motion["kind"] == "samples":
-        times = np.arange(len(motion["horizontal"])) * motion["time_step"]
-        up = motion["vertical"] or np.zeros(times.size)
-        return lambda t: (
-            float(np.interp(t, times, motion["horizontal"])),
-            float(np.interp(t, times, up)),
-        ), times.tolist()
+        step, sides = motion["time_step"], motion["horizontal"]
+        up = motion["vertical"] or [0.0] * len(sides)
+
+        def samples(t: float) -> tuple[float, float]:
+            k = min(int(t / step), len(sides) - 2)
+            share = t / step - k
+            return sides[k] + share * (sides[k + 1] - sides[k]), up[k] + share * (up[k + 1] - up[k])
+
+        return samples, (np.arange(len(sides)) * step).tolist()
     first, last = motion["phases"]
     rate, peak = 2.0 * math.pi / motion["period"], motion["peak_acceleration"]
     shapes: dict[str, Callable[[float], float]] = {
@@ -119,12 +122,13 @@ def _antisymmetric(phi: float) -> float:
 class _ByScipy:
     """An event loop around `solve_ivp`, followed until rest, overturning, or a minute after the motion."""
 
-    def __init__(self, problem: dict[str, Any]) -> None:
+    def __init__(self, problem: dict[str, Any], rest: float, most: int) -> None:
         body, motion = problem["body"], problem["motion"]
+        self.rest, self.most = rest, most
         self.edges, self.g, self.rigid = body["edges"], body["gravity"], body["equation"] == "rigid"
         self.ground, self.times = ground_of(problem)
         self.end, self.impacts, self.peak = self.times[-1], list[float](), 0.0
-        self.side, self.state, self.uplift = 0, (0.0, 0.0), math.nan
+        self.side, self.state, self.uplift, self.start = 0, (0.0, 0.0), math.nan, 0.0
         if motion["kind"] == "release":
             self.side, self.state, self.uplift, self.end = 1, (motion["rotation"], 0.0), 0.0, 0.0
 
@@ -132,8 +136,8 @@ class _ByScipy:
         for left, right in pairwise([*self.times, self.end + 60.0]):
             t = left
             while t < right and (self.side != 0 or self.starts(t, right)):
-                t = self.fly(max(t, self.uplift), right)
-                if len(self.impacts) > MOST_IMPACTS:
+                t = self.fly(max(t, self.start), right)
+                if len(self.impacts) > self.most:
                     return {"outcome": "capped"}
                 if self.overturns(t):
                     outcome = Outcome.OVERTURNED_AFTER_IMPACT if self.impacts else Outcome.OVERTURNED_DIRECTLY
@@ -167,7 +171,7 @@ class _ByScipy:
         while high - low > 1e-15 * right and self.lifted(high):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if self.lifted(middle) else (middle, high)
-        self.side, self.state = self.lifted(high), (0.0, 0.0)
+        self.side, self.state, self.start = self.lifted(high), (0.0, 0.0), high
         if self.side != 0 and math.isnan(self.uplift):
             self.uplift = high
         return self.side != 0
@@ -198,7 +202,7 @@ class _ByScipy:
             self.state = 0.0, -edge["restitution"] * self.state[1]
             if self.edge(-self.side) is not None:
                 self.side = -self.side
-            if self.state[1] < REST:
+            if self.state[1] < self.rest:
                 self.side = 0
         return t
 
@@ -209,9 +213,9 @@ class _ByScipy:
         return self.state[0] >= FALLEN or (t > self.end and self.state[0] > 2.0 * self.edge(self.side)["alpha"])
 
 
-def by_scipy(problem: dict[str, Any]) -> Answer:
-    """The answer by SciPy."""
-    return _ByScipy(problem).answer()
+def by_scipy(problem: dict[str, Any], rest: float = REST, most: int = MOST_IMPACTS) -> Answer:
+    """The answer by SciPy; a body rests below a velocity [rad/s], and is given up after too many impacts."""
+    return _ByScipy(problem, rest, most).answer()
 
 
 def digits_reached(problem: dict[str, Any], found: Answer | None) -> str:
@@ -231,23 +235,21 @@ def digits_reached(problem: dict[str, Any], found: Answer | None) -> str:
 
 def by_opensees(problem: dict[str, Any]) -> Answer | None:
     """The answer of OpenSees for its block of stone; None for other problems."""
-    if problem["body"].get("geometry") != BLOCK or problem["motion"]["kind"] != "pulse":
-        return None
     from benchmarks.accuracy import opensees  # noqa: PLC0415  (not a dependency)
 
-    return _of_rotation(problem, opensees.peak_rotation(problem["motion"]["peak_acceleration"], opensees.STRAINS[-1]))
+    return _of_block(problem, lambda level: opensees.peak_rotation(level, opensees.STRAINS[-1]))
 
 
 def by_siconos(problem: dict[str, Any]) -> Answer | None:
     """The answer of Siconos for its block, in steps of 0.1 ms; None for other problems."""
+    return _of_block(problem, lambda level: siconos.peak_rotation(level, siconos.STEPS[1]))
+
+
+def _of_block(problem: dict[str, Any], program: Callable[[float], tuple[float, float]]) -> Answer | None:
+    """The answer of a program that gives the largest rotation [rad] under a level [g], nan if the body overturns."""
     if problem["body"].get("geometry") != BLOCK or problem["motion"]["kind"] != "pulse":
         return None
-    level = problem["motion"]["peak_acceleration"] / problem["body"]["gravity"]
-    return _of_rotation(problem, siconos.peak_rotation(level, siconos.STEPS[1])[0])
-
-
-def _of_rotation(problem: dict[str, Any], rotation: float) -> Answer:
-    """The answer of a code that gives the largest rotation [rad], nan for a body that overturns."""
+    rotation, _ = program(problem["motion"]["peak_acceleration"] / problem["body"]["gravity"])
     if math.isnan(rotation):
         return {"outcome": problem["answer"]["outcome"] if "overturns" in problem["answer"]["outcome"] else "overturns"}
     return {"outcome": "recovers", "peak_rotation": rotation / problem["body"]["edges"]["right"]["alpha"]}

@@ -19,9 +19,8 @@ LEVELS = [0.2, 0.4, 0.8]
 """PGA [g]."""
 
 
-def main(command_line: list[str] | None = None) -> None:
-    """Command line."""
-    given = arguments(__doc__, command_line, files=FILES, levels=LEVELS)
+if __name__ == "__main__":
+    given = arguments(__doc__, files=FILES, levels=LEVELS)
     alpha, radius = np.arctan(SLENDERNESS)[:, None], RADII
     blocks = rocking.Block(2 * radius * np.sin(alpha), 2 * radius * np.cos(alpha))
     records = [rocking.read_record(path) for path in given.files]
@@ -45,7 +44,3 @@ def main(command_line: list[str] | None = None) -> None:
         print(
             f"{choice!s:20}{own.mean():10.1%}{(own != common).mean():8.1%}{(own & ~common).mean():11.1%}{ratio:17.3f}"
         )
-
-
-if __name__ == "__main__":
-    main()

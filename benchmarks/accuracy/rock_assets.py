@@ -43,10 +43,9 @@ def surface(handle: Any) -> list[NDArray[np.float64]] | None:
     return None
 
 
-def main(command_line: list[str] | None = None) -> None:
-    """Command line."""
+if __name__ == "__main__":
     print(f"cosine: overturns from {critical():.9f} g, printed {CRITICAL} g")
-    folder = arguments(__doc__, command_line, folder=Path).folder
+    folder = arguments(__doc__, folder=Path).folder
     drawn = surface(loadmat(folder / "4.fig", squeeze_me=True)["hgS_070000"])
     assert drawn is not None
     period, alpha, height = drawn[0], drawn[1][:, None], drawn[2]
@@ -61,7 +60,3 @@ def main(command_line: list[str] | None = None) -> None:
     print(
         f"equal to 0.001: {(abs(apart) < 1e-3).sum()}; more here: {(apart > 1e-3).sum()}, less {(apart < -1e-3).sum()}"
     )
-
-
-if __name__ == "__main__":
-    main()

@@ -4,10 +4,7 @@ Prints the largest rotation [rad], nan if the block overturns, and the processor
 Python that has Siconos; so it imports nothing of the project. A C compiler is needed. Without -P Python would take
 siconos.py for Siconos.
 
-The scheme is that of Moreau and Jean with theta = 1/2; both lower corners are contacts with Coulomb friction, large
-enough that nothing slides, and Newton's law of impact with a restitution of 0 of the corner that meets the ground. No
-impulse acts at the other corner, which leaves, so that the angular momentum about the new corner is kept: the
-restitution of the rocking block by Housner, 1 - 3/2 sin(alpha)^2 for a rectangle.
+docs/other-software.md says how the block is modelled.
 """
 
 from __future__ import annotations

@@ -45,11 +45,6 @@ def table(record: dict[str, Any]) -> str:
     return f"{record['points']} points: {closed:.0f} ms against {traced:.0f} ms, {traced / closed:.1f} times as fast"
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     options = arguments(__doc__, rounds=7, out=Path("results/benchmarks/closed-forms.json"))
     finish(measure(options.rounds) | {"versions": versions("numpy", "numba")}, options.out, table)
-
-
-if __name__ == "__main__":
-    main()

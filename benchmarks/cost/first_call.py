@@ -55,7 +55,8 @@ def measured(programs: Path, packages: Path, folder: Path) -> dict[str, Any]:
             run(python, "-m", "rocking.precompile")
         times, found["memory_bytes"] = json.loads(run(python, "-c", FIRST_CALL))
         if state == "compiled":
-            remove_kernels(packages)
+            for path in kernels_of(packages):  # the next process compiles
+                shutil.rmtree(path)
         began = time.perf_counter()
         run(rocking, *README_COMMAND)
         times["command"] = time.perf_counter() - began
@@ -66,12 +67,6 @@ def measured(programs: Path, packages: Path, folder: Path) -> dict[str, Any]:
 def kernels_of(packages: Path) -> list[Path]:
     """The folders of the compiled kernels."""
     return [*(packages / "rocking" / "__pycache__").glob("kernels-*")]
-
-
-def remove_kernels(packages: Path) -> None:
-    """Let the next process compile."""
-    for path in kernels_of(packages):
-        shutil.rmtree(path)
 
 
 def size(folder: Path) -> int:
@@ -87,8 +82,7 @@ def table(found: dict[str, Any]) -> str:
     return f"{times}\n{', '.join(sizes)}"
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     out = arguments(__doc__, out=Path("results/benchmarks/first-call.json")).out
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -97,7 +91,3 @@ def main() -> None:
         packages = install(wheel, folder / "installed")
         found = measured(folder / "installed" / "bin", packages, folder) | {"wheel_bytes": wheel.stat().st_size}
     finish(found | {"versions": versions("numpy", "numba")}, out, table)
-
-
-if __name__ == "__main__":
-    main()

@@ -3,24 +3,23 @@
 A suite of made-up records of 2,000 to 18,000 samples, amplitudes PGA/(g tan(alpha)) from 0.5 to 10, blocks of R from
 0.5 to 4 m, restitution 0.9, on one thread: runs per second, the share of the samples that is stepped through, and how
 time depends on the number of samples. SciPy's DOP853 is restarted at every sample, with the events of the block, on a
-few of the same runs; both are measured in the same process.
+few of the same runs (`reference_problems`); both are measured in the same process.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
+from benchmarks.accuracy.reference_problems import by_scipy
 from benchmarks.cost.made_up_records import made_up_record, made_up_suite
-from benchmarks.measure import arguments, finish, progress, versions
+from benchmarks.measure import arguments, finish, progress, shortest, versions
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import NEVER_STOPPED
@@ -36,7 +35,6 @@ FREQUENCY_PARAMETER = np.sqrt(0.75 * STANDARD_GRAVITY / HALF_DIAGONAL)
 AMPLITUDE = 0.5, 10.0
 RESTITUTION = 0.9
 ALPHA = {"slender": 0.0, "rigid": 0.25}
-DOP853_TOLERANCE = 1e-8
 
 
 def blocks(scales: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -48,14 +46,8 @@ def blocks(scales: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def respond(motion: Record, kind: str, scales: int) -> NDArray[np.float64]:
     """Return the peaks of all runs under one record."""
     p, s = blocks(scales)
-    return record_response(
-        motion,
-        frequency_parameter=p,
-        slenderness=s,
-        restitution=RESTITUTION,
-        alpha=ALPHA[kind],
-        threads=1,
-    ).peak_rotation
+    groups = {"frequency_parameter": p, "slenderness": s, "restitution": RESTITUTION, "alpha": ALPHA[kind]}
+    return record_response(motion, **groups, threads=1).peak_rotation
 
 
 def stepped(motion: Record, kind: str, scales: int) -> int:
@@ -70,73 +62,18 @@ def stepped(motion: Record, kind: str, scales: int) -> int:
     return int(solve_by_steps(samples, cells, lanes, steps, NEVER_STOPPED, found, np.empty((0, EDGE_COLUMNS))))
 
 
-def shortest(call: Callable[[], Any], rounds: int) -> float:
-    """Return the least processor time of a call [s]."""
-    found = []
-    for _ in range(rounds):
-        start = time.process_time()
-        call()
-        found.append(time.process_time() - start)
-    return min(found)
-
-
 def dop853_peak(motion: Record, p: float, slenderness: float, eta: float, alpha: float) -> float:
-    """Return the peak of one run by DOP853 restarted at every sample; nan where |theta| passes 4 alpha or pi/2.
-
-    What many scripts do, without the decision on overturning: free rocking after the record is followed for 8/p.
-    """
-    u = motion.acceleration / (motion.peak_acceleration * slenderness)
-    h = p * motion.time_step
-    most = min(4.0, 0.5 * math.pi / alpha) if alpha else 4.0
-    sign, z, w, peak, resting = 1.0, 0.0, 0.0, 0.0, True
-    tail = math.ceil(8.0 / h)
-    padded = np.concatenate([u, np.zeros(tail)])
-    scale, slope = (math.tan(alpha) / alpha, alpha) if alpha else (1.0, 0.0)
-    for k in range(padded.size - 1):
-        t, left, rate = 0.0, padded[k], (padded[k + 1] - padded[k]) / h if k != u.size - 1 else 0.0
-        while t < h:
-            if resting:
-                crossing = _unit_crossing(left, rate, t, h)
-                if crossing is None:
-                    break
-                t, resting, z, w = crossing, False, 1e-14, 0.0
-                sign = -math.copysign(1.0, left + rate * min(t + 1e-9 * h, h))
-
-            def motion_rate(at: float, y: NDArray[np.float64], sign=sign, left=left, rate=rate) -> list[float]:
-                force = sign * (left + rate * at)
-                if slope == 0.0:
-                    return [y[1], y[0] - 1.0 - force]
-                fall = slope * (1.0 - y[0])
-                return [y[1], -math.sin(fall) / slope - force * scale * math.cos(fall)]
-
-            impact = _falling_zero()
-            found = solve_ivp(motion_rate, (t, h), [z, w], "DOP853", None, False, [impact],
-                              rtol=DOP853_TOLERANCE, atol=1e-12)  # fmt: skip
-            peak = max(peak, float(found.y[0].max()))
-            z, w, t = float(found.y[0, -1]), float(found.y[1, -1]), float(found.t[-1])
-            if z >= most:
-                return math.nan
-            if found.status == 1:
-                sign, z, w = -sign, 1e-14, -eta * w
-                resting = w < 1e-5 and abs(left + rate * t) < 1.0
-    return peak
-
-
-def _falling_zero() -> Callable[..., float]:
-    def event(_: float, y: NDArray[np.float64]) -> float:
-        return float(y[0])
-
-    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]  # as solve_ivp reads them
-    return event
-
-
-def _unit_crossing(left: float, rate: float, start: float, h: float) -> float | None:
-    if abs(left + rate * start) > 1.0:
-        return start
-    right = left + rate * h
-    if abs(right) <= 1.0:
-        return None
-    return max(start, (math.copysign(1.0, right) - left) / rate)
+    """Return the peak of one run by DOP853 restarted at every sample, as many scripts do."""
+    edge = {"alpha": alpha or 0.1, "p": p, "restitution": eta}
+    resisted = math.tan(alpha) if alpha else edge["alpha"]  # the peak is relative to alpha, which slender blocks lack
+    body = {
+        "equation": "rigid" if alpha else "slender",
+        "edges": {"left": edge, "right": edge},
+        "gravity": slenderness * motion.peak_acceleration / resisted,
+    }
+    samples = {"kind": "samples", "horizontal": motion.acceleration.tolist(), "vertical": None}
+    found = by_scipy({"body": body, "motion": samples | {"time_step": motion.time_step}}, rest=1e-5, most=100_000)
+    return float(found["peak_rotation"])
 
 
 def measure(records: int, scales: int, rounds: int, reference_runs: int) -> dict[str, Any]:
@@ -194,13 +131,8 @@ def table(found: dict[str, Any]) -> str:
     return pd.DataFrame({kind: found[kind] for kind in ALPHA}).to_string(float_format="{:.4g}".format)
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     out = Path("results/benchmarks/records.json")
     options = arguments(__doc__, records=72, scales=150, rounds=3, reference_runs=6, out=out)
     found = measure(options.records, options.scales, options.rounds, options.reference_runs)
     finish(found, options.out, table)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,9 +1,9 @@
 """Load on the service: `python -m benchmarks.cost.service [--results FOLDER] [--workers 2]`.
 
 Measured are the start, requests for one block, one after the other on one connection, batches of a thousand to a
-million blocks in binary and to ten thousand in JSON, and the memory of all processes, pages that several share counted
-once (PSS). One worker is bound to the first core, the client to the last; several workers share all cores with it. The
-blocks are random: 1/a 0.05 to 0.95, omega 0.5 to 12, restitution 0.85.
+million blocks in binary, and the memory of all processes, pages that several share counted once (PSS). One worker is
+bound to the first core, the client to the last; several workers share all cores with it. The blocks are random: 1/a
+0.05 to 0.95, omega 0.5 to 12, restitution 0.85.
 """
 
 from __future__ import annotations
@@ -108,24 +108,18 @@ def load(one: Service, path: str, seconds: float) -> dict[str, float]:
     }
 
 
-def batches(one: Service, groups: dict[str, Any], sizes: dict[str, list[int]], rounds: int) -> list[dict[str, Any]]:
+def batches(one: Service, groups: dict[str, Any], sizes: list[int], rounds: int) -> list[dict[str, Any]]:
     """Time of batches of several sizes [points], from the first byte sent to the last received [s]."""
-    query = "?" + "&".join(f"{name}={value}" for name, value in groups.items())
-    asked = {}
-    for form, points in [(one, points) for one in sizes for points in sizes[one]]:
-        blocks = random_blocks(points)
-        if form == "netcdf":
-            data = xr.Dataset({name: ("point", values) for name, values in blocks.items()})
-            asked[form, points] = query, bytes(data.to_netcdf(engine="scipy")), "application/x-netcdf"
-        else:
-            asked[form, points] = "", as_json(groups, blocks), "application/json"
-    times: dict[tuple[str, int], list[float]] = {key: [] for key in asked}
+    path = "/v1/response?" + "&".join(f"{name}={value}" for name, value in groups.items())
+    times: dict[int, list[float]] = {points: [] for points in sizes}
     for _ in range(rounds):
-        for key, (options, body, media_type) in asked.items():
+        for points in sizes:
+            blocks = xr.Dataset({name: ("point", values) for name, values in random_blocks(points).items()})
+            body = bytes(blocks.to_netcdf(engine="scipy"))
             began = time.perf_counter()
-            one.ask("/v1/response" + options, body, media_type)
-            times[key].append(time.perf_counter() - began)
-    return [{"form": form, "points": points, "seconds": spread(times[form, points])} for form, points in asked]
+            one.ask(path, body, "application/x-netcdf")
+            times[points].append(time.perf_counter() - began)
+    return [{"points": points, "seconds": spread(times[points])} for points in sizes]
 
 
 def random_blocks(points: int) -> dict[str, np.ndarray[Any, Any]]:
@@ -135,16 +129,11 @@ def random_blocks(points: int) -> dict[str, np.ndarray[Any, Any]]:
     return {"slenderness": random.uniform(0.05, 0.95, points), "frequency_ratio": omega}
 
 
-def as_json(groups: dict[str, Any], blocks: dict[str, np.ndarray[Any, Any]]) -> bytes:
-    """Return the body of a batch."""
-    return json.dumps(groups | {name: values.tolist() for name, values in blocks.items()}).encode()
-
-
 def main(command_line: list[str] | None = None) -> None:
     """Measure, print, write the record; `--seconds` of each load, `--rounds` of the batches."""
     asked = arguments(
         __doc__, command_line, results=Path("results"), pulse="sine", alpha_deg=0.0, workers=1, seconds=5.0,
-        points=[1_000, 10_000, 100_000, 1_000_000], json_points=[1_000, 10_000], rounds=3,
+        points=[1_000, 10_000, 100_000, 1_000_000], rounds=3,
         out=Path("results/benchmarks/service.json"),
     )  # fmt: skip
     groups = {"pulse": asked.pulse, "restitution": 0.85, "alpha_deg": asked.alpha_deg}
@@ -157,9 +146,9 @@ def main(command_line: list[str] | None = None) -> None:
         record["points"] = load(one, point, asked.seconds)
         record["memory"]["after points"] = one.memory()
         progress("batches")
-        sizes = {"netcdf": asked.points, "json": asked.json_points}
-        record["batches"] = batches(one, groups, sizes, asked.rounds)
-        answer = json.loads(one.ask("/v1/response", as_json(groups, random_blocks(max(asked.json_points)))))
+        record["batches"] = batches(one, groups, asked.points, asked.rounds)
+        some = {name: values.tolist() for name, values in random_blocks(500).items()}
+        answer = json.loads(one.ask("/v1/response", json.dumps(groups | some).encode()))
         record["share_by_data_sets"] = answer["source"].count("cube") / len(answer["source"])
         record["memory"]["after batches"] = one.memory()
     finish(record, asked.out, table)

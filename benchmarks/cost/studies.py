@@ -74,8 +74,7 @@ def seconds(call: Callable[[], Any], rounds: int) -> float:
     return statistics.median(times)
 
 
-def main() -> None:
-    """Command line."""
+if __name__ == "__main__":
     rounds = arguments(__doc__, rounds=5).rounds
     print(f"{'study':44}{'1 core [s]':>12}{'2 cores [s]':>12}")
     for kind, alpha in ANGLES.items():
@@ -89,7 +88,3 @@ def main() -> None:
             with cluster(workers):
                 times.append(seconds(lambda alpha=alpha: overturned_share(alpha), rounds))
         print(f"{'10,000,000 labelled blocks, dask, ' + kind:44}{times[0]:>12.3f}{times[1]:>12.3f}", flush=True)
-
-
-if __name__ == "__main__":
-    main()

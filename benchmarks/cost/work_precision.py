@@ -46,14 +46,11 @@ def sample(cells: Table) -> Table:
 
 
 def measure_accuracy(method: Method, setting: float | None, cells: Table) -> tuple[dict[str, Any], Task]:
-    """Return the accuracy of a method at a setting with its compilation time, and the task to be timed."""
-    start = time.perf_counter()
-    method.peaks(setting, cells.select(np.arange(min(2, len(cells)))))
-    first = time.perf_counter() - start
-    row = {"setting": setting, "cells": len(cells), "first_call_s": first}
+    """Return the accuracy of a method at a setting, and the task to be timed."""
+    method.peaks(setting, cells.select(np.arange(min(2, len(cells)))))  # compiles
     copies = cells if method.name != "rocking" else cells.select(np.tile(np.arange(len(cells)), COPIES))
     start = time.perf_counter()
-    row |= accuracy(method.peaks(setting, cells), cells["peak_rotation"])
+    row = {"setting": setting, "cells": len(cells)} | accuracy(method.peaks(setting, cells), cells["peak_rotation"])
     every = SLOW_ROUNDS if time.perf_counter() - start > SLOW_CALL else 1
     return row, Task(lambda: method.peaks(setting, copies), len(copies), every)
 

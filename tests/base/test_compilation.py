@@ -2,7 +2,6 @@
 
 import math
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +26,6 @@ from rocking._numba import kernel_cache
 from rocking._numba.compilation import entry, kernel
 from rocking._numba.way import INTERNALS
 from rocking._solver.kernels import batch as rock_many
-from rocking._solver.kernels.intervals import half_width
 from rocking._solver.stages import batch as stages
 from rocking._spectra.cubes import spectra
 
@@ -88,7 +86,6 @@ def test_any_number_of_sinusoids_up_to_the_limit_is_one_pulse():
 
 
 def script(code, **environment):
-    """Output of a new process that runs some code."""
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, env=os.environ | environment
     )
@@ -152,42 +149,6 @@ def test_a_kernel_called_from_python_does_not_run_the_copy_of_an_entry(monkeypat
     expected = [a + b - c for a, b, c in sums]
     found = [with_one_weight(values), with_any_weight(values, 5.0)]
     assert found == pytest.approx(expected, rel=1e-14)
-
-
-def test_pairs_of_reference_counts_are_removed_from_entries(monkeypatch):
-    """They are atomic operations: the solver took 1.7 times the time with them."""
-    monkeypatch.setattr(kernel_cache, "cache_folder", lambda: None)
-
-    @kernel
-    def total(values):
-        found = 0.0
-        for x in values:
-            found += x
-        return found
-
-    @entry
-    def both(one, two):
-        return total(one) + total(two)
-
-    assert both(np.ones(3), np.ones(4)) == 7.0
-    (code,) = both.inspect_llvm().values()
-    assert re.findall(r"call .*NRT_incref", code) == []  # the wrapper for Python keeps decrements
-
-
-def test_kernels_release_the_interpreter_and_do_not_reorder_sums():
-    for compiled in (*ENTRIES, half_width):
-        options = compiled.targetoptions
-        assert options["nogil"]
-        assert options["fastmath"] == {"contract"}  # no option that ignores nan or reorders operations
-    assert rock_many.solve_batch.nopython_signatures is not None
-
-
-def test_division_by_zero_raises_no_exception():
-    @kernel
-    def divide(x, y):
-        return x / y
-
-    assert divide(1.0, 0.0) == float("inf")
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system binds no process to a core")

@@ -93,7 +93,6 @@ def test_every_kind_of_result_has_an_example():
 
 @cache
 def example(name):
-    """A result of this kind; not changed."""
     return EXAMPLES[name]()
 
 

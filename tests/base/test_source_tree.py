@@ -83,15 +83,6 @@ def test_digest_is_independent_of_the_folder(tree: Path, tmp_path: Path) -> None
     assert SourceTree(moved).digest(moved / "script.py") == SourceTree(tree).digest(tree / "script.py")
 
 
-def test_a_tree_describes_the_files_as_they_were_read(tree: Path) -> None:
-    sources = SourceTree(tree)
-    first = sources.digest(tree / "script.py")
-    (tree / "rocking/b.py").write_text("changed = 1")
-    assert sources.digest(tree / "script.py") == first
-    assert sources.digest(tree / "nested.py") == SourceTree(tree).digest(tree / "nested.py")
-    assert SourceTree(tree).digest(tree / "script.py") != first
-
-
 @pytest.mark.parametrize(
     "around",
     [

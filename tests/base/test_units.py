@@ -12,7 +12,6 @@ import xarray as xr
 import rocking
 from rocking._base.errors import InvalidArgumentError, MissingUnitError, in_range, si_value
 from rocking._base.units import UNITS, unit_name
-from rocking._dimensional.table import read_table
 from rocking._excitation.records.readers.lines import parse_unit
 
 REGISTRY = pint.UnitRegistry()
@@ -59,25 +58,6 @@ def test_units_are_never_evaluated(text, unit):
     with pytest.raises(InvalidArgumentError):
         si_value("any", text, unit)
     assert time.process_time() - started < 0.5
-
-
-@pytest.mark.parametrize(
-    "column",
-    ["width [9**16000000/9**16000000 m]", "width [9**9**9 m]", "width" + " " * 100_000 + "x", "w" * 100_000 + "[",
-     "width [" + "[" * 100_000, "width (" + "(" * 100_000, "width [m]" + "]" * 100_000, "width" + " [m" * 40_000],
-    ids=lambda text: text[:12],
-)  # fmt: skip
-def test_headers_of_tables_cost_no_more_than_their_length(column):
-    started = time.process_time()
-    with pytest.raises(InvalidArgumentError, match="blocks, header") as caught:
-        read_table(f"{column},height [m],peak_acceleration [g],period [s]\n1,2,0.4,0.5\n", "sine")
-    assert time.process_time() - started < 0.5
-    assert len(str(caught.value)) < 600
-
-
-def test_a_long_name_of_a_column_is_none_of_those_that_are_read():
-    with pytest.raises(InvalidArgumentError, match="missing: width or diameter"):
-        read_table("width" + " " * 200 + "[m],height [m],pga [g],period [s]\n", "sine")
 
 
 @pytest.mark.parametrize(
@@ -222,14 +202,3 @@ def test_a_bare_acceleration_that_looks_like_g_gives_a_warning(peak, warned):
     if warned:
         assert texts[0].startswith(f"peak_acceleration = {float(peak):.4g} m/s2 is below the uplift acceleration 2.452")
         assert texts[0].endswith(f"write '{float(peak):.4g} g'")
-
-
-@pytest.mark.parametrize(
-    ("text", "unit"),
-    [("0.3", "m"), ("0.3 s", "m"), ("0.3 furlongs per", "m"), ("", "m"), ("m", "s"), ("nan m", "m"), ("0.3", "rad"),
-     ("1 kg", "m/s2"), ("__import__('os')", "m"), ("1e999 m", "m")],
-)  # fmt: skip
-def test_invalid_quantities_are_refused(text, unit):
-    with pytest.raises(InvalidArgumentError) as caught:
-        si_value("x", text, unit)
-    assert caught.value.parameter == "x"

@@ -16,14 +16,12 @@ import rocking
 from benchmarks import tables
 from benchmarks.accuracy.tolerance import peaks, summary
 from benchmarks.baselines import runge_kutta
-from benchmarks.baselines.event_loop import SINE, respond
 from benchmarks.baselines.methods import compiled_peaks, package_peaks, python_peaks
 from benchmarks.baselines.scipy_ivp import integrate_flight
 from benchmarks.cost import records
 from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.cost.work_precision import fastest_baselines
 from benchmarks.measure import accuracy, finish
-from tests.sampling import number
 from tests.workflow_fixtures import snakemake
 
 ROOT = Path(__file__).parents[2]
@@ -38,25 +36,6 @@ def diagram(request) -> tables.Table:
 def surviving(diagram) -> tables.Table:
     """Ten blocks of a diagram that uplift and survive."""
     return diagram.select(np.flatnonzero(diagram["peak_rotation"] > 0.0)[::45][:10])
-
-
-@pytest.mark.parametrize("path", sorted(tables.DATA.glob("*.csv")), ids=lambda path: path.stem)
-def test_rows_of_the_tables_are_solved_again_to_the_same_text(path: Path) -> None:
-    rows = tables.rows_of(path)
-    for row in rows[3 :: len(rows) // number(1, 3)]:
-        assert tables.solved(row) == row
-
-
-def test_scipy_with_the_shared_event_loop_gives_the_same_slender_peaks() -> None:
-    """A dozen cells: no uplift, impacts, chatter, renewed uplift."""
-    random = np.random.default_rng(3)
-    slenderness = np.r_[random.uniform(0.1, 0.97, 10), 0.97, 1.2]
-    frequency_ratio = np.r_[random.uniform(0.5, 12.0, 10), 4.0, 2.0]
-    groups = zip(slenderness, frequency_ratio, strict=True)
-    found = [respond.py_func(integrate_flight, ("DOP853", 1e-9), s, w, 0.6, 0.0, SINE) for s, w in groups]
-    response = rocking.peak_response("sine", slenderness=slenderness, frequency_ratio=frequency_ratio, restitution=0.6)
-    assert response.chatter.any()
-    np.testing.assert_allclose(found, response.peak_rotation, rtol=1e-6, atol=1e-10)
 
 
 @pytest.mark.parametrize(("method", "rtol", "error"), [("DOP853", 1e-10, 1e-6), ("LSODA", 1e-10, 1e-5)])

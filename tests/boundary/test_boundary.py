@@ -1,16 +1,15 @@
 """Boundaries between outcomes: the outcome changes at every vertex, and each connected curve is one curve."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 import rocking
+from benchmarks.accuracy.boundary_lines import compare
 from rocking import Outcome, paper
 from rocking._boundary.search import (
     ELASTIC_RESOLUTION,
-    MANY_IMPACTS,
     MOST_COUNTED,
     RESOLUTION,
     UNCOUNTED,
@@ -18,9 +17,8 @@ from rocking._boundary.search import (
     refine_lines,
     region_code,
 )
-from rocking._boundary.tracer import CHORD, END, FINER, UNCOUNTED_CHORD, UNCOUNTED_THINNEST
+from rocking._boundary.tracer import CHORD, END, UNCOUNTED_CHORD, UNCOUNTED_THINNEST
 from rocking._model.outcome_code import outcome_codes
-from rocking._solver import chunks
 from tests.sampling import but_long
 
 
@@ -132,48 +130,13 @@ def test_a_thin_tongue_is_one_curve(alpha):
     ],
 )
 def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse, alpha, restitution):
-    case = {"restitution": restitution, "alpha": alpha}
-    boundary = rocking.overturning_boundary(pulse, **case, nodes=201)
-    assert 0.0 < boundary.chord_error <= CHORD
-    assert boundary.unmeasured_chords <= 2
-    s, log_omega = boundary.slenderness.values, np.log(boundary.frequency_ratio.values)
-    first = np.delete(np.arange(s.size), np.cumsum(boundary.row_size.values) - 1)  # of each chord
-    to_safety = np.repeat(boundary.neighbour_outcome.values <= Outcome.RECOVERS, boundary.row_size.values)
-    limits = 1.5 * (boundary.chord_error + END), 1.5 * (boundary.uncounted_chord_error + boundary.end_distance)
-    rng = np.random.default_rng(4)
-    unlisted = crossings = wrong = 0
-    for omega in np.exp(rng.uniform(np.log(0.3), np.log(10.0), 25)):
-        found = rocking.thresholds(pulse, frequency_ratio=omega, **case, highest=45.0)
-        thresholds = 1 / found.amplitude
-        y = np.log(omega)
-        for x, impacts in zip(thresholds, found.impacts, strict=True):
-            if distances(x, y, s, log_omega, first).min() > limits[int(impacts > MANY_IMPACTS)]:
-                unlisted += 1
-                # a region that no node shows, of many impacts: narrower than the distance of the finer nodes
-                assert impacts > MANY_IMPACTS
-                assert np.sort(np.abs(thresholds - x))[1] < boundary.node_distance / FINER
-        cut = first[((log_omega[first] - y) * (log_omega[first + 1] - y) < 0) & to_safety[first]]
-        share = (y - log_omega[cut]) / (log_omega[cut + 1] - log_omega[cut])
-        x = s[cut] + share * (s[cut + 1] - s[cut])
-        slope = np.abs((s[cut + 1] - s[cut]) / (log_omega[cut + 1] - log_omega[cut]))
-        reach = 1.1 * CHORD * np.hypot(1.0, slope) * np.linspace(-1.0, 1.0, 4001)[:, None]
-        near = rocking.peak_response(pulse, slenderness=np.clip(x + reach, 1e-3, 1.0), frequency_ratio=omega, **case)
-        changes = near.overturned.any(axis=0) & ~near.overturned.all(axis=0)
-        wrong += int((~changes).sum())
-        crossings += cut.size
-    assert crossings > 60
-    assert wrong == 0
-    # thresholds of regions that the nodes do not show, all after many impacts: 6 of 152 at the most, 21 of 224 at 0.94
-    assert unlisted <= (0.05 if restitution < 0.9 else 0.12) * crossings
-
-
-def distances(x, y, s, log_omega, first):
-    """Distances of a point from chords, in the plane of 1/a and log omega."""
-    start = np.stack([s[first], log_omega[first]])
-    chord = np.stack([s[first + 1], log_omega[first + 1]]) - start
-    offset = np.array([[x], [y]]) - start
-    share = np.clip((offset * chord).sum(axis=0) / np.maximum((chord**2).sum(axis=0), 1e-300), 0.0, 1.0)
-    return np.hypot(*(offset - share * chord))
+    found = compare(pulse, alpha, nodes=201, lines=25, restitution=restitution)
+    assert found["crossings"] > 60
+    assert found["wrong"] == 0
+    # thresholds of regions that the nodes do not show: all after many impacts, narrower than the finer nodes are apart
+    assert found["few"] == 0
+    assert found["widest"] < 1.5e-3
+    assert found["unlisted"] <= (0.05 if restitution < 0.9 else 0.3) * found["crossings"]
 
 
 def test_a_curve_goes_on_to_the_edge_of_the_window():
@@ -265,17 +228,6 @@ def test_thresholds_separate_the_outcomes(pulse, alpha):
         np.testing.assert_array_equal(impacts, found.impacts)
 
 
-@pytest.mark.parametrize(("pulse", "omega"), [("sine", 4.0), ("half_sine", 3.0), ("rectangular", 3.0)])
-def test_thresholds_and_curves_agree(pulse, omega):
-    found = rocking.thresholds(pulse, frequency_ratio=omega, restitution=0.85, highest=20.0)
-    boundary = rocking.overturning_boundary(
-        pulse, restitution=0.85, frequency_ratio=(omega / 1.001, omega * 1.001), slenderness=(0.05, 1.0), nodes=33
-    )
-    s, frequency_ratio, _, neighbour = curves(boundary)
-    middle = (np.abs(frequency_ratio / omega - 1) < 1e-12) & (neighbour == 0)
-    np.testing.assert_allclose(np.unique(s[middle].round(13)), np.sort(1 / found.amplitude), rtol=0, atol=1e-10)
-
-
 @pytest.mark.long
 def test_thresholds_of_a_block_that_strikes_thousands_of_times():
     # when each of the thousands of numbers of impacts was a region of its own, this took minutes
@@ -325,26 +277,10 @@ def test_wrong_windows(argument, value):
         rocking.overturning_boundary("sine", **{"restitution": 0.9, "nodes": 17, argument: value})
 
 
-def test_threads(monkeypatch):
-    pools = []
-
-    class CountedPool(ThreadPoolExecutor):
-        def __init__(self, workers):
-            pools.append(workers)
-            super().__init__(workers)
-
-    monkeypatch.setattr(chunks, "ThreadPoolExecutor", CountedPool)
+def test_two_threads_give_the_same_curves():
     case = {"restitution": 0.9, "alpha": 0.2, "nodes": 101}
-    one = rocking.overturning_boundary("sine", **case, threads=1)
-    assert pools == []
-    assert one.identical(rocking.overturning_boundary("sine", **case, threads=2))
-    assert set(pools) == {2}
-
-
-@pytest.mark.parametrize("value", [1.0, math.inf])
-def test_wrong_thresholds(value):
-    with pytest.raises(rocking.InvalidArgumentError, match="highest"):
-        rocking.thresholds("sine", frequency_ratio=2.0, restitution=0.9, highest=value)
+    one, two = (rocking.overturning_boundary("sine", **case, threads=threads) for threads in (1, 2))
+    assert one.identical(two)
 
 
 @pytest.mark.parametrize(("thinnest", "regions"), [(8e-4, [0, 1, 2, 3, 4]), (2e-3, [0, 1, 3, 4])])

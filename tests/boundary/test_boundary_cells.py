@@ -15,7 +15,6 @@ AXES = ROWS, np.log(COLUMNS)
 
 
 def curves(polylines, alpha=0.0):
-    """Polylines (points, 2) of 1/a and log omega as a data set."""
     points = np.concatenate(polylines)
     return xr.Dataset(
         {
@@ -45,7 +44,6 @@ def cells_on_the_line(line):
 
 
 def grown(cells):
-    """The cells and the eight around each."""
     padded = np.pad(cells, 1)
     n, m = cells.shape
     return np.any([padded[i : i + n, j : j + m] for i in range(3) for j in range(3)], axis=0)
@@ -69,14 +67,6 @@ def test_cells_of_a_curve(seed):
     for each in held:
         assert not (each & ~crossed).any()
     assert not (crossed & ~grown(held[0] | held[1])).any()  # in particular none between one curve and the next
-
-
-def test_a_curve_within_one_cell_marks_this_cell_only():
-    middle = [0.5 * (axis[5] + axis[6]) for axis in AXES]
-    size = [axis[6] - axis[5] for axis in AXES]
-    line = middle + 0.3 * np.array(size) * np.array([[-1, -1], [1, 1], [1, -1], [-1, -1]])
-    crossed = crossed_cells(curves([line]), 0.0, ROWS, COLUMNS)
-    assert np.argwhere(crossed).tolist() == [[5, 5]]
 
 
 def test_curves_of_other_angles_do_not_count():

@@ -13,7 +13,6 @@ ANGLES_DEG = (0.0, 10.0, 20.0)
 
 @pytest.fixture(scope="module")
 def parts() -> list[xr.Dataset]:
-    """Coarse curves at each angle."""
     made = []
     for alpha in np.radians(ANGLES_DEG):
         curves = overturning_boundary("sine", restitution=0.85, alpha=alpha or None, nodes=21)

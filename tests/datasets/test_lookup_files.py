@@ -11,7 +11,7 @@ import pytest
 import rocking._datasets.catalogue
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, FileVersion, UnknownDatasetError, version_of
-from rocking._datasets.cube import read_spectrum, write_dataset
+from rocking._datasets.cube import write_dataset
 from rocking._lookup.collection import CubeCollection
 from rocking._lookup.cube import Points, UnreadError
 from rocking._spectra.cubes import spectrum
@@ -22,7 +22,6 @@ POINT = {"slenderness": 0.7, "frequency_ratio": 7.0, "restitution": 0.85}
 
 @pytest.fixture(scope="module")
 def contents(tmp_path_factory):
-    """Two versions of a cube, as bytes."""
     made = spectrum(
         "sine", restitution=0.85, slenderness=np.linspace(0.6, 0.8, 21), frequency_ratio=np.geomspace(6.0, 8.0, 21)
     )
@@ -115,21 +114,12 @@ def test_response_names_the_version_it_was_read_from(cubes, path, contents, monk
 
 
 def is_open(cubes, restitution=0.85):
-    """Whether no file has to be read for a response."""
     try:
         points = Points.of(*(POINT | {"restitution": restitution}).values(), None)[0]
         cubes.cube("sine", may_read=False).evaluate(points, 1e-4, "auto")
     except UnreadError:
         return False
     return True
-
-
-def test_cube_whose_file_changed_is_not_open(cubes, path, contents):
-    assert not is_open(cubes)
-    cubes.response("sine", **POINT)
-    assert is_open(cubes)
-    replaced(path, contents[1])
-    assert not is_open(cubes)
 
 
 def test_an_angle_is_read_when_it_is_needed_and_from_the_version_that_was_opened(tmp_path, monkeypatch):
@@ -252,15 +242,6 @@ def test_links_to_parent_folders_are_followed_once(cubes, path):
 def test_unknown_names_raise(cubes, name):
     with pytest.raises(UnknownDatasetError):
         cubes.catalogue.product(name)
-
-
-def test_reading_a_cube_opens_its_file_once(path, monkeypatch):
-    """The values and the digest come from the same bytes."""
-    opened = []
-    read = type(path).read_bytes
-    monkeypatch.setattr(type(path), "read_bytes", lambda self: opened.append(self) or read(self))
-    assert read_spectrum(path).attrs["version"] == 1
-    assert opened == [path]
 
 
 def test_memory_is_limited_to_the_cubes_that_were_used_last(cubes, path, monkeypatch):

@@ -11,13 +11,8 @@ from rocking._excitation.pulses import PULSE_NAMES
 from rocking._history import contact
 from rocking._history.contact import MAX_FRICTION, MAX_STEP, MAX_STEPS, PRACTICAL_FRICTION, contact_extremes
 from rocking._history.motion import build_motion
+from tests.model.test_contact import QUESTIONS
 from tests.sampling import ALL
-
-QUESTIONS = (
-    {"slenderness": 0.45, "frequency_ratio": 4.0, "restitution": 0.85},
-    {"slenderness": 0.7, "frequency_ratio": 2.0, "restitution": 0.6},
-    {"slenderness": 0.15, "frequency_ratio": 3.0, "restitution": 0.9},
-)
 
 
 @pytest.mark.parametrize("alpha", [None, 0.1, 0.45])

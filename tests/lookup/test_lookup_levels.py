@@ -10,7 +10,7 @@ from rocking._datasets.cube import read_spectrum, write_dataset
 from rocking._lookup.cube import open_cube
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra, spectrum
-from tests.lookup_grid import GRID, crossed, random_points
+from tests.lookup_grid import GRID, assert_answers_are_right, crossed, random_points
 from tests.sampling import number
 
 ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 5.0, 10.0, 15.0, 20.0])
@@ -18,7 +18,6 @@ ETAS, ANGLES = np.array([0.80, 0.83, 0.85, 0.88, 0.90, 0.94]), np.radians([0.0, 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Cubes of several restitutions and angles."""
     folder = tmp_path_factory.mktemp("sine")
     barred = np.array([[crossed(eta, float(alpha)) for alpha in ANGLES] for eta in ETAS])
     for cube in spectra("sine", restitution=ETAS, alpha=ANGLES, barred=barred, **GRID):
@@ -33,21 +32,8 @@ def test_bounds_hold_between_restitutions_and_angles(folder, between_etas, betwe
     n = len(points["slenderness"])
     points["restitution"] = rng.uniform(ETAS[0], ETAS[-1], n) if between_etas else rng.choice(ETAS, n)
     points["alpha"] = rng.uniform(ANGLES[0], ANGLES[-1], n) if between_angles else rng.choice(ANGLES, n)
-    cube = open_cube(folder)
     for tolerance, share in ((1e-4, 0.6), (1e-6, 0.45)):
-        found = cube.response(**points, absolute_tolerance=tolerance)
-        expected = peak_response("sine", **points)
-        from_cube = found.source == "cube"
-        assert from_cube.mean() > share
-        np.testing.assert_array_equal(found.outcome, expected.outcome)
-        np.testing.assert_array_equal(found.exceeded_alpha, expected.exceeded_alpha)
-        survives = from_cube & ~expected.overturned
-        error = np.abs(found.peak_rotation - expected.peak_rotation)[survives]
-        assert (error <= found.error_bound[survives]).all()
-        assert (found.error_bound[survives] <= tolerance).all()
-        counted = from_cube & (found.impacts >= 0)
-        assert counted.sum() > 0.5 * from_cube.sum()
-        np.testing.assert_array_equal(found.impacts[counted], expected.impacts[counted])
+        assert_answers_are_right(open_cube(folder), points, tolerance, share, 0.5)
 
 
 def test_errors_between_slices_are_measured_in_the_middle(tmp_path):
@@ -84,18 +70,7 @@ def test_bounds_hold_at_a_crease_near_a_slice(tmp_path):
     }
     case = {"slenderness": 0.8872271, "frequency_ratio": 14.640226, "restitution": 0.9779474}
     points = {name: np.append(values, case[name]) for name, values in points.items()}
-    found, exact = open_cube(tmp_path).response(**points, absolute_tolerance=1e-3), peak_response(pulse, **points)
-    counts = (found.source == "cube") & ~exact.overturned
-    assert counts[:-1].mean() > 0.2
-    assert (np.abs(found.peak_rotation - exact.peak_rotation) <= found.error_bound)[counts].all()
-
-
-def test_no_interpolation_where_a_slice_of_the_window_is_missing(folder, tmp_path):
-    for eta in (0.80, 0.85, 0.88, 0.90, 0.94):  # 0.83 is missing
-        shutil.copy(folder / f"eta-{eta:.2f}.nc", tmp_path)
-    point = {"slenderness": 0.4, "frequency_ratio": 9.0, "restitution": 0.82}
-    assert open_cube(folder).response(**point).source == "cube"
-    assert open_cube(tmp_path).response(**point).source == "solver"
+    assert_answers_are_right(open_cube(tmp_path), points, 1e-3, 0.2)
 
 
 def test_solver_is_used_only_where_a_missing_cube_is_needed(folder, tmp_path):
@@ -144,12 +119,7 @@ def test_bounds_hold_between_uneven_slices(tmp_path):
     rng, n = np.random.default_rng(3), number(3_000, 20_000)
     points = {"slenderness": rng.uniform(0.2, 0.35, n), "frequency_ratio": rng.uniform(9.0, 27.0, n)}
     points |= {"restitution": rng.uniform(0.5, 0.8, n), "alpha": rng.uniform(angles[2], angles[3], n)}
-    found = open_cube(tmp_path).response(**points, absolute_tolerance=1e-2)
-    expected = peak_response("cosine", **points)
-    from_cube = found.source == "cube"
-    assert from_cube.mean() > 0.5
-    np.testing.assert_array_equal(found.overturned, expected.overturned)
-    assert (np.abs(found.peak_rotation - expected.peak_rotation) <= found.error_bound)[from_cube].all()
+    assert_answers_are_right(open_cube(tmp_path), points, 1e-2, 0.5)
 
 
 def test_restitution_is_required_with_several_cubes(folder):

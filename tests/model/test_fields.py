@@ -1,51 +1,14 @@
 """The declared fields of a response are those of the classes, records, files and pages that derive from them."""
 
 import re
-from pathlib import Path
-from typing import get_type_hints
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import rocking
-from rocking._model import fields
-from rocking._model.fields import BOUNDED_FIELDS, SOLVED_FIELDS
-from rocking._model.outcome import Outcome
-from rocking._model.outcome_code import SURVIVES, decode_outcomes, outcome_codes
-from rocking._solver.bounded_response import BoundedResponse
 from rocking._solver.peak_response import peak_response
 
-NOTATION = Path(__file__).parents[2] / "docs" / "notation.md"
-TYPES = {"f8": np.float64, "i1": np.int8, "i4": np.int32, "?": np.bool_, "U": np.str_}
 GROUPS = {"slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}
-
-
-@pytest.mark.parametrize(("kind", "declared"), [(rocking.Response, SOLVED_FIELDS), (BoundedResponse, BOUNDED_FIELDS)])
-def test_annotated_fields_are_the_declared_ones(kind, declared):
-    hints = get_type_hints(kind, localns={"xr": xr})
-    names = list(kind.__dataclass_fields__)
-    assert names[: len(declared)] == [field.name for field in declared]
-    for field in declared:
-        assert TYPES[field.dtype].__name__ in str(hints[field.name])
-
-
-def test_description_tells_what_a_missing_number_looks_like():
-    assert "; null where the block overturns" in fields.PEAK_ROTATION.description()
-    assert "; nan where the block overturns" in fields.PEAK_ROTATION.description("nan")
-    assert "null" not in fields.IMPACTS.description()
-
-
-def test_overturning_codes_round_trip():
-    outcome = np.array([0, 1, 2, 3, 3, 3], dtype=np.int8)
-    impacts = np.array([0, 7, 0, 1, 2, 200_003], dtype=np.int32)
-    codes = outcome_codes(outcome, impacts)
-    assert codes.tolist() == [SURVIVES, SURVIVES, 2, 7, 11, 800_015]
-    assert codes.dtype == np.int64
-    decoded, counted = decode_outcomes(codes)
-    assert decoded.tolist() == [Outcome.RECOVERS, Outcome.RECOVERS, 2, 3, 3, 3]
-    assert counted.tolist() == [0, 0, 0, 1, 2, 200_003]
-    assert (decoded.dtype, counted.dtype) == (outcome.dtype, impacts.dtype)
 
 
 def test_data_set_of_one_response():

@@ -24,7 +24,6 @@ VALUES = {
 
 
 def functions_of_arrays():
-    """The closed forms with two array arguments or more."""
     for name, function in inspect.getmembers(paper, inspect.isfunction):
         arguments = [str(one) for one in inspect.signature(function).parameters]
         if len(arguments) > 1 and set(arguments) <= VALUES.keys():

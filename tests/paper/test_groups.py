@@ -28,29 +28,12 @@ def assert_same(left: Problem, right: Problem) -> None:
 
 
 @given(problem=problems, group_set=sets)
-def test_problem_of_block_inverts_groups_of(problem, group_set):
-    found = paper.groups_of(problem, group_set)
-    again = paper.problem_of_block(
-        found,
-        group_set,
-        alpha=problem.alpha,
-        frequency_parameter=problem.frequency_parameter,
-        gravity=problem.gravity,
-    )
-    assert_same(problem, again)
-
-
-@given(problem=problems, group_set=sets)
-def test_problem_of_pulse_inverts_groups_of(problem, group_set):
-    found = paper.groups_of(problem, group_set)
-    again = paper.problem_of_pulse(
-        found,
-        group_set,
-        peak_acceleration=problem.peak_acceleration,
-        pulse_frequency=problem.pulse_frequency,
-        gravity=problem.gravity,
-    )
-    assert_same(problem, again)
+def test_a_problem_is_found_again_from_its_groups(problem, group_set):
+    found, g = paper.groups_of(problem, group_set), problem.gravity
+    block = {"alpha": problem.alpha, "frequency_parameter": problem.frequency_parameter}
+    pulse = {"peak_acceleration": problem.peak_acceleration, "pulse_frequency": problem.pulse_frequency}
+    assert_same(problem, paper.problem_of_block(found, group_set, **block, gravity=g))
+    assert_same(problem, paper.problem_of_pulse(found, group_set, **pulse, gravity=g))
 
 
 @given(problem=problems, group_set=sets, rotation=st.floats(-1, 1), time=st.floats(0, 10), velocity=st.floats(-5, 5))

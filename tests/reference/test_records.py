@@ -35,22 +35,15 @@ def test_the_amplification_of_a_small_single_flight_follows_from_its_threshold()
 
 
 def test_random_cases() -> None:
-    verdicts = [judge(random_case(seed)) for seed in range(number(5, 25))]
-    found = summary(verdicts)
+    """`python -m stress.records` runs a thousand."""
+    found = summary([judge(*random_case(seed)) for seed in range(number(5, 50))])
     assert found["wrong"] == 0
     assert found["overturned"] > 0
-
-
-@pytest.mark.long
-def test_more_random_cases() -> None:
-    """`python -m stress.records` runs a thousand."""
-    found = summary([judge(random_case(seed)) for seed in range(100, 125)])
-    assert found["wrong"] == 0
     assert found["largest error over allowed"] < 0.1
 
 
 def test_the_random_cases_include_the_extremes_of_restitution() -> None:
-    restitutions = np.array([random_case(seed).groups["restitution"] for seed in range(200)], dtype=np.float64)
+    restitutions = np.array([random_case(seed)[1]["restitution"] for seed in range(200)], dtype=np.float64)
     assert (restitutions == 0.0).any()
     assert (restitutions == 1.0).any()
     assert not math.isnan(restitutions.sum())

@@ -34,7 +34,6 @@ VARIABLES = {f"ROCKING_{name.upper()}" for name in Settings.model_fields}
 
 @pytest.fixture(scope="module")
 def unit():
-    """Keys of the unit with their values in order; one key may occur several times."""
     found = {}
     for line in (DEPLOY / "rocking.service").read_text().splitlines():
         if "=" in line and not line.startswith("#"):
@@ -156,12 +155,8 @@ def test_service_works_with_the_system_calls_of_the_unit(unit, tmp_path):
 
 @SYSTEMD
 def test_unit_is_understood_by_systemd():
-    done = subprocess.run(
-        ["systemd-analyze", "verify", "--man=no", str(DEPLOY / "rocking.service")],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    command = ["systemd-analyze", "verify", "--man=no", str(DEPLOY / "rocking.service")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     # the program is not installed where the tests run
     lines = [line for line in done.stderr.splitlines() if "rocking.service" in line and "is not executable" not in line]
     assert lines == []

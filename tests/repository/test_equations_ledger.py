@@ -41,7 +41,6 @@ TESTS = [q for q in QUOTED if q.startswith("tests/")]
 
 
 def defining_file(name: str) -> Path:
-    """File that defines a dotted name."""
     found = resolve_name(name)
     definition = found.fget if isinstance(found, property) else found
     module = getattr(definition, "__module__", None) or name.rsplit(".", 1)[0]

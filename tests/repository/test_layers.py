@@ -31,7 +31,6 @@ def folder_of(path: Path) -> str | None:
 
 @cache
 def imported_files(path: Path) -> frozenset[Path]:
-    """Return the files of the project that a file imports, at any depth of its code."""
     names = set()
     for name, base, level in imported_names(SOURCES.syntax(path)):
         assert level == 0, f"{path}: relative import"
@@ -60,7 +59,6 @@ def test_every_module_of_the_package_has_a_layer() -> None:
 
 
 def may_import(path: Path, file: Path) -> bool:
-    """Whether a module may import a file of the project."""
     own, other = str(folder_of(path)), folder_of(file)
     if other is not None:
         return own == other or LAYER_OF[own] < LAYER_OF[other]

@@ -17,7 +17,6 @@ ASCII = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONSAFEPATH": "1"}
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A copy of the package, without compiled kernels."""
     folder = tmp_path_factory.mktemp("copy") / "pâté"
     shutil.copytree(ROOT / "rocking", folder / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "api" / "rocking_api", folder / "rocking_api", ignore=shutil.ignore_patterns("__pycache__"))
@@ -25,7 +24,6 @@ def folder(tmp_path_factory):
 
 
 def run(folder, *arguments, **environment):
-    """Run the copy of the package; standard output, as UTF-8."""
     variables = os.environ | ASCII | {"PYTHONPATH": str(folder)} | environment
     variables.pop("NUMBA_CACHE_DIR", None)
     command = [sys.executable, *arguments]

@@ -30,7 +30,6 @@ CONDA_NAMES = {"matplotlib": "matplotlib-base", "prometheus-client": "prometheus
 
 
 def conda(lines: list[str]) -> list[str]:
-    """Requirements of pyproject.toml as a recipe states them."""
     found = [Requirement(line) for line in lines]
     return [f"{CONDA_NAMES.get(one.name, one.name.lower())} {one.specifier}" for one in found]
 

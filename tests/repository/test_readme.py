@@ -44,7 +44,6 @@ def recipe(*arguments: str) -> str:
 
 
 def installed(program: str) -> str:
-    """Return the path of a program in the environment that runs the tests."""
     return str(Path(sys.executable).with_name(program))
 
 

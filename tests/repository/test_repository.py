@@ -103,7 +103,6 @@ def test_every_process_of_a_run_reads_its_rules_without_heavy_imports() -> None:
 
 
 def headings(text: str) -> set[str]:
-    """Anchors of a Markdown page as GitHub makes them."""
     titles = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 

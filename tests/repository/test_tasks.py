@@ -49,7 +49,6 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def perform(path: Path, step: re.Match[str]) -> None:
-    """Make one change."""
     if step["how"] == "New file":
         assert not path.exists(), path
         path.write_text(step["text"])
@@ -61,7 +60,7 @@ def perform(path: Path, step: re.Match[str]) -> None:
     path.write_text(f"{before}\n{parts[step['where']]}{after}")
 
 
-@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure"))
+@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure", "field"))
 def test_task(copy: Path, task: str) -> None:
     environment = os.environ | {"PYTHONPATH": f"{copy}{os.pathsep}{copy / 'api'}", "PYTHONWARNINGS": "error"}
     (step,) = [step for step in STEP.finditer(TASKS[task]) if not step["path"]]

@@ -30,29 +30,19 @@ pytestmark = pytest.mark.slow
 
 
 def printed(shown: str) -> re.Pattern[str]:
-    """The pattern of an output that a page shows."""
     return re.compile("".join("(?s:.*)" if line == "..." else f"{re.escape(line)}\n" for line in shown.splitlines()))
 
 
 def run(command: str, folder: Path, port: int | None) -> str:
     """What a command prints, in a shell where `rocking`, `python` and `snakemake` are those of this checkout."""
+    place = ROOT if command.startswith("snakemake") else folder
     if command.startswith("snakemake"):
         command = command.replace("snakemake", f"snakemake --directory {folder}", 1)
-    done = subprocess.run(
-        command.replace(":8000", f":{port}"),
-        cwd=ROOT if command.startswith("snakemake") else folder,
-        shell=True,
-        check=False,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env=os.environ
-        | {
-            "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
-            "PYTHONPATH": f"{ROOT}:{ROOT / 'api'}",
-            "COLUMNS": "400",
-        },
-    )
+    paths = {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONPATH": f"{ROOT}:{ROOT / 'api'}"}
+    environment = os.environ | paths | {"COLUMNS": "400"}
+    output = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    shown = command.replace(":8000", f":{port}")
+    done = subprocess.run(shown, cwd=place, env=environment, shell=True, check=False, **output)
     assert done.returncode == 0, f"{command}: {done.stdout}"
     return done.stdout
 

@@ -3,7 +3,6 @@
 The worst figures are recorded in the test report (`pytest --junit-xml`).
 """
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,12 +12,14 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
+from benchmarks import tables
+from benchmarks.tables import rows_of
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS
+from stress.solver import solve
 
 Record = Callable[[str, object], None]
 DATA = Path(__file__).parents[1] / "data"
 EPS = float(np.finfo(float).eps)
-INPUTS = ("slenderness", "frequency_ratio", "restitution", "alpha")
 
 
 @dataclass(frozen=True)
@@ -39,21 +40,13 @@ class Table:
     """Rows of a table for slender or for rigid blocks; empty fields are nan. The responses of the solver to them."""
 
     def __init__(self, path: Path, rigid: bool) -> None:
-        every = csv.DictReader(path.read_text().splitlines())
-        rows = [row for row in every if bool(row.get("alpha_deg") or row.get("alpha")) == rigid]
+        rows = [row for row in rows_of(path) if bool(row.get("alpha_deg") or row.get("alpha")) == rigid]
         self.pulse = np.array([row["pulse"] for row in rows])
         self.true = {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0] if name != "pulse"}
-        if "alpha_deg" in self.true:
-            self.true["alpha"] = np.nan_to_num(np.radians(self.true["alpha_deg"]))
-        self.found: dict[str, NDArray[np.generic]] = {}
-        for pulse in np.unique(self.pulse):
-            here = self.pulse == pulse
-            response = rocking.peak_response(
-                str(pulse), **{name: self.true[name][here] for name in INPUTS if name in self.true}
-            )
-            for field in (*RESPONSE_FIELDS, OVERTURNED):
-                values = getattr(response, field.name)
-                self.found.setdefault(field.name, np.empty(len(rows), values.dtype))[here] = values
+        alpha = np.radians(self.true["alpha_deg"]) if "alpha_deg" in self.true else self.true.get("alpha", 0.0)
+        self.true["alpha"] = np.nan_to_num(np.broadcast_to(alpha, len(rows)))
+        response = solve(tables.Table(path.stem, self.pulse, self.true))
+        self.found = {field.name: getattr(response, field.name) for field in (*RESPONSE_FIELDS, OVERTURNED)}
 
     def relative_error(self, name: str) -> NDArray[np.float64]:
         """|found/true - 1|, absolute where the truth is 0; infinite where only one has a value."""

@@ -34,7 +34,6 @@ def test_corners_of_the_parameter_space(pulse: str) -> None:
 
 
 def neighbours(value, count):
-    """The doubles around a value."""
     around = [value]
     for _ in range(count):
         around = [np.nextafter(around[0], 0.0), *around, np.nextafter(around[-1], 2.0)]

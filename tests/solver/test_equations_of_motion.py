@@ -1,50 +1,14 @@
 """The solver against first principles: (2.1) to (2.3), (3.1), (3.2), (3.4) to (3.6) and (4.1)."""
 
-import math
-
 import numpy as np
 import pytest
 
 import rocking
 from rocking import paper
 from rocking import paper as cf
-from rocking._dimensional.block import Block
 from tests.direct_integration import integrate
 
 G = 9.81
-
-
-def moment_balance(theta, ground, alpha, R, mass=3.0):
-    """(2.1), solved for the angular acceleration [rad/s2]."""
-    inertia = 4 / 3 * mass * R * R
-    side = math.copysign(alpha, theta)
-    return (-mass * ground * R * math.cos(side - theta) - mass * G * R * math.sin(side - theta)) / inertia
-
-
-def equation_2_2(theta, ground, alpha, p):
-    side = math.copysign(alpha, theta)
-    return p * p * (-math.sin(side - theta) - ground / G * math.cos(side - theta))
-
-
-@pytest.mark.parametrize("theta", [-0.3, -0.01, 0.02, 0.25])
-@pytest.mark.parametrize("ground", [-6.0, 0.0, 3.0])
-def test_moment_balance_gives_the_equation_of_motion(theta, ground):
-    block = Block.from_slenderness_angle(0.28, 1.4, gravity=G)
-    found = moment_balance(theta, ground, block.alpha, block.half_diagonal)  # (2.1)
-    expected = equation_2_2(theta, ground, block.alpha, block.frequency_parameter)  # (2.2)
-    assert found == pytest.approx(expected, rel=1e-13)
-
-
-@pytest.mark.parametrize("theta", [-0.7, 0.4])
-def test_linearisation_is_the_limit_of_slender_blocks(theta):
-    a = 1.7  # ground acceleration in units of g alpha
-    errors = []
-    for alpha in (1e-2, 1e-3):
-        exact = equation_2_2(theta * alpha, a * G * alpha, alpha, 1.0)
-        linear = theta * alpha - alpha * math.copysign(1, theta) - a * alpha  # (3.1)
-        errors.append(abs(exact / linear - 1))
-    assert errors[0] < 2e-3
-    assert errors[1] == pytest.approx(errors[0] / 100, rel=0.05)
 
 
 @pytest.mark.parametrize(

@@ -47,27 +47,3 @@ def test_peaks_vanish_at_the_onset_of_rocking(name):
     if abs(float(rocking.pulse(name).shape(rocking.pulse(name).start))) < 1:
         order = np.diff(np.log(found.peak_rotation[2:])) / np.log(0.1)
         assert np.median(order) == pytest.approx(2.0, abs=0.1)
-
-
-@pytest.mark.parametrize("name", [name for name in PULSE_NAMES if not name.startswith("ricker")])
-def test_small_flights_under_slow_pulses(name):
-    # the flight is much shorter than the pulse: the arc from uplift to the next interval end grows by e^3000 and more
-    rng = np.random.default_rng(15)
-    n = 600
-    gap = 10 ** rng.uniform(-11, -0.5, n)
-    question = {
-        "slenderness": 1 - gap,
-        "frequency_ratio": 10 ** rng.uniform(-4, 0, n),
-        "restitution": rng.uniform(0, 0.95, n),
-    }
-    arcs = rocking.peak_response(name, **question)
-    steps = rocking.peak_response(name, **question, alpha=1e-9)
-    np.testing.assert_array_equal(arcs.outcome, steps.outcome)
-    assert (arcs.peak_rotation[~arcs.overturned] > 0).all()
-    impacted = np.isfinite(arcs.first_impact_time)
-    assert (arcs.first_impact_time[impacted] > 0).all()
-    terms = len(rocking.pulse(name).terms)
-    allowed = 1e-9 + 20 * terms * np.finfo(float).eps / gap  # 1 - 1/a is known to one ulp of 1/a; each term rounds
-    for found, other in ((arcs.peak_rotation, steps.peak_rotation), (arcs.first_impact_time, steps.first_impact_time)):
-        known = np.isfinite(found)
-        assert (np.abs(found - other)[known] <= (allowed * np.abs(other))[known]).all()

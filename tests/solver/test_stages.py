@@ -11,9 +11,9 @@ from rocking._excitation.pulses import SinusoidalPulse
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import NO_EDGES, NO_FLIGHTS, solver_state
 from rocking._solver.stages.batch import LEFT, solve_by_arcs
-from rocking._solver.stages.state import BLOCK_SIZE, stage_state
+from rocking._solver.stages.state import stage_state
 from rocking._solver.state import FULL_PRECISION, RESPONSE_RECORD, block_cells, pulse_state
-from tests.sampling import but_long, number
+from tests.sampling import number
 
 SINUSOIDS = [name for name in rocking.PULSE_NAMES if rocking.pulse(name).series.has_exact_arcs]
 SIGNED = [sign + name for name in SINUSOIDS for sign in ("", "-")]
@@ -49,7 +49,6 @@ def by_stages(pulse, s, w, eta):
 
 
 def by_event_loop(pulse, s, w, eta):
-    """The event loop that serves all bodies and pulses."""
     found = np.zeros(s.size, RESPONSE_RECORD)
     state = solver_state.of_steps(pulse, FULL_PRECISION)
     cells = block_cells(w, s, eta, np.zeros(s.size))
@@ -93,17 +92,6 @@ def test_stages_and_event_loop_agree(name):
     assert_agree(by_stages(pulse, s, w, eta), by_event_loop(pulse, s, w, eta), s, eta)
 
 
-@pytest.mark.parametrize("name", but_long(["sine", "-c1", "mavroeidis_papageorgiou", "ricker"], "-c1", "ricker"))
-def test_a_cell_does_not_depend_on_its_company(name):
-    pulse = rocking.pulse(name)
-    s, w, eta = cells(BLOCK_SIZE + 300, 5)
-    together = by_stages(pulse, s, w, eta)
-    order = np.random.default_rng(6).permutation(s.size)
-    assert_equal(by_stages(pulse, s[order], w[order], eta[order]), together[order])
-    for i in range(0, s.size, number(101, 17)):
-        assert_equal(by_stages(pulse, s[i : i + 1], w[i : i + 1], eta[i : i + 1]), together[i : i + 1])
-
-
 def test_a_start_above_the_level_and_pieces_without_a_cut():
     """Sums of sinusoids whose extrema have different heights: some levels are reached on some pieces only."""
     terms = ((1.0, 1.0, -math.pi / 2), (0.6, 2.0, 0.3), (0.3, 3.0, 1.0))
@@ -115,15 +103,6 @@ def test_a_start_above_the_level_and_pieces_without_a_cut():
             np.testing.assert_array_equal(stages[field], loop[field], err_msg=field)
         error = np.abs(stages["peak_rotation"] / np.where(loop["peak_rotation"] > 0, loop["peak_rotation"], 1.0) - 1.0)
         assert np.nanmedian(error[loop["peak_rotation"] > 0]) < 1e-14
-
-
-@pytest.mark.parametrize("name", SIGNED)
-def test_few_cells_are_left(name):
-    """The peak between two zeros of w inside a part is bracketed by the state there."""
-    pulse = rocking.pulse(name)
-    s, w, eta = cells(number(5_000, 20_000), 10)
-    left = by_stages_alone(pulse, np.minimum(s, 0.95), w, np.minimum(eta, 0.95))["outcome"] == LEFT
-    assert np.count_nonzero(left) < 0.002 * s.size
 
 
 def test_a_peak_after_a_minimum_of_the_velocity_is_found():

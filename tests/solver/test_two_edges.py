@@ -20,14 +20,12 @@ ACROSS, UP = samples("napa_HNE")[700:3000], samples("napa_HNN")[700:3000]
 
 
 def solved(kind: str, cells: NDArray[np.void], sign: float = 1.0) -> tuple[NDArray[np.void], NDArray[np.float64]]:
-    """Bodies under a motion, or its opposite."""
     if kind == "pulse":
         return solve_motion(rocking.pulse("sine" if sign > 0.0 else "-sine"), cells, None, None)
     return solve_bodies(sample_rows(sign * ACROSS / np.abs(ACROSS).max(), None, UP), cells, None, None, each_side=True)
 
 
 def bodies(kind: str, count: int, seed: int) -> NDArray[np.void]:
-    """Random bodies with different edges."""
     rng = np.random.default_rng(seed)
     found = np.zeros(count, BODY_CELL)
     found["rate"], found["alpha"] = rng.uniform(*RATES[kind], count), rng.uniform(0.1, 0.4, count)

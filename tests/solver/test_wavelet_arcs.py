@@ -30,12 +30,10 @@ PULSES = {name: rocking.pulse(name) for name in NAMES} | {"cubic": cubic_wavelet
 
 
 def frequencies(pulse, s, w):
-    """The cells with exact arcs."""
     return s, np.maximum(w, pulse.series.least_arc_frequency)
 
 
 def exact_shape(pulse, phi):
-    """f of the pulse in multi-precision."""
     if isinstance(pulse, WaveletPulse):
         return mpmath.polyval(pulse.polynomial, phi, asc=True) * mpmath.exp(-phi * phi / mpmath.mpf(pulse.spread))
     return sum(c * mpmath.cos(w * phi + d) for c, w, d in pulse.terms)
@@ -93,22 +91,6 @@ def test_few_cells_are_left_to_taylor_steps(name):
     found = solve_cells(pulse, [s, w, eta, np.zeros(s.size)], FULL_PRECISION, 1, None)
     assert (found["outcome"] >= 0).all()
     assert_equal(found[left], by_event_loop(pulse, s[left], w[left], eta[left]))
-
-
-@pytest.mark.parametrize("name", ["ricker", "ricker_antisymmetric"])
-def test_low_frequencies_are_solved_by_taylor_steps(name):
-    pulse = PULSES[name]
-    least = pulse.series.least_arc_frequency
-    s, w, eta = np.full(40, 0.37), least * np.linspace(0.9, 1.1, 40), np.full(40, 0.8)
-    found, steps = (
-        rocking.peak_response(pulse, slenderness=s, frequency_ratio=w, restitution=eta),
-        by_event_loop(pulse, s, w, eta),
-    )
-    below = w < least
-    assert 0 < np.count_nonzero(below) < 40
-    np.testing.assert_array_equal(found.peak_rotation[below], steps["peak_rotation"][below])
-    assert (found.peak_rotation[~below] != steps["peak_rotation"][~below]).any()
-    np.testing.assert_allclose(found.peak_rotation, steps["peak_rotation"], rtol=1e-12)
 
 
 @pytest.mark.parametrize("name", PULSES)

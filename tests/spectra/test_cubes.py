@@ -62,17 +62,3 @@ def test_grid_of_the_test_has_all_kinds_of_cells(whole: list[xr.Dataset]) -> Non
         assert (errors[errors > 0] <= REFINE_TOL).any()
         assert np.isfinite(cube.alpha_error).any()
     assert [bool(np.isfinite(cube.restitution_error).any()) for cube in whole] == [True] * 5 + [False]
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 7])
-def test_windows_of_some_slices_are_those_of_each(count: int) -> None:
-    for first in range(count):
-        for last in range(first + 1, count + 1):
-            start, end = windows_of(count, first, last)
-            for k in range(first, last):
-                one = windows_of(count, k, k + 1)
-                assert start <= one[0] <= k < one[1] <= end
-                # the window is the same among the slices from `start` to `end`
-                if k + 1 < count:
-                    among = windows_of(end - start, k - start, k - start + 1)
-                    assert (among[0] + start, among[1] + start) == one

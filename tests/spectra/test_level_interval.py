@@ -60,15 +60,6 @@ def test_a_crease_at_an_eighth_shows_beside_the_middle_only(at):
     assert 1.0 < largest / beside < 3.0
 
 
-def test_cells_are_creased_where_the_mode_of_the_peak_changes_between_the_slices():
-    layers = [layer(0.3) for _ in ETAS]
-    layers[2].peak_mode[2, 3] = 8
-    assert not interval_of(layers, 3).creased.any()
-    for lower in (1, 2):
-        found = np.argwhere(interval_of(layers, lower).creased)
-        np.testing.assert_array_equal(found, [[1, 2], [1, 3], [2, 2], [2, 3]])
-
-
 @pytest.mark.parametrize("count", [2, 3])
 def test_fewer_than_four_slices_are_all_used(count):
     law = lambda eta: eta ** (count - 1)  # noqa: E731

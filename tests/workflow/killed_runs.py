@@ -47,19 +47,16 @@ def content(folder: Path) -> dict[str, str]:
 
 
 def digest(path: Path) -> str:
-    """Return the digest of a file, of a manifest without the commit that it states."""
     return hashlib.sha256(re.sub(rb'\n "commit": "\w+",', b"", path.read_bytes())).hexdigest()
 
 
 def reproduce(folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run the documented command once."""
     return subprocess.run(
         COMMAND, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, timeout=1800
     )
 
 
 def processes(group: int) -> dict[int, str]:
-    """Return the processes of a group, with their commands."""
     found = {}
     for place in Path("/proc").glob("[0-9]*"):
         try:
@@ -71,7 +68,6 @@ def processes(group: int) -> dict[int, str]:
 
 
 def jobs(commands: Iterable[str]) -> list[str]:
-    """Return the names of the running scripts, from Snakemake's copies of them."""
     return sorted(found[1] for command in commands if (found := re.search(r"scripts/tmp\w+\.(\w+)\.py", command)))
 
 

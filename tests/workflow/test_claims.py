@@ -110,7 +110,6 @@ def curve(**replaced: np.ndarray) -> impact_times.Curve:
 
 
 def thresholds(amplitude: float, count: int = 1) -> Thresholds:
-    """`count` thresholds of which the first is given."""
     return Thresholds(
         amplitude + np.arange(count),
         np.arange(count) % 2 == 0,
@@ -182,13 +181,11 @@ def two_histories() -> xr.Dataset:
 
 
 def swings() -> spectra.Swings:
-    """Periods and velocities that fall as restitution rises."""
     falling = np.array([[3.0, 2.0, 1.0]] * 4)
     return spectra.Swings(np.array([0.8, 0.85, 0.9]), falling, falling, falling)
 
 
 def law_of_excitations(*shares: float) -> xr.Dataset:
-    """The figure of the scale law with these shares of area."""
     return xr.Dataset(
         {"share": ("excitation", [*shares]), "median_exponent": ("excitation", [2.0] * len(shares))},
         attrs={"excitation_names": " ".join("abc"[: len(shares)])},
@@ -345,19 +342,6 @@ def test_another_number_of_thresholds_counts_as_a_change() -> None:
     assert claim.share == pytest.approx(2 / 3)
 
 
-@pytest.mark.parametrize(("moved", "expected"), [(0, IDENTITY), (1, FAILS), (4, FAILS)])
-def test_claim_of_similar_blocks_requires_every_threshold(moved: int, expected: str) -> None:
-    assert by_key(non_slender.collapse(similar_blocks(moved)))["similar-blocks"].verdict == expected
-
-
-@pytest.mark.parametrize(
-    ("spreads", "expected"),
-    [([[0.3, 0.1], [0.4, 0.01]], HOLDS), ([[0.4, 0.01], [0.3, 0.1]], MIXED), ([[0.3, 0.4], [0.4, 0.1]], FAILS)],
-)
-def test_verdict_of_histories_depends_on_the_reduction_of_the_spread(spreads: list[list[float]], expected: str) -> None:
-    assert by_key(small_rotations.histories(histories(spreads)))["histories"].verdict == expected
-
-
 # What the claims find
 
 
@@ -365,23 +349,6 @@ def test_thresholds_converge_to_the_closed_forms_with_the_square_of_alpha() -> N
     claim = by_key(non_slender.convergence(non_slender.distances_from_closed_forms(ETA)))["slender-limit"]
     assert claim.verdict == HOLDS
     assert 1.98 < claim.numbers["lowest_order"] <= claim.numbers["highest_order"] < 2.02
-
-
-def test_groups_of_6_1_reduce_the_spread_over_slenderness() -> None:
-    spreads = small_rotations.spreads(["sine", "cosine"], ETA)
-    for one in spreads.values():
-        band = one.band(0.5, 1.0)
-        # (6.1) is exact for small rotations, (4.11) misses the uplift itself
-        assert np.median(one.rigid[band]) < 0.005
-        assert np.median(one.slender[band]) > 0.5
-    claims = by_key([*small_rotations.practical_similarity(spreads), *small_rotations.larger_slenderness(spreads)])
-    assert claims["practical-similarity"].numbers["sine, 0.5 to 1"] > 0.9
-    assert claims["small-rotations"].verdict == HOLDS
-
-
-def test_stated_range_of_the_time_of_impact_has_no_failure() -> None:
-    late = curve(impact_time=np.where(np.abs(np.linspace(1, 5, 41) - 4.0) < 0.05, 3.0, 1.0) * np.ones((2, 1)))
-    assert by_key(impact_times.impact_about_one(late))["impact-at-1/p"].record()["within"] == "omega 1 to 3.9"
 
 
 def test_measured_values_are_those_of_the_pages() -> None:

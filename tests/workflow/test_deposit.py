@@ -25,7 +25,6 @@ def archive(smoke_run: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(archive: Path, tmp_path: Path) -> Path:
-    """The content of the archive; a test may spoil it."""
     zipfile.ZipFile(archive).extractall(tmp_path)
     return tmp_path / "rocking-data"
 
@@ -86,10 +85,3 @@ def test_a_damaged_folder_is_not_archived(smoke_run: Path, tmp_path: Path) -> No
     with pytest.raises(SystemExit, match=r"results/claims\.md"):
         deposit(run, tmp_path / "archive.zip")
     assert not (tmp_path / "archive.zip").exists()
-
-
-def test_make_deposit_archives_the_folder_that_is_named() -> None:
-    command = ["make", "--dry-run", "--old-file=.venv/project", "deposit", "RESULTS=tests/results"]
-    done = subprocess.run(command, cwd=PROJECT, capture_output=True, text=True, check=False)
-    assert "no tests/results/manifest.json" in done.stdout
-    assert done.stdout.splitlines()[-1] == """python -m workflow.deposit "$(dirname 'tests/results')\""""

@@ -7,23 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 import yaml
 
-from rocking._boundary.curves import join_curves
-from rocking._datasets.cube import read_dataset, write_dataset
-from rocking._dimensional.block import Block
+from rocking._datasets.cube import read_dataset
 from rocking._excitation.pulses import PULSE_NAMES
 from rocking._solver.peak_response import peak_response
-from rocking.paper import overturning_amplitudes
-from rocking.plot.boundary_lines import Lines
 from tests.workflow_fixtures import PROJECT, SMOKE
-from workflow.figures import figure_09, figure_10, figure_scale_law_excitations, similar_histories
-from workflow.figures.boundary_lines import lines_of
+from workflow.figures import figure_09, figure_scale_law_excitations, similar_histories
 from workflow.scripts.figure import main
-from workflow.scripts.overturning import curves_of, described
 
-CONFIG = PROJECT / "workflow/config"
 PROVENANCE = ("code_sha256", "settings_sha256", "configuration", "product_version")
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
 
@@ -46,16 +38,6 @@ def test_figure_lists_values_chosen_here_and_has_a_caption(name: str, smoke_resu
     assert f"[{name}](#" in (PROJECT / "docs/figures.md").read_text()
 
 
-def test_two_blocks_collapse_to_the_master_curve(smoke_results: Path) -> None:
-    data = read_dataset(smoke_results / "figures/figure-06.nc")
-    for name in ("rotation", "angular_velocity"):
-        one, other = data[name].values
-        scale = np.abs(one).max()
-        np.testing.assert_allclose(one, other, atol=1e-9 * scale)
-    master = np.interp(data.tau[0], data.tau_master, data.master_rotation)
-    np.testing.assert_allclose(data.rotation[0], master, atol=1e-9)
-
-
 def test_dimensional_blocks_have_the_given_groups(smoke_results: Path) -> None:
     data = read_dataset(smoke_results / "figures/figure-05.nc")
     gravity = 9.80665
@@ -64,33 +46,6 @@ def test_dimensional_blocks_have_the_given_groups(smoke_results: Path) -> None:
     np.testing.assert_allclose(omega, data.attrs["frequency_ratio"], rtol=1e-12)
     assert np.ptp(data.half_diagonal.values) > 1
     assert np.ptp(data.alpha.values) > 0.1
-
-
-def test_integration_in_si_units_overturns_on_the_side_that_figure_9_states(smoke_results: Path) -> None:
-    data = read_dataset(smoke_results / "figures/figure-09.nc")
-    above = data.threshold_overturns_above.values
-    assert set(above) == {0, 1}
-    np.testing.assert_array_equal(data.threshold_falls_above, above)
-    np.testing.assert_array_equal(data.threshold_falls_below, 1 - above)
-    assert set(zip(data.threshold_pulse.values, data.threshold_block.values, strict=True)) == {
-        (i, j) for i in range(2) for j in range(2)
-    }
-
-
-@pytest.mark.parametrize("pulse", ["sine", "cosine"])
-def test_thresholds_of_similar_blocks_collapse_in_groups(pulse: str) -> None:
-    small, large = (Block.from_slenderness_angle(np.radians(20), R) for R in (0.5, 1.0))
-    period = 1.1
-    one = list(figure_09.block_thresholds(pulse, small, period, 0.85))
-    other = list(figure_09.block_thresholds(pulse, large, period * np.sqrt(2), 0.85))  # p goes with 1/sqrt(R)
-    assert len(one) == len(other) >= 3
-    for a, b in zip(one, other, strict=True):
-        assert a["frequency_ratio"] == pytest.approx(b["frequency_ratio"], rel=1e-14)
-        assert a["amplitude"] == pytest.approx(b["amplitude"], rel=1e-11)
-        assert a["acceleration"] == pytest.approx(a["amplitude"] * small.uplift_acceleration, rel=1e-14)
-    # and do not with dimensions: at one period the thresholds of the two blocks differ
-    same_period = next(iter(figure_09.block_thresholds(pulse, large, period, 0.85)))
-    assert abs(same_period["acceleration"] / one[0]["acceleration"] - 1) > 0.005
 
 
 def test_upper_surviving_region_of_figure_9_is_bounded_where_the_outcome_changes() -> None:
@@ -105,51 +60,6 @@ def test_upper_surviving_region_of_figure_9_is_bounded_where_the_outcome_changes
     assert recovers(high * (1 - 1e-9)).all()
     assert not recovers(low * (1 - 1e-9)).any()
     assert not recovers(high * (1 + 1e-9)).any()
-
-
-def along_frequency(lines: Lines, omega: np.ndarray) -> np.ndarray:
-    """Largest amplitude of the lines at each frequency ratio: the curve of overturning without impact."""
-    joined = [~np.isnan(lines.amplitude[:-1] + lines.amplitude[1:])]
-    x, y = (np.stack([v[:-1][*joined], v[1:][*joined]]) for v in (lines.frequency_ratio, lines.amplitude))
-    inside = (x.min(axis=0)[:, None] <= omega) & (omega <= x.max(axis=0)[:, None])
-    slope = (y[1] - y[0]) / np.where(x[1] == x[0], np.inf, x[1] - x[0])
-    return np.where(inside, y[0][:, None] + slope[:, None] * (omega - x[0][:, None]), -np.inf).max(axis=0)
-
-
-@pytest.fixture(scope="module")
-def overturning_at_angles(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """Figure 10 at more angles than the smallest configuration has."""
-    files = {}
-    for pulse in ("sine", "cosine"):
-        window = {"slenderness": (0.1, 1.0), "frequency_ratio": (1.0, 4.0)}
-        parts = curves_of(pulse, 0.85, (0, 5, 10, 20), nodes=61, nodes_rigid=61, **window)
-        files[pulse] = tmp_path_factory.mktemp(pulse) / "eta-0.85.nc"
-        write_dataset(described(join_curves(parts), pulse, 0.85), files[pulse])
-    return figure_10.data(**files, restitution=0.85, alpha_deg=[5, 10, 20])
-
-
-@pytest.mark.parametrize("pulse", [0, 1], ids=["sine", "cosine"])
-def test_boundaries_of_figure_10_converge_to_the_slender_limit(overturning_at_angles: xr.Dataset, pulse: int) -> None:
-    data = overturning_at_angles
-    omega = np.linspace(1.5, 2.4, 10)
-    slender, *others = (
-        along_frequency(lines_of(data, pulse, alpha), omega) for alpha in np.radians([0.0, 5.0, 10.0, 20.0])
-    )
-    distance = [np.abs(other / slender - 1).max() for other in others]
-    assert distance[0] < distance[1] < distance[2] < 0.05
-    assert distance[0] < 0.2 * distance[2]  # as alpha squared, and so by 16
-
-
-def test_slender_limit_of_figure_10_is_in_closed_form(smoke_results: Path) -> None:
-    data = read_dataset(smoke_results / "figures/figure-10.nc")
-    np.testing.assert_allclose(data.alpha, np.radians([0, 20]), rtol=1e-15)
-    lines = lines_of(data, 0, 0.0)
-    known = np.isfinite(lines.amplitude) & (lines.frequency_ratio > 1.5)
-    a, omega = lines.amplitude[known], lines.frequency_ratio[known]
-    closed = overturning_amplitudes(omega, 0.85)
-    nearest = np.nanmin(np.abs(np.stack([closed.overturns_from, closed.survives_again, closed.direct]) / a - 1), axis=0)
-    assert nearest.size > 100
-    assert nearest.max() < 1e-9
 
 
 def test_blocks_of_figure_11_have_equal_groups() -> None:

@@ -25,7 +25,6 @@ RAMP = rocking.SampledPulse([0.0, 3.0, -1.0, 0.0], [0.0, 0.1, 0.3, 0.7], 0.5, "r
 
 
 def configuration(pulses: list[Any]) -> dict[str, Any]:
-    """The data sets of some pulses on a tiny grid."""
     found: dict[str, Any] = yaml.safe_load(SMOKE.read_text())
     for name in ("figures", "claims"):
         del found[name]
@@ -46,11 +45,8 @@ def configuration(pulses: list[Any]) -> dict[str, Any]:
         ({"name": "a", "acceleration": [0, 1, 0], "dt": 1}, "pulses.1: `key` = 'dt'"),
         ({"name": "a", "acceleration": [0, "x", 0]}, "pulses.1: `acceleration` = "),
         ({"name": "a", "acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulses.1: `time` = 1.0 at index 2"),
-        ({"name": "a", "acceleration": [0, 1, 0], "period": -1}, "pulses.1: `period` = -1.0"),
-        ({"name": "a"}, "pulses.1: `file` = None"),
         ({"name": "a", "file": "none.csv"}, "none.csv': no such file"),
         ({"name": "a", "file": "bad.csv"}, "bad.csv, line 2: x"),
-        ({"name": "a", "file": 5}, "pulses.1: `file` = 5"),
         ({"name": "a", "file": "bad.csv", "acceleration": [0, 1]}, "either a file or the key acceleration"),
     ],
     ids=str,
@@ -123,17 +119,12 @@ def test_a_pulse_of_the_catalogue_has_its_parameters_in_its_text(tmp_path):
 
 
 def _check_cube(results: Path, pulse: rocking.SampledPulse) -> None:
-    """The nodes of a cube are those of the solver, and another process asks the solver by the stored samples."""
+    """Files hold the samples, by which another process asks the solver; `workflow/checks` compares their nodes."""
     path = results / f"spectra/{pulse.name}/eta-0.85.nc"
     cube = read_spectrum(path)
     assert stored_pulse(cube) == pulse
     assert int(cube.pulse) == -1
     assert cube.pulse.attrs["pulse_digest"] == pulse.digest
-    axes = {"slenderness": cube.slenderness.values[:, None], "frequency_ratio": cube.frequency_ratio.values}
-    slender = cube.sel(alpha=0.0)
-    solved = rocking.peak_response(pulse, **axes, restitution=0.85)
-    np.testing.assert_array_equal(slender.peak_rotation, solved.peak_rotation)
-    np.testing.assert_array_equal(slender.outcome, solved.outcome)
     curves = read_dataset(results / f"overturning/{pulse.name}/eta-0.85.nc")
     assert stored_pulse(curves) == pulse
     assert curves.sizes["curve"] > 0

@@ -29,7 +29,6 @@ def figure_13_data() -> xr.Dataset:
 
 
 def points(data: xr.Dataset, name: str) -> np.ndarray:
-    """A label of the curves at each of their points."""
     return np.repeat(data[f"curve_{name}"].values, data.row_size.values)
 
 

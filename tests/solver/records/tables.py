@@ -19,12 +19,10 @@ TABLE = ROOT / "tests" / "data" / "records" / "responses.csv"
 
 @lru_cache(maxsize=8)
 def samples(name: str) -> NDArray[np.float64]:
-    """Return the acceleration [g] of a record of the table."""
     return np.loadtxt(MOTIONS / f"{name}.csv", delimiter=",", skiprows=1)[:, 1]
 
 
 def record(name: str, time_step: float) -> Record:
-    """Return a whole record of the table."""
     return Record(samples(name), time_step, unit="g", name=name)
 
 
@@ -40,7 +38,6 @@ class Row:
 
 
 def rows() -> list[Row]:
-    """Return all cases; the slenderness refers to the samples used."""
     found = []
     with TABLE.open(newline="") as stream:
         for row in csv.DictReader(stream):

@@ -65,14 +65,6 @@ def test_random_pieces_against_dense_samples() -> None:
     assert peaks > count / 8
 
 
-def test_a_hidden_impact_is_found() -> None:
-    """Where the block is destabilised, z dips below zero and is positive again at the end."""
-    impact, z, w, _ = follow_piece(0.01, -0.2, -1.0, -0.5, 1.0, False, 0.0)
-    assert piece_state(0.01, -0.2, -1.0, -0.5, 1.0)[0] > 0.0
-    assert 0.05 < impact < 0.1
-    assert (z, w < 0.0) == (0.0, True)
-
-
 def test_a_hidden_peak_is_found() -> None:
     """The velocity is positive at both ends and negative between."""
     q0, r, length = 2.0, -2.0, 1.0

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._base.errors import InvalidArgumentError
 from tests.solver.records.tables import record
 
 MOTION = record("synthetic_31", 0.01)
@@ -33,7 +32,6 @@ def test_a_sine_sampled_ever_finer_converges_with_second_order(
 
 
 def responses_equal(first: rocking.Response, second: rocking.Response, rtol: float = 1e-9) -> None:
-    """Outcomes are equal, peaks and times close."""
     np.testing.assert_array_equal(first.outcome, second.outcome)
     np.testing.assert_allclose(first.peak_rotation, second.peak_rotation, rtol=rtol)
     np.testing.assert_allclose(first.uplift_time, second.uplift_time, rtol=rtol)
@@ -146,24 +144,6 @@ def test_arguments_broadcast_and_slender_and_rigid_blocks_mix() -> None:
     assert response.peak_rotation[1, 1, 1] == single.peak_rotation
     empty = rocking.peak_response(MOTION, frequency_parameter=2.0, slenderness=[], restitution=0.8)
     assert empty.shape == (0,)
-
-
-@pytest.mark.parametrize(
-    ("change", "named"),
-    [
-        ({"frequency_parameter": 1e5}, "frequency_parameter"),
-        ({"threads": 0}, "threads"),
-        ({"slenderness": [0.1, 0.2], "restitution": [0.1, 0.2, 0.3]}, "shapes"),
-    ],
-)
-def test_invalid_arguments_are_named(change: dict, named: str) -> None:
-    with pytest.raises(InvalidArgumentError, match=named):
-        rocking.peak_response(MOTION, **(GRID | change))
-
-
-def test_only_records_are_motions() -> None:
-    with pytest.raises(InvalidArgumentError, match=r"napa\.at2"):
-        rocking.peak_response("napa.at2", **GRID)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("alpha", [None, 0.2, 1.2])
