@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking._base import quantities as q
+import rocking._base.quantities as q
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.units import Scalar
