@@ -106,6 +106,14 @@ def test_measures_of_a_sine() -> None:
     assert record.final_velocity == pytest.approx(0.0, abs=1e-12)
 
 
+def test_a_record_that_leaves_the_ground_moving_is_named() -> None:
+    whole = sine_record()
+    half = rocking.Record(whole.acceleration[: round(0.25 / whole.time_step) + 1], whole.time_step, unit="m/s2")
+    for motion, moves in ((whole, False), (half, True)):
+        found = rocking.Block(0.4, 1.6).response(motion, thresholds=False)
+        assert any("velocity of the record ends at 100 %" in text for text in found.warnings) == moves
+
+
 def padded_mean_period(a: np.ndarray, dt: float) -> float:
     """The definition: a whole transform of the record with zeros until the frequencies are 0.05 Hz apart."""
     size = max(a.size, math.ceil(20.0 / dt))
