@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+import rocking
 from rocking._assessment.site import Motion
 from rocking._assessment.sliding import largest_slip, sliding_displacement
 from rocking._base.constants import STANDARD_GRAVITY
@@ -72,6 +73,14 @@ def test_linear_pieces_agree_with_small_steps(vertical: float) -> None:
     resistance = 0.07 * (STANDARD_GRAVITY + upwards)
     expected = slip_by_small_steps(record.times, acceleration[0], resistance, 0.07 * STANDARD_GRAVITY)
     assert found == pytest.approx(expected, rel=2e-3)
+
+
+def test_a_sampled_pulse_slides_as_the_record_of_its_samples() -> None:
+    samples = [0.0, 3.0, -4.0, 2.0, -1.0, 0.0]
+    record = Record(samples, 0.2, "m/s2")
+    pulse = rocking.SampledPulse(samples)
+    found = [sliding_displacement(Motion("", motion, 4.0, 1.0, 0, 4.0), 0.1) for motion in (record, pulse)]
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
 
 
 def test_vertical_component_that_unloads_the_block_lets_it_slide_further() -> None:
