@@ -71,11 +71,11 @@ def repaired(mesh: trimesh.Trimesh) -> RepairedMesh:
         remarks.append("has a negative volume: its faces, which pointed inwards, were turned")
     elif changed.any():
         remarks.append(f"has inconsistent normals: {int(changed.sum())} of {len(changed)} faces were turned")
-    solids = int((volume[~sheet] > 0.0).sum())  # cavities have negative volumes
-    if solids > 1:
-        remarks.append(
-            f"has {solids} separate solids, which are taken as one body; where they overlap, mass counts twice"
-        )
+    solid = ~sheet & (volume > 0.0)  # cavities have negative volumes
+    low, high = _boxes(points[closed], body)
+    groups = _groups(low[solid], high[solid])
+    if groups > 1:
+        remarks.append(f"has {groups} solids apart from each other, which are taken as one body")
     final = np.where(outwards[:, None], closed[:, ::-1], closed)[kept]
     found = trimesh.Trimesh(points, final, process=False)
     found.remove_unreferenced_vertices()
@@ -187,14 +187,27 @@ def _holes(vertices: Array, faces: Index, edges: _Edges) -> _Holes:
     return _Holes(centre, distance * size, cones, of_cone)
 
 
+def _boxes(corners: Array, body: Index) -> tuple[Array, Array]:
+    """Lowest and highest coordinates of each body, arrays (bodies, 3), from the corners of all faces."""
+    low, high = np.full((body.max() + 1, 3), np.inf), np.full((body.max() + 1, 3), -np.inf)
+    np.minimum.at(low, body, corners.min(axis=1))
+    np.maximum.at(high, body, corners.max(axis=1))
+    return low, high
+
+
+def _groups(low: Array, high: Array) -> int:
+    """The number of groups of boxes, arrays (boxes, 3), that planes across one axis separate."""
+    order = np.argsort(low, axis=0)
+    reach = np.maximum.accumulate(np.take_along_axis(high, order, 0))
+    return 1 + int((np.take_along_axis(low, order, 0)[1:] > reach[:-1]).sum(axis=0).max(initial=0))
+
+
 def _outwards(vertices: Array, faces: Index, body: Index) -> tuple[Flags, Array]:
     """Which faces to turn, of bodies of negative volume unless they lie within another as cavities do; all volumes."""
     corners = vertices[faces]
     volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
     volume = np.bincount(body, volumes)
-    low, high = np.full((len(volume), 3), np.inf), np.full((len(volume), 3), -np.inf)
-    np.minimum.at(low, body, corners.min(axis=1))
-    np.maximum.at(high, body, corners.max(axis=1))
+    low, high = _boxes(corners, body)
     wrong = np.zeros(len(volume), dtype=bool)
     for k in np.flatnonzero(volume < 0.0):
         within = (low <= low[k]).all(axis=1) & (high >= high[k]).all(axis=1) & (np.abs(volume) > -volume[k])

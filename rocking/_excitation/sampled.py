@@ -81,7 +81,7 @@ class SampledPulse(AbstractPulse):
             raise InvalidArgumentError("name", name, "a string that is not empty")
         times = np.arange(samples.size, dtype=np.float64)
         if time is not None:
-            times = in_range("time", time, -np.inf, np.inf, closed="neither", unit="s")
+            times = in_range("time", time, -1e300, 1e300, unit="s")  # their differences are finite
             if times.shape != samples.shape:
                 raise InvalidArgumentError("time", f"shape {times.shape}", f"{samples.size} times, one for each sample")
         duration = float(times[-1]) - float(times[0])
