@@ -51,15 +51,22 @@ class Chords:
         return self.start[0, cut] + slope * (y - self.start[1, cut]), slope
 
 
-def compare(pulse: str, alpha: float | None, nodes: int, lines: int, restitution: float) -> dict[str, float]:
-    """Trace curves and compare them with thresholds on random lines."""
+def compare(
+    pulse: str,
+    alpha: float | None,
+    nodes: int,
+    lines: int,
+    restitution: float,
+    ratios: tuple[float, float] = (0.2, 15.0),
+) -> dict[str, float]:
+    """Trace curves and compare them with thresholds on random lines, whose frequency ratio is between `ratios`."""
     curves = rocking.overturning_boundary(pulse, restitution=restitution, alpha=alpha, nodes=nodes)
     chords = Chords(curves)
     limits = curves.chord_error + 1.1 * END, curves.uncounted_chord_error + 1.1 * curves.end_distance
     thresholds = unlisted = few = crossings = wrong = 0
     widest = 0.0
     groups = {"restitution": restitution, "alpha": alpha}
-    for y in np.random.default_rng(1).uniform(np.log(0.2), np.log(15.0), lines):
+    for y in np.random.default_rng(1).uniform(*np.log(ratios), lines):
         omega = float(np.exp(y))
         on_line = rocking.thresholds(pulse, frequency_ratio=omega, **groups, highest=50.0)
         found = 1.0 / on_line.amplitude

@@ -75,7 +75,7 @@ def repaired(mesh: trimesh.Trimesh) -> RepairedMesh:
     low, high = _boxes(points[closed], body)
     groups = _groups(low[solid], high[solid])
     if groups > 1:
-        remarks.append(f"has {groups} solids apart from each other, which are taken as one body")
+        remarks.append(f"has {groups} separate solids, which are treated as one body")
     final = np.where(outwards[:, None], closed[:, ::-1], closed)[kept]
     found = trimesh.Trimesh(points, final, process=False)
     found.remove_unreferenced_vertices()

@@ -352,7 +352,7 @@ class RigidBody(RespondingBody):
         -----
         UserWarning
             If the mesh was repaired: flat holes filled, normals turned outwards, sheets beside the surface left out.
-            If it has solids apart from each other, which are taken as one body.
+            If it has separate solids, with gaps between them, which are treated as one body.
         """
         from rocking._dimensional.mesh import mesh_properties  # noqa: PLC0415  (trimesh is an extra)
 

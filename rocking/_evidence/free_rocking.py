@@ -47,9 +47,9 @@ MAX_ROTATION = 0.8  # largest rotation and alpha [rad]: beyond it a body hardly 
 DURATION = 1e-3, 1e5
 """Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
 
-LOWEST_FREQUENCY = (
-    0.1  # smallest p [rad/s], of a block 1 km wide and high: where it is lower, the times are not in seconds
-)
+LOWEST_FREQUENCY = 0.1
+"""Smallest p [rad/s], of a block 1 km wide and high: where it is lower, the times are not in seconds."""
+
 SHORTEST_STEP = 1e-7  # shortest step between samples [s]
 MIN_IMPACTS = 3  # fewest impacts from which eta, alpha and p are told apart [-]
 MAX_FLIGHTS = 200  # most flights that are fitted [-]

@@ -130,13 +130,13 @@ def test_a_thin_tongue_is_one_curve(alpha):
     ],
 )
 def test_every_threshold_lies_on_a_curve_and_every_crossing_is_a_threshold(pulse, alpha, restitution):
-    found = compare(pulse, alpha, nodes=201, lines=25, restitution=restitution)
+    found = compare(pulse, alpha, nodes=201, lines=25, restitution=restitution, ratios=(0.3, 10.0))
     assert found["crossings"] > 60
     assert found["wrong"] == 0
     # thresholds of regions that the nodes do not show: all after many impacts, narrower than the finer nodes are apart
     assert found["few"] == 0
     assert found["widest"] < 1.5e-3
-    assert found["unlisted"] <= (0.05 if restitution < 0.9 else 0.3) * found["crossings"]
+    assert found["unlisted"] <= (0.05 if restitution < 0.9 else 0.12) * found["crossings"]
 
 
 def test_a_curve_goes_on_to_the_edge_of_the_window():

@@ -85,7 +85,7 @@ def test_bodies_side_by_side_and_cavities_have_their_volumes(tmp_path: Path) -> 
     trimesh.util.concatenate([box(), other]).export(tmp_path / "pair.ply")
     with (
         pytest.warns(UserWarning, match="inconsistent normals: 192 of 384 faces were turned"),
-        pytest.warns(UserWarning, match="2 solids apart from each other, which are taken as one body"),
+        pytest.warns(UserWarning, match="2 separate solids, which are treated as one body"),
     ):
         pair = rocking.RigidBody.from_mesh(tmp_path / "pair.ply")
     assert float(pair.width) == pytest.approx(1.4)
