@@ -12,21 +12,18 @@ from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
+from rocking_api.extension import extensions
 from rocking_api.http.errors import RESPONSES, Problem, add_handlers
 from rocking_api.http.openapi import describe
 from rocking_api.http.request_log import RequestLog
 from rocking_api.models.answer import VERSION
 from rocking_api.models.bodies import BODIES
 from rocking_api.routers import (
-    assess,
     blocks,
     curves,
     datasets,
     guide,
     health,
-    identify,
-    object_page,
-    objects_page,
     overturning,
     pages,
     pulses,
@@ -41,7 +38,7 @@ LOG = logging.getLogger("rocking.service")
 
 ROUTES = (
     *(response, blocks, records, curves, overturning),
-    *(assess, identify, pulses, suites, objects_page, object_page),
+    *(pulses, suites),
     *(datasets, health, pages),
 )
 
@@ -84,6 +81,11 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     pages.add_error_pages(app)
     for module in ROUTES:
         app.include_router(module.router)
+    for extension in extensions():
+        for router in extension.routers:
+            app.include_router(router)
+        if extension.static is not None:
+            app.mount(f"/static/{extension.name}", pages.PageFiles(directory=extension.static))
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
     app.mount("/guide", guide.GuideFiles(settings.guide))
     describe(app, lambda: [Problem, *sorted(BODIES, key=lambda body: body.__name__)])

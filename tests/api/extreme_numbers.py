@@ -30,6 +30,7 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
+import rocking_assessment
 from typer.testing import CliRunner
 
 import rocking
@@ -89,8 +90,10 @@ TRACE = np.arange(81) * 0.05, free_rocking(np.array([0.1]), *np.array([0.25, 2.5
 
 WINDOWS: dict[str, Any] = {
     "rocking.SampledPulse": {"time": [0.0, 1.0, 2.0, 4.0]},
-    "rocking.calibrate": {"alpha": (0.1, 0.2), "half_diagonal": (0.5, 1.0), "restitution": (0.8, 0.9)},
-    "rocking.identify_free_rocking": dict(zip(("time", "rotation"), (trace.tolist() for trace in TRACE), strict=True)),
+    "rocking_assessment.calibrate": {"alpha": (0.1, 0.2), "half_diagonal": (0.5, 1.0), "restitution": (0.8, 0.9)},
+    "rocking_assessment.identify_free_rocking": dict(
+        zip(("time", "rotation"), (trace.tolist() for trace in TRACE), strict=True)
+    ),
     "rocking.overturning_boundary": {"frequency_ratio": (2.0, 3.0), "slenderness": (0.3, 0.6)},
     "rocking.Block.boundary": {"period": (0.5, 0.6)},
     "rocking.paper.overturning_interval": {"amplitude": (2.0, 4.0)},
@@ -103,10 +106,10 @@ FRAGILITY = rocking.fragility([RECORD, noise(2)], BLOCK, intensity=[2.0, 4.0, 8.
 OBJECTS: dict[str, Any] = {
     "pulse": "sine", "motion": "sine", "unit": "m/s2", "name": "mavroeidis_papageorgiou",
     "record": RECORD, "records": [RECORD, noise(2)], "outcomes": np.arange(4) > 1,
-    "blocks": BLOCK, "body": BLOCK, "objects": rocking.Object("vase", width=0.4, height=1.6),
+    "blocks": BLOCK, "body": BLOCK, "objects": rocking_assessment.Object("vase", width=0.4, height=1.6),
     "motions": [noise(k) for k in range(4)], "column": BLOCK,
     "target": Orientation.LZ, "factors": dict.fromkeys(("a_g/g", "alpha"), Orientation.LZ), "function": math.sin,
-    "fragility": FRAGILITY, "site": rocking.Site(pga=3.0, pgv=0.4), "argument": Orientation.L0,
+    "fragility": FRAGILITY, "site": rocking_assessment.Site(pga=3.0, pgv=0.4), "argument": Orientation.L0,
     "description": "rectangle(width=0.5m, height=2m)",
     "group_set": GroupSet.RIGID_SMALL_ROTATION, "problem": Problem(0.3, 2.0, 5.0, 10.0), "groups": Groups(5.0, 0.6),
 }  # fmt: skip
@@ -352,7 +355,11 @@ def main() -> None:
     warnings.filterwarnings("ignore", category=DeprecationWarning)
     walk = Walk(given.only, given.sample)
     with ExitStack() as stack:
-        for name in ("rocking_api.command.main", "rocking.plot.output.save_figure", "rocking._cli.assess._write"):
+        for name in (
+            "rocking_api.command.main",
+            "rocking.plot.output.save_figure",
+            "rocking_assessment._commands.assess._write",
+        ):
             stack.enter_context(patch(name))  # no server, and no files
         for name in ("POINTS", "ROWS"):
             stack.enter_context(patch(f"rocking._cli.plot.{name}", 20))

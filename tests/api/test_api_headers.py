@@ -10,8 +10,8 @@ import rocking_api
 from fastapi import Request
 from rocking_api.execution.executor import BusyError
 from rocking_api.http.encoding import negotiated_form
-from rocking_api.routers.object_page import EXAMPLES, SITE
 from rocking_api.routers.pages import PAGES
+from rocking_assessment.service.object_page import EXAMPLES, SITE
 
 from tests.api.conftest import POINT, assert_problem, client_of
 

@@ -25,13 +25,12 @@ from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND, IMPACTS
 from rocking_api.execution.evaluation import FIELDS, BatchResult
 from rocking_api.models.answer import Answer, url_of
 
-Form = Literal["json", "csv", "nc", "nrml"]
+Form = Literal["json", "csv", "nc"]
 
 MEDIA_TYPES: dict[Form, str] = {
     "json": "application/json",
     "csv": "text/csv",
     "nc": "application/x-netcdf",
-    "nrml": "application/xml",
 }
 
 TABLE_FORMS: tuple[Form, ...] = ("json", "csv")
@@ -58,8 +57,7 @@ def negotiated_form(
     """Format of the response.
 
     As requested, else the one that the Accept header prefers, of equal ones the first that it names; else the default,
-    which is the first that is offered unless stated. text/html means the default: browsers also name application/xml,
-    and must not get NRML.
+    which is the first that is offered unless stated. text/html means the default.
     """
     if requested is not None:
         return requested
@@ -70,7 +68,6 @@ def negotiated_form(
     if quality.get("text/html", 0.0) > 0.0:
         named.insert(0, MEDIA_TYPES[default])
         quality[named[0]] = quality["text/html"]
-        offered = [form for form in offered if form != "nrml"]
 
     def rank(form: Form) -> tuple[float, bool, int]:
         media = MEDIA_TYPES[form]
@@ -103,9 +100,8 @@ def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
 
 
 def text_response(text: str, name: str, form: Form = "csv", headers: Mapping[str, str] | None = None) -> Response:
-    """A text as a file: that of `csv_text`, or XML."""
-    suffix = "xml" if form == "nrml" else form
-    return Response(text, media_type=MEDIA_TYPES[form], headers={**_file(f"{name}.{suffix}"), **(headers or {})})
+    """Return the text of `csv_text` as a file."""
+    return Response(text, media_type=MEDIA_TYPES[form], headers={**_file(f"{name}.{form}"), **(headers or {})})
 
 
 def columns_as_they_are(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Column]:

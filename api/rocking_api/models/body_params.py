@@ -10,7 +10,7 @@ import rocking._base.quantities as quantities
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.body import RespondingBody
-from rocking._dimensional.body_kinds import WITHOUT_FILES as KINDS
+from rocking._dimensional.body_kinds import BODIES as KINDS
 from rocking._dimensional.body_kinds import described, signatures
 from rocking_api.models import quantity as q
 from rocking_api.models.params import Params
@@ -29,7 +29,7 @@ Points = Annotated[
 ]
 _SAID = q.said(
     "a body of any kind, with its parameters in brackets, such as hollow(width=40cm, height=1.6m, wall=2cm), or the "
-    f"kind of the parameters beside it: {signatures(KINDS).replace('[', '(').replace(']', ')')}",
+    f"kind of the parameters beside it: {signatures().replace('[', '(').replace(']', ')')}",
     None,
 )
 
@@ -62,7 +62,7 @@ class BodyDescription(Params):
 
 
 def _as_text(given: BodyDescription) -> str:
-    kind, parameters = described(given.kind, given.model_dump(exclude_none=True, exclude={"kind"}), KINDS)
+    kind, parameters = described(given.kind, given.model_dump(exclude_none=True, exclude={"kind"}))
     stated = (f"{name}={value} {kind.fields[name].unit.strip('-')}" for name, value in kind.read(parameters).items())
     return f"{kind.name}({', '.join(one.strip() for one in stated)})"
 
@@ -83,7 +83,7 @@ class BodyShape(Params):
         if self.body is None and given.keys() < EXAMPLES.keys():
             missing = next(name for name in EXAMPLES if name not in given)
             raise InvalidArgumentError(missing, None, "required, or the parameters of another kind, or `body`")
-        kind, parameters = described(self.body, given, KINDS)
+        kind, parameters = described(self.body, given)
         if "gravity" in kind.fields or gravity != STANDARD_GRAVITY:
             parameters.setdefault("gravity", gravity)
         if "restitution" in kind.fields and isinstance(restitution, float):

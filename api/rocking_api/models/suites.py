@@ -23,10 +23,9 @@ _UNIT = said("unit of the measure, as CF writes it")
 class SuiteParams(Params):
     """The format of the fragility of a suite."""
 
-    format: Literal["json", "csv", "nrml"] | None = said(
-        "format of the response; absent: by the Accept header, else JSON (nrml: of OpenQuake)", None
+    format: Literal["json", "csv"] | None = said(
+        "format of the response; absent: by the Accept header, else JSON", None
     )
-    curves: Literal["discrete", "lognormal"] = said("NRML holds fractions at the levels, or fitted curves", "discrete")
 
 
 class SuiteSummary(BaseModel):
@@ -69,7 +68,6 @@ class FragilityCurve(BaseModel):
     model: str = said("lognormal or logistic (log-logistic)")
     fit_status: str = said("FITTED, or why the outcomes determine no curve")
     fit_meaning: str = said("the status in words")
-    annual_rate: float | None = said("annual rate of reaching it [1/year]; null without a hazard curve", None)
     fitted: list[float | None] = said("probability at each level [-]")
 
 

@@ -32,7 +32,7 @@ async def get_suites(params: Annotated[ListParams, Query()], request: Request, s
     "/{name}",
     summary="Fragility of the blocks",
     response_model=SuiteResponse,
-    responses={200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nrml"]: {}}}},
+    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
 )
 async def get_suite(
     name: SuiteName, params: Annotated[SuiteParams, Query()], request: Request, service: ServiceDep
@@ -40,12 +40,11 @@ async def get_suite(
     """Counts with intervals and fitted curves of each block and limit state, margins of each record, rotations.
 
     If the suite asks for it, also friction demand, and the effect of restitution and sampling. The data sets of the
-    suite are under `links`. CSV has a row for each limit state, block and level. NRML is the fragility model of
-    OpenQuake with the limit states rocks and overturns, for suites with the measure PGA or PGV.
+    suite are under `links`. CSV has a row for each limit state, block and level.
     """
-    form = negotiated_form(request, params.format, ("json", "csv", "nrml"))
+    form = negotiated_form(request, params.format, ("json", "csv"))
     if form == "json":
         found = await service.run_io(partial(service.suites.suite, name, params))
         return json_response(found, request, {"Cache-Control": REVALIDATE})
-    text = await service.run_io(partial(service.suites.text, name, form, params.curves))
+    text = await service.run_io(partial(service.suites.csv, name))
     return text_response(text, name, form, {"Cache-Control": REVALIDATE})
