@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from rocking._assessment.site import Motion, Site
 from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import integer
+from rocking._base.output_file import write_output
 from rocking._boundary.scan import RESOLUTION
 from rocking._datasets.csv_text import csv_text
 from rocking._datasets.xlsx import xlsx_bytes
@@ -191,7 +191,7 @@ class Assessment(EqualByValue):
         """
         text = csv_text(self._columns_with(bad_rows))
         if path is not None:
-            Path(path).write_text(text, encoding="utf-8", newline="")
+            write_output(path, text)
         return text
 
     def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
@@ -199,7 +199,7 @@ class Assessment(EqualByValue):
         columns = self._columns_with(bad_rows)
         raw = xlsx_bytes(columns | {label: numbers_of(columns[label]) for label in self.details if label in columns})
         if path is not None:
-            Path(path).write_bytes(raw)
+            write_output(path, raw)
         return raw
 
     def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:

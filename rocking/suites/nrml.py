@@ -20,6 +20,7 @@ import xarray as xr
 from rocking._base.arrays import Array, Flags
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, one_of
+from rocking._base.output_file import write_output
 from rocking.suites.curve import curve_probability
 from rocking.suites.fits import FitStatus, fit_curve
 from rocking.suites.table import with_block
@@ -100,7 +101,11 @@ def write_nrml(
             deviation = mean * math.sqrt(math.expm1(beta**2))
             ET.SubElement(function, "params", ls=state, mean=f"{mean:.9g}", stddev=f"{deviation:.9g}")
     ET.indent(root)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    content = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    if isinstance(path, str | PathLike):
+        write_output(path, content)
+    else:
+        path.write(content)
 
 
 def checked_measure(fragility: xr.Dataset, known: Mapping[str, object]) -> str:

@@ -7,12 +7,12 @@ whether it is taken along a direction, and for each limit state the family, medi
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from rocking._base.constants import STANDARD_GRAVITY
+from rocking._base.output_file import write_output
 from rocking._datasets.csv_text import csv_text
 from rocking.suites.nrml import checked_measure, lognormal_of, reached_states
 
@@ -56,4 +56,4 @@ def write_pelicun(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
         columns[f"LS{k}-Family"] = ["lognormal"] * len(blocks)
         columns[f"LS{k}-Theta_0"] = [median / in_si for median, _ in fits]
         columns[f"LS{k}-Theta_1"] = [dispersion for _, dispersion in fits]
-    Path(path).write_text(csv_text(columns), encoding="utf-8")
+    write_output(path, csv_text(columns))
