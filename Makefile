@@ -118,21 +118,31 @@ oldest newest: $(UV)
 	echo "$@: $$(tail -n 1 build/$@.log) $$(grep -E '^(FAILED|ERROR) ' build/$@.log | cut -d ' ' -f 2 | tr '\n' ' ')"; \
 	exit $$status
 
-wheel: $(UV) ## build dist/, check its metadata, install the wheel into an empty environment and ask one question
+# The tools of a release, the build tool of the wheel among them, have the hashes of deploy/release.lock.
+build/release/release.lock: deploy/release.lock | $(UV)
+	$(UV) venv --quiet --clear --python $(PYTHON) build/release
+	$(UV) pip install --quiet --python build/release --require-hashes --requirement $<
+	cp $< $@
+
+wheel: build/release/release.lock ## build dist/ with an SBOM of the locked service, check its metadata, install the wheel and ask one question
 	rm -rf dist
-	$(UV) build --quiet --out-dir dist
-	$(UV) tool run --quiet twine check --strict dist/*
-	$(UV) run --quiet --isolated --no-project --python $(PYTHON) --with dist/*.whl \
-	    rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
+	$(UV) build --quiet --python $(PYTHON) --build-constraints deploy/release.lock --require-hashes --out-dir dist
+	build/release/bin/twine check --strict dist/*
+	build/release/bin/cyclonedx-py requirements deploy/service.lock --pyproject pyproject.toml --mc-type library \
+	    --output-reproducible --output-file dist/rocking.cdx.json
+	$(UV) venv --quiet --clear --python $(PYTHON) build/wheel
+	$(UV) pip install --quiet --python build/wheel --constraint deploy/service.lock dist/*.whl # checks the hashes, too
+	build/wheel/bin/rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
 
 # Extras `seismic` and `slurm` are optional: they are not locked.
 LOCKED := service plot mesh sheets dask workflow docs dev
 
-RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
+RESOLVE = $(UV) pip compile --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
 
-lock: $(UV) ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, deploy/service.lock
-	$(RESOLVE) $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
-	$(RESOLVE) --extra service --constraint environment.lock --output-file deploy/service.lock
+lock: $(UV) ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, the locks of deploy/
+	$(RESOLVE) pyproject.toml $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
+	$(RESOLVE) pyproject.toml --extra service --constraint environment.lock --output-file deploy/service.lock
+	$(RESOLVE) --group release --constraint environment.lock $(UPGRADE) --output-file deploy/release.lock
 
 environment: .venv/project ## make the environment .venv and compile the kernels
 	@:
@@ -150,7 +160,8 @@ build/uv/bin/uv:
 	@test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; use make PYTHON=/path/to/python3.11' >&2; exit 1; }
 	@$(PYTHON) -m venv --clear build/uv || { \
 	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
-	@build/uv/bin/pip install --quiet uv
+	@sed -n '/^uv==/,/[^\\]$$/p' deploy/release.lock >build/uv/uv.lock
+	@build/uv/bin/pip install --quiet --require-hashes --requirement build/uv/uv.lock
 
 # No isolation: packages without a wheel are built with the pinned build tool, which is installed first; with isolation
 # an unpinned one would be fetched.
