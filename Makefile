@@ -99,7 +99,7 @@ mutants: build/mutants.sqlite ## mutation test of the last commit: change single
 	build/cosmic-ray/bin/cosmic-ray exec stress/mutants.toml $<
 	build/cosmic-ray/bin/cr-report --surviving-only --show-diff $<
 
-oldest: ## run the solver's tests with the lowest versions that pyproject.toml allows (PYTHON=3.12: another Python)
+oldest: ## run the solver's tests, and one question to each interface, with the lowest versions that pyproject.toml allows (PYTHON=3.12)
 newest: ## the same with the newest versions (PRERELEASE=allow: pre-releases, too)
 
 # The environments are made below build/; the tools of the tests are the newest. The last line says what failed.
@@ -107,14 +107,17 @@ oldest: RESOLUTION := lowest-direct
 # what our requirements require is the newest there, too, and may deprecate what their old versions call
 oldest: WARNINGS := -W default::DeprecationWarning
 newest: RESOLUTION := highest
+# the extras of those who use the package, not of those who work on it
+USED := service plot mesh sheets dask workflow
 oldest newest: $(UV)
 	$(UV) venv --quiet --clear --python $(PYTHON) build/$@
-	$(UV) pip compile pyproject.toml --extra service --python $(PYTHON) --resolution $(RESOLUTION) \
+	$(UV) pip compile pyproject.toml $(USED:%=--extra %) --python $(PYTHON) --resolution $(RESOLUTION) \
 	    --prerelease $(or $(PRERELEASE),if-necessary-or-explicit) --no-annotate --no-header --quiet --output-file build/$@.txt
 	$(UV) pip install --quiet --python build/$@ --requirement build/$@.txt pytest hypothesis mpmath python-flint
 	$(UV) pip install --quiet --python build/$@ --no-deps --editable .
 	@export VIRTUAL_ENV=build/$@ NUMBA_CACHE_DIR='$(CURDIR)/build/$@/kernels'; \
-	$(UV) run --no-project python -m pytest -q $(WARNINGS) tests/solver >build/$@.log 2>&1; status=$$?; \
+	$(UV) run --no-project python -m rocking.precompile && \
+	$(UV) run --no-project python -m pytest -q $(WARNINGS) tests/interfaces.py tests/solver >build/$@.log 2>&1; status=$$?; \
 	echo "$@: $$(tail -n 1 build/$@.log) $$(grep -E '^(FAILED|ERROR) ' build/$@.log | cut -d ' ' -f 2 | tr '\n' ' ')"; \
 	exit $$status
 
