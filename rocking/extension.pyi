@@ -18,6 +18,8 @@ from ._base.errors import one_of as one_of
 from ._base.errors import plain_numbers as plain_numbers
 from ._base.errors import positive as positive
 from ._base.extras import require_extra as require_extra
+from ._base.output_file import output_errors as output_errors
+from ._base.output_file import write_output as write_output
 from ._base.quantities import DEPTH as DEPTH
 from ._base.quantities import DIAMETER as DIAMETER
 from ._base.quantities import FREQUENCY_PARAMETER as FREQUENCY_PARAMETER

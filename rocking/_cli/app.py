@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import atexit
 import gc
+import os
 import sys
+from contextlib import suppress
 from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any
 
@@ -74,7 +76,9 @@ class Commands(TyperGroup):
             return super().main(*args, **extra)
         extra["standalone_mode"] = False
         try:
-            sys.exit(super().main(*args, **extra) or 0)
+            status = super().main(*args, **extra) or 0
+            sys.stdout.flush()
+            sys.exit(status)
         except UsageError as error:
             command = error.ctx.command_path if error.ctx else "rocking"
             message = error.format_message().replace("Value error, ", "")  # what newer versions of typer put before it
@@ -84,14 +88,26 @@ class Commands(TyperGroup):
         except ImportError as error:  # a package of an extra
             typer.echo(f"rocking: {error}", err=True)
             sys.exit(1)
+        except OSError as error:  # commands convert the errors of the files that they read and write
+            _discard_output()
+            if not isinstance(error, BrokenPipeError):  # a reader that has enough needs no message
+                typer.echo(f"rocking: {error.filename or 'standard output'}: {error.strerror or error}", err=True)
+            sys.exit(1)
+
+
+def _discard_output() -> None:
+    """Send what standard output still holds to nowhere; at the end Python would try to write it, and fail again."""
+    with suppress(OSError, ValueError):  # standard output without a file
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
 
 
 app = typer.Typer(
     cls=Commands,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    epilog="Exit codes: 0 done; 1 a package is missing, or the output was closed; 2 an argument, a file or a row of a "
-    "table is not allowed; 130 interrupted.",
+    epilog="Exit codes: 0 done; 1 a package is missing, or the output was closed or could not be written; 2 an "
+    "argument, a file or a row of a table is not allowed; 130 interrupted.",
 )
 
 

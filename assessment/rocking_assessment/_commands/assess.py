@@ -137,11 +137,13 @@ def assess(
         InvalidArgumentError,
         file_errors,
         option_errors,
+        output_errors,
         output_format,
         plain_numbers,
         printable,
         progress,
         split_pulses,
+        write_output,
     )
     from rocking_assessment._hazard.curve_files import read_hazard
     from rocking_assessment._objects.assess import assess as assess_objects
@@ -196,13 +198,16 @@ def assess(
             )
         if output is not None:
             is_xlsx = Path(output).suffix.lower() == ".xlsx"
-            _write("output", output, (found.to_xlsx if is_xlsx else found.to_csv)(bad_rows=table.bad_rows))
+            write_table = found.to_xlsx if is_xlsx else found.to_csv
+            with output_errors("output", output):
+                write_table(output, bad_rows=table.bad_rows)
         if report is not None:
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
             text = report_html(found, project, table.bad_rows, table.reading, detailed=detail == "all")
-            _write("report", report, text)
+            with output_errors("report", report):
+                write_output(report, text)
     _print(found, kind, table, bad, directions)
     if kind.kind == "table" and table.reading:
         typer.echo(printable(table.reading))
@@ -242,16 +247,6 @@ def _read(
             raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
         found.append((read(first, next(up, None)), read(second)))
     return found
-
-
-def _write(option: str, path: str, content: str | bytes) -> None:
-    """Write a file."""
-    from rocking.extension import InvalidArgumentError
-
-    try:
-        Path(path).write_bytes(content.encode() if isinstance(content, str) else content)
-    except OSError as error:
-        raise InvalidArgumentError(option, path, f"a file that can be written ({error.strerror})") from None
 
 
 def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], directions: bool) -> None:

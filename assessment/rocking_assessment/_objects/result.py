@@ -6,13 +6,22 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.extension import RESOLUTION, Array, BadRow, EqualByValue, StopFlag, csv_text, integer, numbers_of
+from rocking.extension import (
+    RESOLUTION,
+    Array,
+    BadRow,
+    EqualByValue,
+    StopFlag,
+    csv_text,
+    integer,
+    numbers_of,
+    write_output,
+)
 from rocking_assessment._objects.columns import OUTPUTS, VERDICTS
 from rocking_assessment._objects.directions import factors_by_direction
 from rocking_assessment._objects.motions import frictions_of, history_of
@@ -185,7 +194,7 @@ class Assessment(EqualByValue):
         """
         text = csv_text(self._columns_with(bad_rows))
         if path is not None:
-            Path(path).write_text(text, encoding="utf-8", newline="")
+            write_output(path, text)
         return text
 
     def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
@@ -193,7 +202,7 @@ class Assessment(EqualByValue):
         columns = self._columns_with(bad_rows)
         raw = xlsx_bytes(columns | {label: numbers_of(columns[label]) for label in self.details if label in columns})
         if path is not None:
-            Path(path).write_bytes(raw)
+            write_output(path, raw)
         return raw
 
     def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:
