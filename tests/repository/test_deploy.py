@@ -46,7 +46,7 @@ def serve_arguments(command):
     """The options of a command line `.../rocking serve ...`, as the command itself reads them."""
     assert command[0] == "/opt/rocking/bin/rocking"
     assert command[1] == "serve"
-    serve = typer.main.get_command(app).commands["serve"]
+    serve = typer.main.get_command(app).get_command(None, "serve")
     return serve.make_context("serve", command[2:], resilient_parsing=False).params
 
 
