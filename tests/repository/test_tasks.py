@@ -53,6 +53,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def perform(path: Path, step: re.Match[str]) -> None:
     if step["how"] == "New file":
         assert not path.exists(), path
+        path.parent.mkdir(exist_ok=True)
         path.write_text(step["text"])
         return
     before, line, after = path.read_text().partition(f"\n{step['line']}\n")
