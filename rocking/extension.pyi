@@ -82,6 +82,8 @@ from ._dimensional.body_kinds import described as described
 from ._dimensional.lowest_thresholds import lowest_thresholds as lowest_thresholds
 from ._dimensional.problem import Problem as Problem
 from ._dimensional.problem import checked_restitution as checked_restitution
+from ._dimensional.problem import restitution_of as restitution_of
+from ._dimensional.problem import search_range as search_range
 from ._dimensional.response import respond as respond
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._dimensional.table_header import Schema as Schema
@@ -99,6 +101,7 @@ from ._dimensional.table_reader import read_csv as read_csv
 from ._dimensional.table_reader import read_file as read_file
 from ._dimensional.table_reader import rows_of_csv as rows_of_csv
 from ._dimensional.table_reader import text_of as text_of
+from ._dimensional.thresholds import block_lines as block_lines
 from ._dimensional.thresholds import overturning_scale as overturning_scale
 from ._excitation.impulse import impulse_of as impulse_of
 from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES
