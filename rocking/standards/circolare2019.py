@@ -112,7 +112,8 @@ def circolare2019_capacity(
     rigid = STANDARD_GRAVITY * arm / (np.sqrt(b * b + h * h - arm * arm) * factor)  # (C8.7.1.3), (C8.7.1.4)
     free_to_vibrate = period > 0.0
     elastic = d * (2.0 * math.pi / np.where(free_to_vibrate, period, 1.0)) ** 2  # (C8.7.1.6)
-    return np.where(free_to_vibrate, np.minimum(rigid, elastic), rigid)
+    curve: Array = np.where(free_to_vibrate, np.minimum(rigid, elastic), rigid)
+    return curve
 
 
 def circolare2019_displacement_capacity(half_width: ArrayLike, limit_state: LimitState = "SLV") -> Array:
