@@ -19,7 +19,7 @@ from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag
 from rocking.standards.circolare2019 import DAMPING
 
-PERIODS = 0.05 * 1.05 ** np.arange(160)
+PERIODS: Array = 0.05 * 1.05 ** np.arange(160, dtype=np.float64)
 """Periods [s] at which the largest spectral displacement up to T_SLV is looked for, beside T_SLV: up to 117 s."""
 
 
@@ -61,14 +61,16 @@ def _ishiyama(motion: Motion, b: Array, h: Array, r: Array, stop: StopFlag | Non
     """The smaller one of PGA and PGV over their bounds."""
     record, scale = _scaled(motion)
     pgv = scale * np.abs(velocity(record.acceleration, record.time_step)).max()
-    return np.minimum(_static(motion, b, h, r, stop), pgv / standards.ishiyama_velocity(b, h, r))
+    ratio: Array = np.minimum(_static(motion, b, h, r, stop), pgv / standards.ishiyama_velocity(b, h, r))
+    return ratio
 
 
 def _asce43(motion: Motion, b: Array, h: Array, r: Array, stop: StopFlag | None) -> Array:
     """Spectral demand over capacity at alpha, at most PGA over g b/h."""
     record, scale = _scaled(motion)
     spectral = np.array([scale * _at_alpha(record, *dimensions, stop) for dimensions in zip(b, h, r, strict=True)])
-    return np.minimum(_static(motion, b, h, r, stop), spectral)
+    ratio: Array = np.minimum(_static(motion, b, h, r, stop), spectral)
+    return ratio
 
 
 def _circolare_linear(motion: Motion, b: Array, h: Array, r: Array, stop: StopFlag | None) -> Array:
@@ -93,8 +95,9 @@ def _circolare2019_nonlinear(motion: Motion, b: Array, h: Array, r: Array, stop:
     below = np.searchsorted(PERIODS, longest, side="right")  # number of periods up to that of each body
     largest = np.maximum.accumulate([0.0, *_displacements(record, PERIODS[: below.max()], stop)])
     demand = np.maximum(at_end, largest[below])
-    ratio = scale * demand / standards.circolare2019_displacement_capacity(b)
-    return np.minimum(_static(motion, b, h, r, stop), ratio)
+    in_displacements = scale * demand / standards.circolare2019_displacement_capacity(b)
+    ratio: Array = np.minimum(_static(motion, b, h, r, stop), in_displacements)
+    return ratio
 
 
 def _displacements(record: Record, periods: Array, stop: StopFlag | None) -> Array:
