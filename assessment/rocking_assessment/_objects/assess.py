@@ -74,7 +74,7 @@ def assess(
         Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1].
     standards : str or iterable of str
         Checks by standards to state beside the exact outcome, as demand over capacity: "static", "ishiyama", "asce43",
-        "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
+        "circolare_linear", "circolare_nonlinear", "circolare2019_nonlinear", separated by commas in one text, or "all".
     stop : StopFlag, optional
         Cancels the work, which then raises `StoppedError`.
     progress : callable, optional

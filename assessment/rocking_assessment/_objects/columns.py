@@ -44,11 +44,15 @@ CLAUSES = {
     "static": "static check: PGA over g b/h",
     "ishiyama": "Ishiyama (1982): PGA and PGV over their lower bounds, the smaller ratio",
     "asce43": "ASCE 43-05 A.2, best estimate: spectral demand over capacity at alpha, at most PGA over g b/h",
-    "circolare_linear": "Circolare 2009 C8A.4.2.3, linear kinematic check with q = 2: PGA/q over g b/h",
+    "circolare_linear":
+        "Circolare 2009 C8A.4.2.3 and 2019 C8.7.1.2.1.7, linear kinematic check with q = 2: PGA/q over g b/h",
     "circolare_nonlinear": "Circolare 2009 C8A.4.2.3, nonlinear kinematic check: S_De(T_s) over 0.4 b",
-}
+    "circolare2019_nonlinear":
+        "Circolare 2019 C8.7.1.2.1.8, check of SLV in displacements: largest S_De up to T_SLV over 0.4 b, at most PGA "
+        "over g b/h",
+}  # fmt: skip
 """Checks by standards and their demand over capacity; a body passes below 1. Spectra are those of the motion of the
-ground, or of the floor on which the body stands."""
+ground, or of the floor on which the body stands; by the Circolare a body on a floor passes under both."""
 
 OUTPUTS = (
     Quantity("object", "", "name of the object"),
