@@ -3,8 +3,9 @@
 The text was not seen: formulas after secondary sources, by section and not by equation number; compare them with it
 before use. For one block the mass ratio e* is 1, the multiplier of collapse b/h, and the horizontal displacement of the
 centre of mass at which the block is in equilibrium without a force is d_0 = b. A block on a floor passes the check at
-the ground as well: demands on floors are at least those of the ground. `rocking_assessment.standards.circolare2019` has the
-Circolare of 2019, which changes periods and limits. Arguments that all clauses share: `rocking_assessment.standards`.
+the ground as well: demands on floors are at least those of the ground. The Circolare of 2019, in
+`rocking_assessment.standards.circolare2019`, changes periods and limits. Arguments that all clauses share:
+`rocking_assessment.standards`.
 
 References
 ----------
