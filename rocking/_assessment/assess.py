@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._assessment.columns import CLOSE, OUTPUTS, VERDICTS
+from rocking._assessment.columns import CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, VERDICTS
 from rocking._assessment.motions import first_exceedances
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.result import Assessment
@@ -84,8 +84,10 @@ def assess(
 
     Notes
     -----
-    One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
-    to 1. `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
+    One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at full
+    strength, a factor of 1, or at a lower factor. An object can come to rest at full strength although a lower factor
+    overturns it; `overturned_at_full_strength` and `share_at_full_strength` have the outcome at factor 1 alone.
+    `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
     between the factors tried can be missed. Under pulses this distance is 0.05 to 0.23 %. Under records, and pulses on
     a floor, it is at most `resolution`, down to a 4096th of it where the object may overturn
     (`rocking._boundary.scan.lowest_overturning`). For changed objects and samples it is four times as large. The sizes
@@ -108,12 +110,12 @@ def assess(
     motions, bodies = site.find_motions(stop), Bodies.of(given)
     body = bodies.scaled()
     factors = factors_of(body, motions, stop, advance, resolution=share_apart)
-    overturned, rotation, displacement = responses_of(body, motions, stop)
-    factors = np.fmin(factors, np.where(overturned, 1.0, np.nan))  # of an object beyond the range of the search
-    overturned |= factors <= 1.0
+    at_full_strength, rotation, displacement = responses_of(body, motions, stop)
+    factors = np.fmin(factors, np.where(at_full_strength, 1.0, np.nan))  # of an object beyond the range of the search
+    overturned = at_full_strength | (factors <= 1.0)
     rotation[overturned] = displacement[overturned] = np.nan
     uplift = np.asarray(body.uplift_acceleration)
-    events = _by_event(overturned, motions)
+    events, full_events = _by_event(overturned, motions), _by_event(at_full_strength, motions)
     share = events.mean(axis=1)
     uplifts = (np.nan_to_num(rotation) > 0.0).any(axis=1) | (share > 0.0)
     factor = least(factors)
@@ -132,7 +134,9 @@ def assess(
             for own, lowest in zip(factors, factor, strict=True)
         ],
         "overturned_by": ["; ".join(names[own]) for own in overturned],
+        "overturned_at_full_strength": ["; ".join(names[hits]) for hits in at_full_strength],
         "share": share,
+        "share_at_full_strength": full_events.mean(axis=1),
         "share_lower": low,
         "share_upper": high,
         "rotation": -least(-rotation),
@@ -234,6 +238,8 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
             texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
+        if columns["share_at_full_strength"][k] < columns["share"][k]:
+            texts.append(f"{RESTS_AT_FULL_STRENGTH}: it overturns from factor {factor:.3g}")
         if math.isfinite(columns["slides_at"][k]):
             when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"

@@ -40,9 +40,12 @@ OUTPUTS = (
     Quantity("uplift_acceleration", "m/s2", "peak acceleration above which it uplifts"),
     Quantity("factor", "-", "lowest factor tried at which a motion of the site overturns it"),
     Quantity("governing", "", "motion that overturns it at that factor"),
-    Quantity("overturned_by", "", "motions that overturn it at the strength of the site or below"),
+    Quantity("overturned_by", "", "motions that overturn it, at full strength or only at a lower factor"),
+    Quantity("overturned_at_full_strength", "", "those of them that overturn it at full strength, a factor of 1"),
     Quantity("share", "-",
-        "share of the motions of the site that overturn it at a factor up to 1; a pair of components counts once"),
+        "share of the motions of the site that overturn it, at full strength or only at a lower factor; a pair of "
+        "components counts once"),
+    Quantity("share_at_full_strength", "-", "share of them that overturn it at full strength, a factor of 1"),
     Quantity("share_lower", "-", "lower end of the 95 % interval of the share, for records"),
     Quantity("share_upper", "-", "upper end of that interval"),
     Quantity("rotation", "rad", "largest rotation under the motions that do not overturn it"),
@@ -78,3 +81,6 @@ OUTPUTS = (
 
 VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")  # from the best to the worst
 CLOSE = 0.2  # distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better
+
+RESTS_AT_FULL_STRENGTH = "comes to rest at full strength under a motion that overturns it at a lower factor"
+"""Beginning of the warning of an object whose outcome at a factor of 1 differs from that at a lower factor."""

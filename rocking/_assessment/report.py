@@ -16,7 +16,16 @@ from rocking._assessment.columns import CLAUSES, VERDICTS
 from rocking._assessment.motions import envelope_of, frictions_of
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
-from rocking._assessment.summary import Line, lines_of, names_in_short, number_header, number_of, text_of, warnings_of
+from rocking._assessment.summary import (
+    Line,
+    counts_of,
+    lines_of,
+    names_in_short,
+    number_header,
+    number_of,
+    text_of,
+    warnings_of,
+)
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.version import __version__
 from rocking._dimensional.table_reader import BadRow
@@ -87,6 +96,7 @@ def report_html(
         lines=lines,
         clauses=CLAUSES,
         counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
+        full_strength=counts_of(lines),
         worst=_worst(lines),
         tables=tables,
         number=number,

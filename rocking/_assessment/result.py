@@ -65,6 +65,11 @@ class Assessment(EqualByValue):
     resolution: float = 0.0
 
     @property
+    def events(self) -> int:
+        """Number of motions of the site, a pair of components as one [-]."""
+        return len({motion.group for motion in self.site.motions})
+
+    @property
     def rows(self) -> list[dict[str, Any]]:
         """The rows, each by the names of the columns; a number or answer that is not known is None."""
         columns = [[None if value != value else value for value in column.tolist()] for column in self.columns.values()]
@@ -158,7 +163,8 @@ class Assessment(EqualByValue):
         -------
         xarray.Dataset
             Over `direction` [degrees]: `factor`, nan where none up to `highest_factor` overturns it; `along`, the
-            direction across a side along which the component of the motion does [degrees]; `governing`, the motion.
+            direction across a side along which the component of the motion does [degrees]; `governing`, the motion;
+            `at_full_strength`, whether a motion overturns it at a factor of 1.
         """
         row = integer("row", row, 0, len(self.objects) - 1)
         one = self.objects[row]
@@ -220,6 +226,8 @@ class Assessment(EqualByValue):
             return f"{head}none>"
         margin = f"up to {self.highest_factor:g}" if worst["factor"] is None else f"from {worst['factor']:.3g}"
         how = "not overturned" if worst["factor"] is None else "overturned"
+        rests = worst["share"] > worst["share_at_full_strength"] == 0.0
+        full = ", at full strength it comes to rest" if rests else ""
         apart = f"; factors at most {100.0 * self.resolution:g} % apart were tried" if self.resolution else ""
         named = f"{worst['object']}, {worst['direction']}"
-        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{apart}>"
+        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{full}{apart}>"

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, VERDICTS
+from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, VERDICTS
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
 from rocking._base.cells import named, plain_name
@@ -20,7 +20,13 @@ SMALL = {"m": 0.05, "rad": 0.05}  # numbers in such a unit below which they are 
 
 WITHIN = "within 20 %"
 
-DETAILED = (WITHIN, "slides before it rocks", "may slide while it rocks", "the hazard curve does not")
+DETAILED = (
+    WITHIN,
+    RESTS_AT_FULL_STRENGTH,
+    "slides before it rocks",
+    "may slide while it rocks",
+    "the hazard curve does not",
+)
 """Beginnings of warnings whose numbers, behind a colon, differ from object to object."""
 
 LONGEST = 40  # characters of a name on a screen, and in a warning [-]
@@ -37,6 +43,7 @@ class Line:
     values: dict[str, Any]  # that row, by the names of the columns
     pga: float | None  # peak ground acceleration from which it overturns [m/s2]
     base: float  # in this direction [m]
+    events: int  # motions of the site, a pair of components as one [-]
 
     @property
     def is_close(self) -> bool:
@@ -46,6 +53,13 @@ class Line:
     @property
     def overturns(self) -> bool:
         return VERDICTS.index(self.values["verdict"]) > VERDICTS.index("rocks")
+
+    @property
+    def at_full_strength(self) -> str:
+        """How many motions overturn it at full strength, and how many only at a lower factor."""
+        names = "share_at_full_strength", "share"
+        full, counted = (round(self.events * self.values[name]) for name in names)
+        return f"{full} of {self.events}" + (f", {counted - full} only below" if counted > full else "")
 
     @property
     def concerns(self) -> bool:
@@ -90,7 +104,7 @@ def lines_of(found: Assessment, *, directions: bool = False, only: Line | None =
             one, values = found.objects[k], all_values[k]
             ground = None if values["factor"] is None else motions[int(np.nanargmin(found.factors[k]))].ground
             pga = None if ground is None else ground * values["factor"]
-            lines.append(Line(one, rows, k, values, pga, one.planes[values["direction"]].base))
+            lines.append(Line(one, rows, k, values, pga, one.planes[values["direction"]].base, found.events))
     return lines
 
 
@@ -136,6 +150,7 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
     return columns | {
         "verdict": column("verdict"),
         "overturns from factor": [top if one is None else rounded(one) for one in column("factor")],
+        "at full strength by": [one.at_full_strength for one in lines],
         "PGA [g]": [None if one.pga is None else rounded(one.pga, "m/s2") for one in lines],
         "governing motion": [one.replace("_", " ") or "-" for one in column("governing")],
         "moves by [cm]": ["overturns" if one is None else rounded(one, "m") for one in column("displacement")],
@@ -144,6 +159,13 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
         "what to do first": [one.first_step for one in lines],
         **clauses,
     }
+
+
+def counts_of(lines: Sequence[Line]) -> str:
+    """How many objects the motions overturn at full strength, and how many only at a lower factor, in words."""
+    overturned = [line.values["share_at_full_strength"] > 0.0 for line in lines if line.overturns]
+    full, below = sum(overturned), len(overturned) - sum(overturned)
+    return f"overturned at full strength: {full} of {len(lines)} objects; only at a lower factor: {below}"
 
 
 def rows_in_units(found: Assessment) -> dict[str, list[Any]]:

@@ -256,7 +256,7 @@ def _write(option: str, path: str, content: str | bytes) -> None:
 def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], directions: bool) -> None:
     """Print a line for each object, and below them each kind of warning with the objects to which it applies."""
     from rocking._assessment.columns import OUTPUTS
-    from rocking._assessment.summary import names_in_short, rows_in_units, table_of, warnings_of
+    from rocking._assessment.summary import counts_of, lines_of, names_in_short, rows_in_units, table_of, warnings_of
     from rocking._cli import printing
 
     columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
@@ -270,6 +270,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
         typer.echo(found.to_csv(), nl=False)
         return
     printing.print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
+    typer.echo(counts_of(lines_of(found)))
     if found.resolution:
         typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart")
     for text, names in warnings_of(found):

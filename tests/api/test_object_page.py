@@ -68,6 +68,8 @@ def test_factors_are_those_of_the_package_and_the_worst_is_marked(client):
     (worst,) = worst_directions(found)
     assert f"Worst direction: {worst:g}°" in re.search(r'id="worst">(.*?)<', text)[1]
     assert text.count('class="diamond"') == 1
+    full = found["at_full_strength"].sel(direction=worst).item()
+    assert ("overturns it at full strength" in text) == full
     assert "&lt;b&gt;bust&lt;/b&gt; at 0.3 g" in text
     assert "<b>" not in text
 

@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 
 import rocking
 from rocking._assessment.objects import Bodies
+from rocking._assessment.report import Project, report_html
 from rocking._assessment.search import factors_of, overturned_by
+from rocking._assessment.summary import counts_of, lines_of
 from rocking._boundary.scan import RELATIVE_ERROR
 from rocking.suites import annual_rate
 from tests.sampling import number, sample
@@ -144,3 +146,29 @@ def test_a_hazard_curve_that_does_not_reach_far_enough_bounds_the_rate(curve, bo
     alive = rocking.survival(found, curve, years=100.0).sel(model="lognormal").squeeze()
     assert alive["survival_upper"].item() == pytest.approx(np.exp(-100.0 * bounds[0]))
     assert alive["survival_lower"].item() == pytest.approx(np.exp(-100.0 * bounds[1]))
+
+
+def test_an_object_that_rests_at_full_strength_but_not_below_says_both() -> None:
+    """Rigid, alpha 0.2 rad, R 1 m, sine of 0.5 s: overturns from 2.16378 times the uplift, not from 6.20125 on."""
+    width, height = 2.0 * np.sin(0.2), 2.0 * np.cos(0.2)
+    uplift = 9.80665 * np.tan(0.2)
+    one = rocking.Object("block", width=width, depth=10.0, height=height)
+    site = rocking.Site(6.35 * uplift, periods=(0.5, 0.5), shapes=["sine"])
+    found = rocking.assess(one, site, sensitivity=False)
+    row = found.rows[0]
+    assert not rocking.Block(width, height).response("sine", peak_acceleration=6.35 * uplift, period=0.5).overturned
+    assert row["factor"] == pytest.approx(2.16378 / 6.35, rel=1e-5)
+    assert (row["share"], row["share_at_full_strength"]) == (1.0, 0.0)
+    assert (row["overturned_by"], row["overturned_at_full_strength"]) == ("sine, 0.5 s", "")
+    assert "comes to rest at full strength" in row["warnings"]
+    assert "at full strength it comes to rest" in repr(found)
+    (line,) = lines_of(found)
+    assert line.at_full_strength == "0 of 1, 1 only below"
+    assert counts_of([line]) == "overturned at full strength: 0 of 1 objects; only at a lower factor: 1"
+    around = found.directions()
+    assert not around["at_full_strength"].sel(direction=0).item()
+    assert around["factor"].sel(direction=0).item() == pytest.approx(row["factor"])
+    # at 30 degrees the component 5.5 of the motion overturns at full strength
+    assert around["at_full_strength"].sel(direction=30).item()
+    report = report_html(found, Project("title", "", "", "", ""))
+    assert "at full strength by 0 of 1, 1 only below" in report

@@ -20,7 +20,7 @@ from rocking._assessment.assess import assess
 from rocking._assessment.columns import VERDICTS
 from rocking._assessment.report import Project, report_html
 from rocking._assessment.result import Assessment
-from rocking._assessment.summary import lines_of, names_in_short, number_of, warnings_of
+from rocking._assessment.summary import counts_of, lines_of, names_in_short, number_of, warnings_of
 from rocking._assessment.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking._base.errors import InvalidArgumentError, plain_numbers
 from rocking._dimensional.table_reader import MARK, SHEETS, BadRow, delimiter_of, rows_of_csv, text_of
@@ -214,6 +214,7 @@ def _page(
     bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
     shown = {one.row for one in bad_rows}
     rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
+    lines = lines_of(found) if found else []
     text = html(
         "objects.html",
         "Which objects overturn?",
@@ -224,7 +225,8 @@ def _page(
         texts={number: row.rstrip("\r\n") for number, row in rows if number in shown},
         table=table,
         found=found,
-        lines=lines_of(found) if found else [],
+        lines=lines,
+        full_strength=counts_of(lines),
         warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
         own_of=lambda one: ", ".join(filter(None, (one.cells[label] for label in table.skipped))) if table else "",
         verdicts=VERDICTS,
