@@ -8,8 +8,9 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rocking._assessment.columns import CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, VERDICTS
+from rocking._assessment.columns import CLOSE, DEPTH_MISSING, OUTPUTS, RESTS_AT_FULL_STRENGTH
 from rocking._assessment.motions import first_exceedances
 from rocking._assessment.objects import Bodies, BodyArray, Object
 from rocking._assessment.result import Assessment
@@ -118,6 +119,7 @@ def assess(
     events, full_events = _by_event(overturned, motions), _by_event(at_full_strength, motions)
     share = events.mean(axis=1)
     uplifts = (np.nan_to_num(rotation) > 0.0).any(axis=1) | (share > 0.0)
+    no_depth = np.array([one.depth_is_missing for one in given for _ in one.planes])
     factor = least(factors)
     unknown = np.full(factor.size, np.nan)
     low, high = binomial_interval(events.sum(axis=1), events.shape[1], CONFIDENCE) if site.records else (unknown,) * 2
@@ -125,7 +127,7 @@ def assess(
     columns: dict[str, Any] = {
         "object": [one.name for one in given for _ in one.planes],
         "direction": [direction for one in given for direction in one.planes],
-        "verdict": np.array(VERDICTS)[np.where(share > 0.5, 3, np.where(share > 0.0, 2, uplifts.astype(int)))],
+        "verdict": _verdicts(share, uplifts, no_depth),
         "uplifts": uplifts,
         "uplift_acceleration": uplift,
         "factor": factor,
@@ -157,7 +159,7 @@ def assess(
             given, bodies, factors, motions, variants, chosen_seed, share_apart, stop
         )
     columns["warnings"] = _warnings(given, columns, record_doubts(site))
-    order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
+    order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), ~no_depth, -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]
     ordered = tuple(each[k] for k in order)
@@ -165,6 +167,13 @@ def assess(
     return Assessment(
         kept, tuple(names.tolist()), HIGHEST_FACTOR, ordered, factors[order], rotation[order], site, apart
     )
+
+
+def _verdicts(share: Array, uplifts: Flags, no_depth: Flags) -> NDArray[np.str_]:
+    """The verdict of each row: of `VERDICTS`, from the share of the motions that overturn it."""
+    survives = np.where(no_depth, DEPTH_MISSING, np.where(uplifts, "rocks", "stays"))
+    overturns = np.where(share > 0.5, "overturns in most", "overturns in some motions")
+    return np.where(share > 0.0, overturns, survives)
 
 
 def _by_event(overturned: Flags, motions: Sequence[Motion]) -> Flags:
@@ -248,8 +257,8 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
             texts.append("against a wall, whose forces are not part of the model: sliding is not assessed")
         elif columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
-        if one.width is not None and one.depth is None:
-            texts.append("no depth is given: only rocking along the width is assessed")
+        if one.depth_is_missing:
+            texts.append("no depth is given: only rocking along the width is assessed, measure the depth")
         if one.diameter is not None:
             texts.append("round base: the plane model leaves out wobbling and rolling")
         if (columns["factor_slenderer"][k] <= 1.0) != (columns["factor_stockier"][k] <= 1.0):

@@ -35,7 +35,9 @@ OUTPUTS = (
     Quantity("direction", "",
         "direction in which it rocks: width, depth, any (round base), the plane of an outline, or the angle from the x "
         "axis of a mesh"),
-    Quantity("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
+    Quantity("verdict", "",
+        "stays, rocks, depth missing (along its width alone it does not overturn), overturns in some motions or "
+        "overturns in most"),
     Quantity("uplifts", "bool", "whether a motion of the site makes it uplift"),
     Quantity("uplift_acceleration", "m/s2", "peak acceleration above which it uplifts"),
     Quantity("factor", "-", "lowest factor tried at which a motion of the site overturns it"),
@@ -79,7 +81,12 @@ OUTPUTS = (
     Quantity("warnings", "", "reasons to doubt the row"),
 )  # fmt: skip
 
-VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")  # from the best to the worst
+DEPTH_MISSING = "depth missing"
+"""Verdict of an object that does not overturn along its width, the only direction that is known."""
+
+VERDICTS = ("stays", "rocks", DEPTH_MISSING, "overturns in some motions", "overturns in most")
+"""From the best to the worst."""
+
 CLOSE = 0.2  # distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better
 
 RESTS_AT_FULL_STRENGTH = "comes to rest at full strength under a motion that overturns it at a lower factor"

@@ -220,6 +220,11 @@ class Object:
         return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
+    def depth_is_missing(self) -> bool:
+        """True if it has a width and no depth, so that only rocking along the width can be assessed."""
+        return self.width is not None and self.depth is None
+
+    @property
     def planes(self) -> dict[str, Plane]:
         """The planes in which it can rock, by name of the direction."""
         given: dict[str, Any] = vars(self)

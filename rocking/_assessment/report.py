@@ -33,7 +33,7 @@ from rocking._excitation.records.record import Record
 
 TEMPLATE = "report.html"
 
-COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
+COLOURS = ("#56b4e9", "#f0e442", "#cc79a7", "#e69f00", "#d55e00")
 """Colours of the verdicts; colour-blind people can tell them apart (Okabe and Ito 2008)."""
 
 WORST = 5  # objects that are drawn on the first page [-]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, VERDICTS
+from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
 from rocking._base.cells import named, plain_name
@@ -52,7 +52,7 @@ class Line:
 
     @property
     def overturns(self) -> bool:
-        return VERDICTS.index(self.values["verdict"]) > VERDICTS.index("rocks")
+        return bool(self.values["share"] > 0.0)
 
     @property
     def at_full_strength(self) -> str:
@@ -75,6 +75,12 @@ class Line:
     @property
     def first_step(self) -> str:
         """What to do first."""
+        if not self.object.depth_is_missing:
+            return self._step_with_depth
+        return f"measure the depth, then {self._step_with_depth}" if self.overturns else "measure the depth"
+
+    @property
+    def _step_with_depth(self) -> str:
         row = self.values
         if self.overturns and self.wider and row["smallest_width"] <= WIDER * self.base:
             return "widen the base, or fix it"

@@ -92,6 +92,30 @@ def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
     assert full[0][:4] == ["Inv. no.", "Bezeichnung", "material", "location"]
 
 
+def test_a_missing_depth_is_said_in_every_output(table):
+    """0.85 m wide and 1.7 m high; with a depth of 0.06 m it overturns from a factor of 0.2."""
+    table.write_text("name,width [cm],depth [cm],height [cm]\nshelf,85,,170\nscreen,20,,200\nchest,80,80,80\n")
+    report, file, book = (table.with_name(f"out.{ending}") for ending in ("html", "csv", "xlsx"))
+    options = [*PULSES, "--no-sensitivity"]
+    lines = cells(run("assess", str(table), *options, "--report", str(report), "--output", str(file)), 4)
+    assert [line[1] for line in lines[1:]] == ["overturns in some motions", "depth missing", "stays"]
+    assert lines[1][-1] == "measure the depth, then fix it, or widen the base"
+    assert lines[2][-1] == "measure the depth"
+    expected = {"screen": "overturns in some motions", "shelf": "depth missing", "chest": "stays"}
+    found = json.loads(run("assess", str(table), *options, "--format=json"))
+    assert dict(zip(found["object"], found["verdict"], strict=True)) == expected
+    assert {row["name"]: row["verdict"] for row in read_csv(file.read_text())} == expected
+    run("assess", str(table), *options, "--output", str(book))
+    sheet = pd.read_excel(book, engine="calamine")
+    assert dict(zip(sheet["name"], sheet["verdict"], strict=True)) == expected
+    text = Page(report.read_text()).text
+    assert "shelf: depth missing" in text
+    assert "measure the depth" in text
+    assert rocking.assess(rocking.Object("shelf", width=0.85, height=1.7, depth=0.06), rocking.Site(2.94, 0.3)).columns[
+        "factor"
+    ].min() == pytest.approx(0.2, abs=0.02)
+
+
 def test_warnings_are_grouped_and_say_the_side(table):
     header, rest = INVENTORY.split("\n", 1)
     rest = rest.replace("\n", ";\n") + "0050;Vase;clay;;;;;;46,5;;12\n0051;Urn;clay;;;;;;46,5;;12,5\n"
