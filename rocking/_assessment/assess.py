@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._assessment.columns import CLOSE, DEPTH_MISSING, OUTPUTS, RESTS_AT_FULL_STRENGTH
+from rocking._assessment.columns import CLOSE, DEPTH_MISSING, OUTPUTS, RESTS_AT_FULL_STRENGTH, digits_apart
 from rocking._assessment.motions import first_exceedances
-from rocking._assessment.objects import Bodies, BodyArray, Object
+from rocking._assessment.objects import Bodies, BodyArray, MeshObject, Object
 from rocking._assessment.result import Assessment
 from rocking._assessment.search import HIGHEST_FACTOR, Progress, factors_of, least, overturned_by, responses_of
 from rocking._assessment.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
@@ -149,6 +149,8 @@ def assess(
     columns |= _sliding(given, body, motions, sensitivity, stop)
     ratios = demand_over_capacity(body, motions, clauses, stop)
     columns |= {f"{name}_ratio": -least(-each) for name, each in ratios.items()}
+    contact = [one.contact_height if isinstance(one, MeshObject) else math.nan for one in given for _ in one.planes]
+    columns["contact_tolerance"] = np.array(contact)
     columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
         columns |= changed_objects(
@@ -246,9 +248,9 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
-            texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
+            texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.{digits_apart(factor)}g}")
         if columns["share_at_full_strength"][k] < columns["share"][k]:
-            texts.append(f"{RESTS_AT_FULL_STRENGTH}: it overturns from factor {factor:.3g}")
+            texts.append(f"{RESTS_AT_FULL_STRENGTH}: it overturns from factor {factor:.{digits_apart(factor)}g}")
         if math.isfinite(columns["slides_at"][k]):
             when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"

@@ -78,6 +78,8 @@ OUTPUTS = (
     Quantity("sampled_share", "-",
         "share of its variants (tolerance, restitution 0.05 up and down) that a motion overturns at a factor up to 1"),
     *(Quantity(f"{name}_ratio", "-", f"{meaning}; the largest of the motions") for name, meaning in CLAUSES.items()),
+    Quantity("contact_tolerance", "m",
+        "of a mesh: height above its lowest point up to which vertices are in contact with the ground"),
     Quantity("warnings", "", "reasons to doubt the row"),
 )  # fmt: skip
 
@@ -91,3 +93,14 @@ CLOSE = 0.2  # distance of a factor from 1 below which a warning is given [-]: a
 
 RESTS_AT_FULL_STRENGTH = "comes to rest at full strength under a motion that overturns it at a lower factor"
 """Beginning of the warning of an object whose outcome at a factor of 1 differs from that at a lower factor."""
+
+
+def digits_apart(value: float) -> int:
+    """Significant digits of a factor or ratio, 3 or more, so that it is written as 1 only if it equals 1.
+
+    Otherwise a body that a factor of 1.0035 overturns would be said to overturn "from 1" with the verdict "rocks".
+    """
+    digits = 3
+    while digits < 17 and value != 1.0 and float(f"{value:.{digits}g}") == 1.0:
+        digits += 1
+    return digits

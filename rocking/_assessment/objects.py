@@ -168,7 +168,9 @@ class Object:
         name : str, optional
             For output; the name of the file by default.
         others
-            mass, friction, restitution, tolerance, pedestal and notes, as above.
+            mass, friction, restitution, tolerance, pedestal and notes, as above, and `contact_tolerance`: height above
+            the lowest point up to which vertices are in contact with the ground, over the height of the mesh [-],
+            [0, 0.1], by default 1e-4. The column `contact_tolerance` of an assessment names it in metres.
 
         Raises
         ------
@@ -318,33 +320,36 @@ class MeshObject(Object):
 
     path: str = ""  # the file
     unit: str = "m"  # of its lengths
+    contact_tolerance: float = 1e-4  # of vertices in contact with the ground, over the height of the mesh [-]
 
     def __post_init__(self) -> None:
         self._check_described("a mesh")
 
+    @property
+    def contact_height(self) -> float:
+        """Height above its lowest point up to which vertices are in contact with the ground [m]."""
+        return self.contact_tolerance * next(iter(self.planes.values())).height
+
     @cached_property
     def planes(self) -> dict[str, Plane]:
-        angles = sorted({*map(float, range(0, 180, STEP)), *self._across})
+        from rocking._dimensional.mesh import directions_around  # noqa: PLC0415  (trimesh is an extra)
+
+        angles = directions_around(self.footprint, STEP)
         return {f"{angle:g} deg": self._plane_at(angle) for angle in angles}
 
     @property
     def planes_around(self) -> dict[float, Plane]:
-        return {angle: self._plane_at(angle) for angle in self._across}
-
-    @property
-    def _across(self) -> list[float]:
-        from rocking._dimensional.mesh import directions_across  # noqa: PLC0415  (trimesh is an extra)
-
-        return directions_across(self.footprint, STEP)
+        return {float(name.removesuffix(" deg")): plane for name, plane in self.planes.items()}
 
     def _plane_at(self, angle: float) -> Plane:
-        return plane_of(RigidBody.from_mesh(self.path, math.radians(angle), unit=self.unit))
+        given: dict[str, Any] = {"unit": self.unit, "contact_tolerance": self.contact_tolerance}
+        return plane_of(RigidBody.from_mesh(self.path, math.radians(angle), **given))
 
     @cached_property
     def footprint(self) -> Array:
         from rocking._dimensional.mesh import mesh_footprint  # noqa: PLC0415  (trimesh is an extra)
 
-        return mesh_footprint(self.path, self.unit)
+        return mesh_footprint(self.path, self.unit, self.contact_tolerance)
 
     def outline(self, direction: str) -> Array:
         from rocking._dimensional.mesh import mesh_outline  # noqa: PLC0415  (trimesh is an extra)

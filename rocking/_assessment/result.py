@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._assessment.columns import OUTPUTS, VERDICTS
+from rocking._assessment.columns import OUTPUTS, VERDICTS, digits_apart
 from rocking._assessment.directions import factors_by_direction
 from rocking._assessment.motions import frictions_of, history_of
 from rocking._assessment.objects import Object
@@ -149,7 +149,8 @@ class Assessment(EqualByValue):
         and of an object without a depth, 0 and 180 degrees. Each motion acts from one side, so that the opposite
         direction is the motion reversed: it has another factor if the centre of mass is not in the middle.
 
-        An object turns about a side of its base, for which the component of the motion across that side suffices. A
+        An object turns about a side of its base, for which the component of the motion across that side suffices. Of a
+        mesh the planes in oblique directions count as well, so that no direction is above the rows of the table. A
         planar base of its extent in an oblique direction, which turns about a corner, would overestimate it.
 
         Parameters
@@ -224,7 +225,11 @@ class Assessment(EqualByValue):
         worst = next(iter(self.rows), None)
         if worst is None:
             return f"{head}none>"
-        margin = f"up to {self.highest_factor:g}" if worst["factor"] is None else f"from {worst['factor']:.3g}"
+        margin = (
+            f"up to {self.highest_factor:g}"
+            if worst["factor"] is None
+            else f"from {worst['factor']:.{digits_apart(worst['factor'])}g}"
+        )
         how = "not overturned" if worst["factor"] is None else "overturned"
         rests = worst["share"] > worst["share_at_full_strength"] == 0.0
         full = ", at full strength it comes to rest" if rests else ""

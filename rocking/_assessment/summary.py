@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH
+from rocking._assessment.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, digits_apart
 from rocking._assessment.objects import Object
 from rocking._assessment.result import Assessment
 from rocking._base.cells import named, plain_name
@@ -68,9 +69,23 @@ class Line:
 
     @property
     def wider(self) -> float | None:
-        """Width that the base lacks [m]."""
+        """Width that the base lacks [m], rounded up to a tenth of a millimetre."""
         needed = self.values["smallest_width"]
-        return None if needed is None else max(needed - self.base, 0.0)
+        if needed is None or needed <= self.base:
+            return needed and 0.0
+        return _rounded_up(needed - self.base)
+
+    @property
+    def base_needed(self) -> float | None:
+        """Smallest base that suffices [m], rounded up: one that is rounded down could overturn."""
+        needed = self.values["smallest_width"]
+        return None if needed is None else _rounded_up(needed)
+
+    @property
+    def digits(self) -> int:
+        """Significant digits of the factor and of the PGA that belongs to it."""
+        factor = self.values["factor"]
+        return 3 if factor is None else digits_apart(factor)
 
     @property
     def first_step(self) -> str:
@@ -89,9 +104,9 @@ class Line:
         if self.is_close:
             return "measure it again"
         if row["sliding"] is not None and rounded(row["sliding"], "m"):
-            return f"keep {text_of(row['sliding'], 'm')} clear: it slides"
+            return f"keep {_clearance(row['sliding'])} clear: it slides"
         if rounded(row["displacement"], "m"):
-            return f"keep {text_of(row['displacement'], 'm')} clear"
+            return f"keep {_clearance(row['displacement'])} clear"
         return "nothing"
 
 
@@ -114,25 +129,45 @@ def lines_of(found: Assessment, *, directions: bool = False, only: Line | None =
     return lines
 
 
-def rounded(value: Any, unit: str = "-") -> Any:
-    """A number in the unit of the output, to three digits; a small one is 0. Other values are returned unchanged."""
+def _rounded_up(length: float) -> float:
+    """A length [m] rounded up to three digits, at most to a tenth of a millimetre [m]."""
+    step = max(10.0 ** (math.floor(math.log10(length)) - 2), 1e-4)
+    return math.ceil(length / step - 1e-9) * step
+
+
+def _clearance(movement: float) -> str:
+    """The distance to keep clear for a movement [m], rounded up to whole millimetres, from 10 cm on to centimetres."""
+    step = 0.001 if movement < 0.1 else 0.01
+    return f"{100.0 * step * math.ceil(movement / step - 1e-9):.10g} cm"
+
+
+def rounded(value: Any, unit: str = "-", digits: int = 3) -> Any:
+    """A number in the unit of the output, to three digits; a small one is 0. Other values are returned unchanged.
+
+    A ratio is written as 1 only if it equals 1; a length in cm has two decimals at most.
+    """
     if not isinstance(value, float):
         return value
     shown = value / UNITS[unit][PEOPLE[unit]] if unit in PEOPLE else value
-    return float(f"{shown:.3g}") if abs(shown) >= SMALL.get(unit, 5e-4) else 0.0
+    if abs(shown) < SMALL.get(unit, 5e-4):
+        return 0.0
+    if unit == "-":
+        digits = max(digits, digits_apart(shown))
+    short = float(f"{shown:.{digits}g}")
+    return round(short, 2) if unit == "m" else short
 
 
-def text_of(value: Any, unit: str = "-") -> str:
+def text_of(value: Any, unit: str = "-", digits: int = 3) -> str:
     """The same as text with its unit; a dash for what is not known."""
     sign = {"rad": "\u00b0"}.get(unit, f" {PEOPLE.get(unit, unit)}" if unit not in ("", "-") else "")
-    return number_of(value, unit) + (sign if isinstance(value, float) and value == value else "")
+    return number_of(value, unit, digits) + (sign if isinstance(value, float) and value == value else "")
 
 
-def number_of(value: Any, unit: str = "-") -> str:
+def number_of(value: Any, unit: str = "-", digits: int = 3) -> str:
     """The same without its unit."""
     if value is None or value != value:
         return "\u2013"
-    return f"{rounded(value, unit):.10g}" if isinstance(value, float) else str(value)
+    return f"{rounded(value, unit, digits):.15g}" if isinstance(value, float) else str(value)
 
 
 def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[Any]]:
@@ -157,10 +192,10 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
         "verdict": column("verdict"),
         "overturns from factor": [top if one is None else rounded(one) for one in column("factor")],
         "at full strength by": [one.at_full_strength for one in lines],
-        "PGA [g]": [None if one.pga is None else rounded(one.pga, "m/s2") for one in lines],
+        "PGA [g]": [None if one.pga is None else rounded(one.pga, "m/s2", one.digits) for one in lines],
         "governing motion": [one.replace("_", " ") or "-" for one in column("governing")],
         "moves by [cm]": ["overturns" if one is None else rounded(one, "m") for one in column("displacement")],
-        "base needed [cm]": [rounded(one, "m") for one in column("smallest_width")],
+        "base needed [cm]": [rounded(one.base_needed, "m") for one in lines],
         "wider by [cm]": [rounded(one.wider, "m") for one in lines],
         "what to do first": [one.first_step for one in lines],
         **clauses,

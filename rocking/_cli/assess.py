@@ -59,6 +59,9 @@ def assess(
     friction: Annotated[
         float | None, said("Coefficient of friction of the meshes; without it sliding is not assessed.", "-")
     ] = None,
+    contact_tolerance: Annotated[
+        float, said("Height of the vertices of a mesh on which it stands, over its own height, 0 to 0.1.", "-")
+    ] = 1e-4,
     pga: Annotated[
         str | None,
         option(PGA, text="Peak ground acceleration of the site, from its hazard map; records are scaled to it"),
@@ -175,7 +178,8 @@ def assess(
         )
         table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
         bad = [f"{objects}, {printing.printable(str(one))}" for one in table.bad_rows]
-        meshes = [Object.from_mesh(path, unit=mesh_unit, friction=friction) for path in mesh or ()]
+        given_meshes = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
+        meshes = [Object.from_mesh(path, **given_meshes) for path in mesh or ()]
         given = [*table.objects, *meshes]
         if not given:
             raise InvalidArgumentError(

@@ -13,6 +13,7 @@ from rocking_api.routers import objects_page
 
 import rocking
 from rocking._assessment.columns import VERDICTS
+from rocking._assessment.summary import _rounded_up
 from rocking._assessment.tables import SCHEMA
 from rocking._dimensional.table_reader import rows_of_csv
 from rocking._numba.cancellation import StopFlag
@@ -38,7 +39,9 @@ def found():
 
 def cell(row, name, scale):
     label = {"factor": "Overturns from factor", "smallest_width": "Base needed [cm]"}[name]
-    return f'<td data-value="{row[name]}" data-label="{label}">{scale * row[name]:.3g}'
+    start = f'<td data-value="{row[name]}" data-label="{label}">'
+    shown = f"{scale * row[name]:.3g}" if name == "factor" else f"{_rounded_up(row[name]) * scale:.3g}"
+    return start + shown
 
 
 def test_rows_are_those_of_the_package_the_worst_first(text, found):

@@ -9,7 +9,7 @@ import rocking
 from rocking._assessment.objects import Bodies
 from rocking._assessment.report import Project, report_html
 from rocking._assessment.search import factors_of, overturned_by
-from rocking._assessment.summary import counts_of, lines_of
+from rocking._assessment.summary import Line, counts_of, lines_of, number_of, rounded, table_of
 from rocking._boundary.scan import RELATIVE_ERROR
 from rocking.suites import annual_rate
 from tests.sampling import number, sample
@@ -172,3 +172,28 @@ def test_an_object_that_rests_at_full_strength_but_not_below_says_both() -> None
     assert around["at_full_strength"].sel(direction=30).item()
     report = report_html(found, Project("title", "", "", "", ""))
     assert "at full strength by 0 of 1, 1 only below" in report
+
+
+def test_numbers_are_rounded_so_that_they_do_not_contradict_the_verdict() -> None:
+    assert [number_of(x) for x in (1.0035, 0.9996, 1.0, 0.6157913, 1.0 + 1e-9)] == [
+        "1.004", "0.9996", "1", "0.616", "1.000000001",
+    ]  # fmt: skip
+    assert rounded(0.0007654, "m") == 0.08
+    uplift = 9.80665 * np.tan(0.2)
+    one = rocking.Object("block", width=2.0 * np.sin(0.2), depth=10.0, height=2.0 * np.cos(0.2))
+    site = rocking.Site(2.16378 / 1.0032 * uplift, periods=(0.5, 0.5), shapes=["sine"])
+    found = rocking.assess(one, site)
+    table = table_of(found)
+    assert (table["verdict"], table["overturns from factor"]) == (["rocks"], [1.003])
+    assert table["PGA [g]"] == [round(2.16378 * np.tan(0.2), 4)]
+    assert "not overturned below factor 1.003" in found.rows[0]["warnings"]
+    assert "from 1.003 times" in repr(found)
+    needed = found.rows[0]["smallest_width"]
+    assert needed <= lines_of(found)[0].base_needed < needed * 1.01
+
+
+@pytest.mark.parametrize(("movement", "text"), [(0.000765, "0.1 cm"), (0.0512, "5.2 cm"), (0.151, "16 cm")])
+def test_a_clearance_is_rounded_up(movement: float, text: str) -> None:
+    one = rocking.Object("one", width=0.3, depth=0.3, height=1.0)
+    row = {"share": 0.0, "factor": 3.0, "sliding": None, "displacement": movement}
+    assert Line(one, [0], 0, row, None, 0.3, 1).first_step == f"keep {text} clear"

@@ -77,9 +77,9 @@ def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
     for line in lines[:-1]:
         row, depth = worst[line[1]], {"Kore": 26.0, "Stele": 16.0, "Herm": 22.0}[line[1]]
         expected = [row["factor"], 0.3 * row["factor"], 100 * row["displacement"], 100 * row["smallest_width"]]
-        assert [float(line[k]) for k in (3, 5, 7, 8)] == pytest.approx(expected, rel=5e-3)
+        assert [float(line[k]) for k in (3, 5, 7, 8)] == pytest.approx(expected, rel=1e-2)
         assert all(len(line[k].replace(".", "").lstrip("0")) <= 3 for k in (3, 5, 7, 8))
-        assert float(line[9]) == pytest.approx(max(0.0, expected[3] - depth), rel=5e-3)
+        assert float(line[9]) == pytest.approx(max(0.0, expected[3] - depth), rel=1e-2, abs=0.02)
         assert [line[2], line[6]] == [row["verdict"], row["governing"]]
         assert line[4].startswith(f"{round(2 * row['share_at_full_strength'])} of 2")
         assert ("fix it" in line[10]) == (row["share"] > 0.0)

@@ -57,16 +57,15 @@ def test_many_changes_nearby_are_counted():
     assert warnings_of_changes(2.0, changes, "scale") == []
 
 
+ONE_CHANGE = "it overturns from 1.13388 times the record"
+
+
 @pytest.mark.parametrize(
     ("count", "said"),
     [
         (0, "no factor of the record up to 4.99999 was found to overturn it"),
-        (1, "it overturns from 1.13388 times the record"),
-        (
-            3,
-            "it overturns from 1.13388 times the record; "
-            "above that the outcome changes 2 more times up to 4.99999 times",
-        ),
+        (1, ONE_CHANGE),
+        (3, f"{ONE_CHANGE}; above that the outcome changes 2 more times up to 4.99999 times"),
     ],
 )
 def test_changes_in_words(count, said):
