@@ -71,9 +71,9 @@ class Line:
     def wider(self) -> float | None:
         """Width that the base lacks [m], rounded up to a tenth of a millimetre."""
         needed = self.values["smallest_width"]
-        if needed is None or needed <= self.base:
-            return needed and 0.0
-        return _rounded_up(needed - self.base)
+        if needed is None:
+            return None
+        return _rounded_up(needed - self.base) if needed > self.base else 0.0
 
     @property
     def base_needed(self) -> float | None:

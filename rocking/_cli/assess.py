@@ -178,8 +178,8 @@ def assess(
         )
         table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
         bad = [f"{objects}, {printing.printable(str(one))}" for one in table.bad_rows]
-        given_meshes = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
-        meshes = [Object.from_mesh(path, **given_meshes) for path in mesh or ()]
+        of_meshes: dict[str, Any] = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
+        meshes = [Object.from_mesh(path, **of_meshes) for path in mesh or ()]
         given = [*table.objects, *meshes]
         if not given:
             raise InvalidArgumentError(

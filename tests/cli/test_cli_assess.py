@@ -83,7 +83,7 @@ def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
         assert [line[2], line[6]] == [row["verdict"], row["governing"]]
         assert line[4].startswith(f"{round(2 * row['share_at_full_strength'])} of 2")
         assert ("fix it" in line[10]) == (row["share"] > 0.0)
-    assert lines[-1] == ["0030", "Altar", "stays", "> 10", "0 of 2", "-", "-", "0", "14.1", "0", "nothing"]
+    assert lines[-1] == ["0030", "Altar", "stays", "> 10", "0 of 2", "-", "-", "0", "14.2", "0", "nothing"]
     both = cells(run("assess", str(table), *PULSES, "--directions"), 9)
     assert both[0][2] == "direction"
     assert [(row[1], row[2]) for row in both[1:3]] == [("Stele", "depth"), ("Stele", "width")]
