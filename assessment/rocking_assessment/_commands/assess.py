@@ -57,6 +57,9 @@ def assess(
     friction: Annotated[
         float | None, said("Coefficient of friction of the meshes; without it sliding is not assessed.", "-")
     ] = None,
+    contact_tolerance: Annotated[
+        float, said("Height of the vertices of a mesh on which it stands, over its own height, 0 to 0.1.", "-")
+    ] = 1e-4,
     pga: Annotated[
         str | None,
         option(PGA, text="Peak ground acceleration of the site, from its hazard map; records are scaled to it"),
@@ -179,7 +182,8 @@ def assess(
         )
         table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
         bad = [f"{objects}, {printable(str(one))}" for one in table.bad_rows]
-        meshes = [Object.from_mesh(path, unit=mesh_unit, friction=friction) for path in mesh or ()]
+        of_meshes: dict[str, Any] = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
+        meshes = [Object.from_mesh(path, **of_meshes) for path in mesh or ()]
         given = [*table.objects, *meshes]
         if not given:
             raise InvalidArgumentError(
@@ -253,7 +257,14 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
     """Print a line for each object, and below them each kind of warning with the objects to which it applies."""
     from rocking.extension import print_json, print_table, printable
     from rocking_assessment._objects.columns import OUTPUTS
-    from rocking_assessment._objects.summary import names_in_short, rows_in_units, table_of, warnings_of
+    from rocking_assessment._objects.summary import (
+        counts_of,
+        lines_of,
+        names_in_short,
+        rows_in_units,
+        table_of,
+        warnings_of,
+    )
 
     columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
     if form.kind == "json":
@@ -264,6 +275,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
         typer.echo(found.to_csv(), nl=False)
         return
     print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
+    typer.echo(counts_of(lines_of(found)))
     if found.resolution:
         typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart")
     for text, names in warnings_of(found):

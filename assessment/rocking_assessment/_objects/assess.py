@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking.extension import (
     RESOLUTION,
@@ -25,9 +26,15 @@ from rocking.extension import (
     fit_curve,
     integer,
 )
-from rocking_assessment._objects.columns import CLOSE, OUTPUTS, VERDICTS
+from rocking_assessment._objects.columns import (
+    CLOSE,
+    DEPTH_MISSING,
+    OUTPUTS,
+    RESTS_AT_FULL_STRENGTH,
+    digits_apart,
+)
 from rocking_assessment._objects.motions import first_exceedances
-from rocking_assessment._objects.objects import Bodies, BodyArray, Object
+from rocking_assessment._objects.objects import Bodies, BodyArray, MeshObject, Object
 from rocking_assessment._objects.result import Assessment
 from rocking_assessment._objects.search import HIGHEST_FACTOR, Progress, factors_of, least, overturned_by, responses_of
 from rocking_assessment._objects.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
@@ -92,8 +99,10 @@ def assess(
 
     Notes
     -----
-    One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
-    to 1. `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
+    One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at full
+    strength, a factor of 1, or at a lower factor. An object can come to rest at full strength although a lower factor
+    overturns it; `overturned_at_full_strength` and `share_at_full_strength` have the outcome at factor 1 alone.
+    `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
     between the factors tried can be missed. Under pulses this distance is 0.05 to 0.23 %. Under records, and pulses on
     a floor, it is at most `resolution`, down to a 4096th of it where the object may overturn
     (`rocking._boundary.scan.lowest_overturning`). For changed objects and samples it is four times as large. The sizes
@@ -116,14 +125,15 @@ def assess(
     motions, bodies = site.find_motions(stop), Bodies.of(given)
     body = bodies.scaled()
     factors = factors_of(body, motions, stop, advance, resolution=share_apart)
-    overturned, rotation, displacement = responses_of(body, motions, stop)
-    factors = np.fmin(factors, np.where(overturned, 1.0, np.nan))  # of an object beyond the range of the search
-    overturned |= factors <= 1.0
+    at_full_strength, rotation, displacement = responses_of(body, motions, stop)
+    factors = np.fmin(factors, np.where(at_full_strength, 1.0, np.nan))  # of an object beyond the range of the search
+    overturned = at_full_strength | (factors <= 1.0)
     rotation[overturned] = displacement[overturned] = np.nan
     uplift = np.asarray(body.uplift_acceleration)
-    events = _by_event(overturned, motions)
+    events, full_events = _by_event(overturned, motions), _by_event(at_full_strength, motions)
     share = events.mean(axis=1)
     uplifts = (np.nan_to_num(rotation) > 0.0).any(axis=1) | (share > 0.0)
+    no_depth = np.array([one.depth_is_missing for one in given for _ in one.planes])
     factor = least(factors)
     unknown = np.full(factor.size, np.nan)
     low, high = binomial_interval(events.sum(axis=1), events.shape[1], CONFIDENCE) if site.records else (unknown,) * 2
@@ -131,7 +141,7 @@ def assess(
     columns: dict[str, Any] = {
         "object": [one.name for one in given for _ in one.planes],
         "direction": [direction for one in given for direction in one.planes],
-        "verdict": np.array(VERDICTS)[np.where(share > 0.5, 3, np.where(share > 0.0, 2, uplifts.astype(int)))],
+        "verdict": _verdicts(share, uplifts, no_depth),
         "uplifts": uplifts,
         "uplift_acceleration": uplift,
         "factor": factor,
@@ -140,7 +150,9 @@ def assess(
             for own, lowest in zip(factors, factor, strict=True)
         ],
         "overturned_by": ["; ".join(names[own]) for own in overturned],
+        "overturned_at_full_strength": ["; ".join(names[hits]) for hits in at_full_strength],
         "share": share,
+        "share_at_full_strength": full_events.mean(axis=1),
         "share_lower": low,
         "share_upper": high,
         "rotation": -least(-rotation),
@@ -151,6 +163,8 @@ def assess(
     columns |= _sliding(given, body, motions, sensitivity, stop)
     ratios = demand_over_capacity(body, motions, clauses, stop)
     columns |= {f"{name}_ratio": -least(-each) for name, each in ratios.items()}
+    contact = [one.contact_height if isinstance(one, MeshObject) else math.nan for one in given for _ in one.planes]
+    columns["contact_tolerance"] = np.array(contact)
     columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
         columns |= changed_objects(
@@ -161,7 +175,7 @@ def assess(
             given, bodies, factors, motions, variants, chosen_seed, share_apart, stop
         )
     columns["warnings"] = _warnings(given, columns, record_doubts(site))
-    order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
+    order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), ~no_depth, -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]
     ordered = tuple(each[k] for k in order)
@@ -169,6 +183,13 @@ def assess(
     return Assessment(
         kept, tuple(names.tolist()), HIGHEST_FACTOR, ordered, factors[order], rotation[order], site, apart
     )
+
+
+def _verdicts(share: Array, uplifts: Flags, no_depth: Flags) -> NDArray[np.str_]:
+    """The verdict of each row: of `VERDICTS`, from the share of the motions that overturn it."""
+    survives = np.where(no_depth, DEPTH_MISSING, np.where(uplifts, "rocks", "stays"))
+    overturns = np.where(share > 0.5, "overturns in most", "overturns in some motions")
+    return np.where(share > 0.0, overturns, survives)
 
 
 def _by_event(overturned: Flags, motions: Sequence[Motion]) -> Flags:
@@ -241,7 +262,9 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
-            texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
+            texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.{digits_apart(factor)}g}")
+        if columns["share_at_full_strength"][k] < columns["share"][k]:
+            texts.append(f"{RESTS_AT_FULL_STRENGTH}: it overturns from factor {factor:.{digits_apart(factor)}g}")
         if math.isfinite(columns["slides_at"][k]):
             when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"
@@ -250,8 +273,8 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
             texts.append("against a wall, whose forces are not part of the model: sliding is not assessed")
         elif columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
-        if one.width is not None and one.depth is None:
-            texts.append("no depth is given: only rocking along the width is assessed")
+        if one.depth_is_missing:
+            texts.append("no depth is given: only rocking along the width is assessed, measure the depth")
         if one.diameter is not None:
             texts.append("round base: the plane model leaves out wobbling and rolling")
         if (columns["factor_slenderer"][k] <= 1.0) != (columns["factor_stockier"][k] <= 1.0):

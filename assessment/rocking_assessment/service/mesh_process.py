@@ -13,19 +13,26 @@ CORNERS = 200  # most corners of a footprint that are kept, for its drawing [-]
 
 
 def main(path: str, unit: str, step: str) -> None:
-    """Print the planes across the sides of the base of a mesh, its footprint and what was repaired, or an error."""
-    from rocking_assessment._meshes.mesh import directions_across, mesh_footprint, mesh_properties  # noqa: PLC0415
+    """Print the planes in which a mesh is assessed, its footprint and what was repaired, or an error."""
+    from rocking_assessment._meshes.mesh import (  # noqa: PLC0415
+        CONTACT_TOLERANCE,
+        directions_around,
+        mesh_footprint,
+        mesh_properties,
+    )
 
     def read() -> dict[str, Any]:
         footprint = mesh_footprint(path, unit)
         found = {
-            angle: mesh_properties(path, math.radians(angle), unit)
-            for angle in directions_across(footprint, float(step))
+            angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_around(footprint, int(step))
         }
+        remarks = next(remarks for _, remarks in found.values())
+        height = next(properties.top for properties, _ in found.values())
+        contact = f"stands on its vertices up to {1000.0 * CONTACT_TOLERANCE * height:.2g} mm above the lowest one"
         return {
             "planes": {angle: astuple(properties) for angle, (properties, _) in found.items()},
             "footprint": footprint[:: len(footprint) // CORNERS + 1].tolist(),
-            "remarks": next(remarks for _, remarks in found.values()),
+            "remarks": [contact, *remarks],
         }
 
     print_result(read)

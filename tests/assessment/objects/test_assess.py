@@ -66,7 +66,7 @@ def test_rows_come_worst_first_with_verdicts_of_the_share() -> None:
     assert share[0] > 0.5
     assert share[-1] == 0.0
     for row in found.rows:
-        expected = 3 if row["share"] > 0.5 else 2 if row["share"] > 0.0 else int(row["uplifts"])
+        expected = 4 if row["share"] > 0.5 else 3 if row["share"] > 0.0 else int(row["uplifts"])
         assert row["verdict"] == VERDICTS[expected]
         assert (row["factor"] is not None and row["factor"] <= 1.0) == (row["share"] > 0.0)
         assert (row["rotation"] is None) == (row["share"] == 1.0)
@@ -156,10 +156,11 @@ def test_an_object_that_the_vertical_component_presses_down_does_not_uplift() ->
     motion = rocking.Record(0.3 * ground, 0.1, "g", vertical=pressing)
     assert motion.peak_acceleration > 9.80665 * 0.25  # alone it would uplift the object
     assert rocking.Block(0.4, 1.6).response(motion).outcome == rocking.Outcome.NO_UPLIFT
-    found = assess(Object("one", width=0.4, height=1.6), Site(records=motion))
-    assert found.columns["verdict"].tolist() == ["stays"]
-    assert found.columns["uplifts"].tolist() == [False]
-    assert found == assess(Object("one", width=0.4, height=1.6), Site(records=[motion]))
+    one = Object("one", width=0.4, depth=0.4, height=1.6)
+    found = assess(one, Site(records=motion))
+    assert found.columns["verdict"].tolist() == ["stays", "stays"]
+    assert found.columns["uplifts"].tolist() == [False, False]
+    assert found == assess(one, Site(records=[motion]))
     with pytest.raises(InvalidArgumentError, match="row"):
         found.friction(0.5)
     assert found.friction(0.0).identical(found.friction(0))

@@ -7,7 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rocking_assessment import annual_rate
 from rocking_assessment._objects.objects import Bodies
+from rocking_assessment._objects.report import Project, report_html
 from rocking_assessment._objects.search import factors_of, overturned_by
+from rocking_assessment._objects.summary import Line, counts_of, lines_of, number_of, rounded, table_of
 
 import rocking
 from rocking._boundary.scan import RELATIVE_ERROR
@@ -161,3 +163,54 @@ def test_a_hazard_curve_that_does_not_reach_far_enough_bounds_the_rate(curve, bo
     alive = rocking_assessment.survival(found, curve, years=100.0).sel(model="lognormal").squeeze()
     assert alive["survival_upper"].item() == pytest.approx(np.exp(-100.0 * bounds[0]))
     assert alive["survival_lower"].item() == pytest.approx(np.exp(-100.0 * bounds[1]))
+
+
+def test_an_object_that_rests_at_full_strength_but_not_below_says_both() -> None:
+    """Rigid, alpha 0.2 rad, R 1 m, sine of 0.5 s: overturns from 2.16378 times the uplift, not from 6.20125 on."""
+    width, height = 2.0 * np.sin(0.2), 2.0 * np.cos(0.2)
+    uplift = 9.80665 * np.tan(0.2)
+    one = rocking_assessment.Object("block", width=width, depth=10.0, height=height)
+    site = rocking_assessment.Site(6.35 * uplift, periods=(0.5, 0.5), shapes=["sine"])
+    found = rocking_assessment.assess(one, site, sensitivity=False)
+    row = found.rows[0]
+    assert not rocking.Block(width, height).response("sine", peak_acceleration=6.35 * uplift, period=0.5).overturned
+    assert row["factor"] == pytest.approx(2.16378 / 6.35, rel=1e-5)
+    assert (row["share"], row["share_at_full_strength"]) == (1.0, 0.0)
+    assert (row["overturned_by"], row["overturned_at_full_strength"]) == ("sine, 0.5 s", "")
+    assert "comes to rest at full strength" in row["warnings"]
+    assert "at full strength it comes to rest" in repr(found)
+    (line,) = lines_of(found)
+    assert line.at_full_strength == "0 of 1, 1 only below"
+    assert counts_of([line]) == "overturned at full strength: 0 of 1 objects; only at a lower factor: 1"
+    around = found.directions()
+    assert not around["at_full_strength"].sel(direction=0).item()
+    assert around["factor"].sel(direction=0).item() == pytest.approx(row["factor"])
+    # at 30 degrees the component 5.5 of the motion overturns at full strength
+    assert around["at_full_strength"].sel(direction=30).item()
+    report = report_html(found, Project("title", "", "", "", ""))
+    assert "at full strength by 0 of 1, 1 only below" in report
+
+
+def test_numbers_are_rounded_so_that_they_do_not_contradict_the_verdict() -> None:
+    assert [number_of(x) for x in (1.0035, 0.9996, 1.0, 0.6157913, 1.0 + 1e-9)] == [
+        "1.004", "0.9996", "1", "0.616", "1.000000001",
+    ]  # fmt: skip
+    assert rounded(0.0007654, "m") == 0.08
+    uplift = 9.80665 * np.tan(0.2)
+    one = rocking_assessment.Object("block", width=2.0 * np.sin(0.2), depth=10.0, height=2.0 * np.cos(0.2))
+    site = rocking_assessment.Site(2.16378 / 1.0032 * uplift, periods=(0.5, 0.5), shapes=["sine"])
+    found = rocking_assessment.assess(one, site)
+    table = table_of(found)
+    assert (table["verdict"], table["overturns from factor"]) == (["rocks"], [1.003])
+    assert table["PGA [g]"] == [round(2.16378 * np.tan(0.2), 4)]
+    assert "not overturned below factor 1.003" in found.rows[0]["warnings"]
+    assert "from 1.003 times" in repr(found)
+    needed = found.rows[0]["smallest_width"]
+    assert needed <= lines_of(found)[0].base_needed < needed * 1.01
+
+
+@pytest.mark.parametrize(("movement", "text"), [(0.000765, "0.1 cm"), (0.0512, "5.2 cm"), (0.151, "16 cm")])
+def test_a_clearance_is_rounded_up(movement: float, text: str) -> None:
+    one = rocking_assessment.Object("one", width=0.3, depth=0.3, height=1.0)
+    row = {"share": 0.0, "factor": 3.0, "sliding": None, "displacement": movement}
+    assert Line(one, [0], 0, row, None, 0.3, 1).first_step == f"keep {text} clear"
