@@ -63,7 +63,8 @@ def assess(
     seed : int
         Seed of these variants, 0 to 2^53.
     resolution : float
-        Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1].
+        Largest relative distance of the factors on a record that are tried [-], [1e-4, 0.1]; on a pulse two fifths of
+        it.
     standards : str or iterable of str
         Checks by standards to state beside the exact outcome, as demand over capacity: "static", "ishiyama", "asce43",
         "circolare_linear", "circolare_nonlinear", separated by commas in one text, or "all".
@@ -86,11 +87,11 @@ def assess(
     -----
     One criterion holds for verdict, share, sizes and samples: a motion overturns an object if it does so at a factor up
     to 1. `factor` is the lowest one found up to `HIGHEST_FACTOR`. A range of overturning narrower than the distance
-    between the factors tried can be missed. Under pulses this distance is 0.05 to 0.23 %. Under records, and pulses on
-    a floor, it is at most `resolution`, down to a 4096th of it where the object may overturn
-    (`rocking._boundary.scan.lowest_overturning`). For changed objects and samples it is four times as large. The sizes
-    tried are 6.7 % apart, 0.8 % where the factor is close to 1; the smallest width and the largest height are then
-    refined to 0.1 %.
+    between the factors tried can be missed. Under records, and pulses on a floor, this distance is at most
+    `resolution`, down to a 4096th of it where the object may overturn (`rocking._boundary.scan.lowest_overturning`).
+    Under pulses it is at most two fifths of `resolution`, 0.2 % by default, down to a 16th of that where the object may
+    overturn. For changed objects and samples it is four times as large. The sizes tried are 6.7 % apart, 0.8 % where
+    the factor is close to 1; the smallest width and the largest height are then refined to 0.1 %.
     """
     given = (objects,) if isinstance(objects, Object) else tuple(objects)
     if not given or not all(isinstance(one, Object) for one in given):

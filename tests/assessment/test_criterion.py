@@ -35,6 +35,21 @@ def test_no_pair_overturns_below_the_factor_in_other_scans() -> None:
             assert not overturned_by(body.column, motion, None, peaks).any()
 
 
+@pytest.mark.parametrize(
+    ("width", "height", "pga", "period", "least", "most"),
+    [(0.5, 1.2, 5.9249, 0.8, 0.9144, 0.9155), (0.4, 1.0, 3.9227, 0.5, 4.458, 4.460)],
+)
+def test_a_narrow_range_under_a_pulse_of_many_cycles_is_met(
+    width: float, height: float, pga: float, period: float, least: float, most: float
+) -> None:
+    """By every 128th of the amplitudes of `rocking.thresholds` the factor was 1.358, and none up to 10."""
+    site = rocking.Site(pga=pga, periods=(period, period), shapes=["mavroeidis_papageorgiou(cycles=15, phase=90 deg)"])
+    body = Bodies.of([rocking.Object("one", width=width, height=height)]).scaled()
+    ((factor,),) = factors_of(body, site.motions)
+    assert least < factor < most
+    assert overturned_by(body, site.motions[0], None, factor * pga).all()
+
+
 def test_the_search_ends_with_a_factor_that_is_enough() -> None:
     body = Bodies.of([rocking.Object(f"{w}", width=w, height=1.5) for w in (0.25, 0.3, 0.35)]).scaled()
     (motion,) = rocking.Site(pga=3.0, records=[noise(2)]).motions
