@@ -15,7 +15,6 @@ from rocking._assessment.search import (
     least,
     lowest_factor,
     overturned_by,
-    strongest_factor,
 )
 from rocking._assessment.site import Motion, static_acceleration
 from rocking._base.arrays import Array, Flags, Index
@@ -170,10 +169,9 @@ def _limiting_sizes(
 
 def _probed(body: BodyArray, motion: Motion, stop: StopFlag | None) -> tuple[Array, Index]:
     """A factor up to 1 at which each body overturns, inf where none was met; and which bodies are to be searched."""
-    factors = np.minimum(PROBES, strongest_factor(motion))
-    over = overturned_by(body.column, motion, stop, motion.peak_acceleration * factors)
+    over = overturned_by(body.column, motion, stop, motion.peak_acceleration * PROBES)
     known = over.any(axis=1)
-    found = np.where(known, factors[over.argmax(axis=1)], np.inf)
+    found = np.where(known, PROBES[over.argmax(axis=1)], np.inf)
     return found, np.flatnonzero(~known)
 
 
