@@ -174,7 +174,7 @@ def assess(
         columns["sampled_share"] = sampled_share(
             given, bodies, factors, motions, variants, chosen_seed, share_apart, stop
         )
-    columns["warnings"] = _warnings(given, columns, [*_flight_doubts(motions), *record_doubts(site)])
+    columns["warnings"] = _warnings(given, columns, motions, record_doubts(site))
     order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), -share))
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]
@@ -273,19 +273,11 @@ def _sliding(
     }
 
 
-def _flight_doubts(motions: Sequence[Motion]) -> list[str]:
-    """A warning where motions are not searched up to `HIGHEST_FACTOR`, in words."""
-    short = [motion for motion in motions if strongest_factor(motion) < HIGHEST_FACTOR]
-    if not short:
-        return []
-    many = f" and {len(short) - 1} more" if len(short) > 1 else ""
-    motion, factor = min(short, key=strongest_factor), searched_factor(motions)
-    reaches = f"from there on the vertical acceleration of {motion.name}{many} reaches -g"
-    return [f"not searched above factor {factor:.3g}: {reaches}"]
-
-
-def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequence[str]) -> list[str]:
+def _warnings(
+    objects: Sequence[Object], columns: dict[str, Any], motions: Sequence[Motion], doubts: Sequence[str]
+) -> list[str]:
     """Warnings of each row, in words; `doubts` are the warnings of the motions."""
+    weakest, searched = min(motions, key=strongest_factor), searched_factor(motions)
     given = [(one, plane) for one in objects for plane in one.planes.values()]
     found = []
     for k, (one, plane) in enumerate(given):
@@ -293,6 +285,9 @@ def _warnings(objects: Sequence[Object], columns: dict[str, Any], doubts: Sequen
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
             texts.append(f"within {100 * CLOSE:g} %, on the {side} factor {factor:.3g}")
+        if searched < HIGHEST_FACTOR and not factor <= searched:
+            lifts = f"from there on the vertical acceleration of {weakest.name} reaches -g"
+            texts.append(f"not all motions are searched above factor {searched:g}: {lifts}")
         if math.isfinite(columns["slides_at"][k]):
             when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"
