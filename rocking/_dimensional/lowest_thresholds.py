@@ -188,7 +188,7 @@ def _lowest_under_pulse(
             return overturned.astype(np.int64), margin
 
         unused = np.zeros(line.size)
-        points = np.stack([unused, line, unused, unused], axis=1)
+        points: Array = np.stack([unused, line.astype(np.float64), unused, unused], axis=1)
         ends = slenderness_at(np.stack([first[line], below[line]], axis=1))
         margins = solve(np.repeat(line, 2), ends.ravel())[2].reshape(ends.shape)
         codes = np.ones(line.size, dtype=np.int64)
