@@ -55,7 +55,9 @@ class AssessParams(Params):
     baseline_order: BaselineOrder = None
     samples: int = between(0, MAX_SAMPLES, "variants of each object in its tolerance and 0.05 of eta [-]", default=0)
     seed: int = between(0, 2**53, "seed of these variants [-]", default=0)
-    resolution: float = between(*RESOLUTIONS, "largest relative step of factors on a record [-]", default=RESOLUTION)
+    resolution: float = between(
+        *RESOLUTIONS, "largest relative step of factors on a record, 2.5 times that on a pulse [-]", default=RESOLUTION
+    )
     sensitivity: bool = said("find the factors of changed objects, and the sizes that survive", True)
     standards: str = said("checks by standards, with commas between, or all", "", examples=["static,asce43"])
     format: TableFormat = None

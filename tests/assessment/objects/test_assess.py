@@ -41,7 +41,7 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
             overturning += row["factor"] is not None
             top = HIGHEST_FACTOR if row["factor"] is None else row["factor"]
             below = top * np.linspace(0.05, 0.997, 60)
-            tried = np.concatenate([below, below * 1.0025, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
+            tried = np.concatenate([below, below * 1.0021, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
             plane = one.planes[row["direction"]]
             width, offset = plane.base, plane.offset
             gyration = math.hypot(width, one.height) / math.sqrt(12.0)
@@ -51,7 +51,7 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
                 body = RigidBody(left=left, right=right, height=one.mass_height, gyration=gyration)
                 peaks = tried * motion.peak_acceleration
                 overturned = body.response(motion.motion, peak_acceleration=peaks, period=motion.period).overturned
-                # a range narrower than the nodes of the search, 0.05 to 0.23 %, may be missed
+                # a range narrower than the distance of the factors tried, 0.2 %, may be missed
                 assert not (overturned[:60] & overturned[60:120]).any(), (row, motion.name)
                 assert not overturned[120], (row, motion.name)
                 hit |= {motion.name} if overturned[121:].any() else set()  # the range above may be as thin
@@ -100,7 +100,8 @@ def test_suite_of_records_with_hazard() -> None:
     assert worst["share_lower"] < worst["share"] <= worst["share_upper"]
     assert 1e-4 < worst["annual_rate"] < 0.1
     assert worst["annual_rate_lower"] == worst["annual_rate"] <= worst["annual_rate_upper"]
-    assert (best["annual_rate"], best["annual_rate_lower"], best["annual_rate_upper"]) == (None, 0.0, 1e-4)
+    assert (best["annual_rate"], best["annual_rate_lower"]) == (None, 0.0)
+    assert best["annual_rate_upper"] == pytest.approx(1e-4)
     assert "the annual rate of overturning is at least 0, at most 0.0001" in best["warnings"]
     body = rocking.Block(0.1, 0.8)
     hit = {one.name for one in records if body.response(one, scale=4.0 / one.peak_acceleration).overturned}
