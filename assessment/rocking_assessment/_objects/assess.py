@@ -14,7 +14,6 @@ from rocking.extension import (
     RESOLUTION,
     STANDARD_GRAVITY,
     Array,
-    FitStatus,
     Flags,
     InvalidArgumentError,
     Record,
@@ -23,7 +22,6 @@ from rocking.extension import (
     binomial_interval,
     check_stop,
     checked_resolution,
-    fit_curve,
     integer,
 )
 from rocking_assessment._objects.columns import (
@@ -36,28 +34,20 @@ from rocking_assessment._objects.columns import (
 from rocking_assessment._objects.motions import first_exceedances
 from rocking_assessment._objects.objects import Bodies, BodyArray, MeshObject, Object
 from rocking_assessment._objects.result import Assessment
-from rocking_assessment._objects.search import HIGHEST_FACTOR, Progress, factors_of, least, overturned_by, responses_of
+from rocking_assessment._objects.search import (
+    HIGHEST_FACTOR,
+    Progress,
+    estimated_outcomes,
+    factors_of,
+    least,
+    responses_of,
+    searched_factor,
+    strongest_factor,
+)
 from rocking_assessment._objects.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
 from rocking_assessment._objects.site import Motion, Site, record_doubts
 from rocking_assessment._objects.sliding import sliding_displacement
 from rocking_assessment._objects.standards import checked_clauses, demand_over_capacity
-from rocking_assessment._objects.columns import CLOSE, OUTPUTS, VERDICTS
-from rocking_assessment._objects.motions import first_exceedances
-from rocking_assessment._objects.objects import Bodies, BodyArray, Object
-from rocking_assessment._objects.result import Assessment
-from rocking_assessment._objects.search import HIGHEST_FACTOR, Progress, estimated_outcomes, factors_of, least, responses_of, searched_factor, strongest_factor
-from rocking_assessment._objects.sensitivity import ETA_CHANGE, MAX_SAMPLES, changed_objects, sampled_share
-from rocking_assessment._objects.site import Motion, Site, record_doubts
-from rocking_assessment._objects.sliding import sliding_displacement
-from rocking_assessment._objects.standards import checked_clauses, demand_over_capacity
-from rocking.extension import Array, Flags
-from rocking.extension import STANDARD_GRAVITY
-from rocking.extension import InvalidArgumentError, integer
-from rocking.extension import Scalar
-from rocking.extension import RESOLUTION, checked_resolution
-from rocking.extension import Record
-from rocking.extension import StopFlag, check_stop
-from rocking.extension import binomial_interval
 
 WIDE = 0.1  # relative distance of the bounds of an annual rate above which a warning is given [-]
 
@@ -266,7 +256,7 @@ def _event_rates(
     component reaches -g; there is no bound where a weaker one overturns it. `lowest`: factors below which none does
     (bodies,).
     """
-    from rocking.suites.hazard import exceedance_rates  # noqa: PLC0415  (xarray takes longer to load)
+    from rocking_assessment._hazard.rates import exceedance_rates  # noqa: PLC0415  (xarray takes longer to load)
 
     hazard: Any = site.hazard  # checked arrays, see `Site`
     intensity, rates = hazard

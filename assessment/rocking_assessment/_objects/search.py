@@ -18,21 +18,11 @@ from rocking.extension import (
     StopFlag,
     highest_vertical_scale,
     lowest_thresholds,
+    record_lines,
     respond,
 )
 from rocking_assessment._objects.objects import BodyArray
 from rocking_assessment._objects.site import Motion
-from rocking_assessment._objects.objects import BodyArray
-from rocking_assessment._objects.site import Motion
-from rocking.extension import Array, Flags
-from rocking.extension import RESOLUTION
-from rocking.extension import lowest_thresholds, record_lines
-from rocking.extension import Problem
-from rocking.extension import respond
-from rocking.extension import Record
-from rocking.extension import highest_vertical_scale
-from rocking.extension import Outcome
-from rocking.extension import StopFlag
 
 Progress = Callable[[float], None]  # called with the share of the work that is done [-]
 HIGHEST_FACTOR = 10.0  # highest factor on the motions of a site that is searched [-]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from rocking.extension import Array, Flags, Index, Outcome, Record, StopFlag
+from rocking.extension import Array, Flags, Index, StopFlag
 from rocking_assessment._objects.objects import Bodies, BodyArray, Object
 from rocking_assessment._objects.search import (
     HIGHEST_FACTOR,
@@ -18,9 +18,6 @@ from rocking_assessment._objects.search import (
     overturned_by,
 )
 from rocking_assessment._objects.site import Motion, static_acceleration
-from rocking_assessment._objects.site import Motion, static_acceleration
-from rocking.extension import Array, Flags, Index
-from rocking.extension import StopFlag
 
 ETA_CHANGE = 0.05  # change of the coefficient of restitution [-]
 
