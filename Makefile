@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm mutants oldest newest wheel lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify deposit test test-core test-all browser serve docs bench stress slurm mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -52,6 +52,14 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	snakefmt --check Snakefile workflow
 	@echo 'of long tests and enumerations a part is run: make test-all runs all'
 	$(PYTEST)
+
+# The locked packages without those that only the extra `assessment` has.
+test-core: $(UV) ## run the tests of the core where the extra `assessment` is not installed
+	$(UV) venv --quiet --clear --python $(PYTHON) build/core
+	$(UV) pip install --quiet --python build/core --require-hashes --requirement environment.lock
+	$(UV) pip uninstall --quiet --python build/core trimesh
+	$(UV) pip install --quiet --python build/core --no-deps --no-build-isolation --editable .
+	PATH=$(CURDIR)/build/core/bin:$$PATH NUMBA_CACHE_DIR=$(CURDIR)/build/core/kernels ROCKING_NO_BROWSER=1 $(PYTEST)
 
 build/clients/bin/openapi-python-client: | .venv/project
 	$(PYTHON) -m venv build/clients && build/clients/bin/pip install --quiet openapi-python-client datamodel-code-generator
