@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from rocking._datasets.checksum import sha256_of_file
+from rocking._datasets.netcdf import sha256_of_file
 from rocking._datasets.provenance import settings_digest
 
 FOLDER = Path("results/.records")

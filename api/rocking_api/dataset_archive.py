@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, UnknownDatasetError
-from rocking._datasets.checksum import find_damage, sha256_of
+from rocking._datasets.netcdf import find_damage, sha256_of
 
 OLDEST = 1980, 1, 1, 0, 0, 0
 """Time stamp of all files in the archive, the first that zip knows: equal files give equal bytes."""

@@ -21,9 +21,8 @@ import xarray as xr
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import Catalogue, UnknownDatasetError
-from rocking._datasets.checksum import find_damage, sha256_of
 from rocking._datasets.cube import DIMENSIONS
-from rocking._datasets.netcdf import open_netcdf
+from rocking._datasets.netcdf import find_damage, open_netcdf, sha256_of
 
 MAX_KEPT = 4  # stores in memory, and variables of cubes; an older one is made again on request
 SPECTRA = "spectra"  # folder of the spectrum cubes, which has a folder for each pulse

@@ -22,7 +22,7 @@ from rocking._interpolation.slices import windows_of
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking._model.checks import check_alpha
 from rocking._model.fields import CUBE_FIELDS
-from rocking._model.outcome_code import SURVIVES, outcome_codes
+from rocking._model.outcome import SURVIVES, outcome_codes
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
@@ -98,7 +98,7 @@ def solve_cubes(
     `pulse`: name of the pulse, or a pulse given by samples. `restitution` (l,): eta [-], [0, 1], ascending.
     `slenderness` (n,): 1/a [-], > 0, ascending. `frequency_ratio` (m,): omega [-], > 0, ascending. `alpha` (k,):
     slenderness angles [rad], ascending; 0 for the slender limit. `barred` (l, k, n - 1, m - 1): cells that are not
-    interpolated because overturning boundaries cross them (`rocking._boundary.cells`). `derived`: names of
+    interpolated because overturning boundaries cross them (`rocking._boundary.curves`). `derived`: names of
     `rocking._model.fields.DERIVED_FIELDS` that the cubes store too. `threads`: threads of the solver; by default all
     cores. `stop`: the computation ends with `StoppedError` soon after another thread sets it. Raises
     `InvalidArgumentError` if a value is out of range.

@@ -14,7 +14,7 @@ from rocking._boundary.curves import curves_at
 from rocking._boundary.search import RESOLUTION, region_code
 from rocking._boundary.tracing import CHORD
 from rocking._datasets.cube import read_dataset, read_spectrum, stored_pulse
-from rocking._model.outcome_code import outcome_codes
+from rocking._model.outcome import outcome_codes
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking.paper.overturning import case_1_1_margin, case_1_2_margin, overturning_amplitudes

@@ -19,7 +19,7 @@ from typing import Any
 
 import yaml
 
-from rocking._base.version import __version__
+from rocking._base.installation import __version__
 from workflow.verify import MANIFEST, problems
 
 ROOT = Path(__file__).parents[2]

@@ -10,7 +10,7 @@ PROJECT = Path(str(workflow.basedir))
 sys.path.insert(0, str(PROJECT))
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
 
-from rocking._base.version import __version__
+from rocking._base.installation import __version__
 from rocking._datasets.provenance import settings_digest, settings_text
 from rocking._base.source_tree import SourceTree
 from rocking._interpolation.slices import windows_of

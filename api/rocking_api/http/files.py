@@ -13,7 +13,7 @@ from fastapi.responses import FileResponse
 from starlette.types import Message, Receive, Scope, Send
 
 from rocking._datasets.catalogue import DataFile, DatasetFile
-from rocking._datasets.checksum import sha256_of
+from rocking._datasets.netcdf import sha256_of
 from rocking_api.http.caching import REVALIDATE, not_modified, validators
 from rocking_api.http.errors import problem_response
 

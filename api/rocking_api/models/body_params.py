@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import AfterValidator, Field, create_model
 
 import rocking._base.quantities as quantities
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.units import STANDARD_GRAVITY
 from rocking._dimensional.body import RespondingBody
 from rocking._dimensional.body_kinds import BODIES as KINDS
 from rocking._dimensional.body_kinds import described, signatures
