@@ -2,7 +2,9 @@
 
 Python, tables, options, HTTP and the pages derive from a `Quantity`. It imports nothing heavy: the layer of an
 interface makes its own object from the declaration, an option of typer in `rocking/_cli/options.py`, a field of
-pydantic in `api/rocking_api/models/quantity.py`. A `Kind` is a function with annotated parameters. A text describes a body or
+pydantic in `api/rocking_api/models/quantity.py`.
+
+A `Kind` is a function with annotated parameters. A text describes a body or
 pulse of a kind with the units of its parameters, `name(parameter=value, ...)`, in the same way in all interfaces.
 """
 

@@ -3,6 +3,9 @@
 The HDF5 library is not safe for threads, and the package netCDF4 releases the interpreter lock while it runs: two
 threads that read files at the same time can end the process. The locks of xarray cover neither attributes nor data sets
 in memory. This package therefore opens netCDF-4 files with the functions of this module only.
+
+A file ends with a sha256 digest, so that damage is found before a library fails or hangs on it. netCDF readers ignore
+bytes beyond the end of file that the format itself states.
 """
 
 import hashlib

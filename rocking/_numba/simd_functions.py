@@ -1,6 +1,8 @@
 """Functions of a SIMD vector: exponential, hyperbolic, sine and cosine, arc cosine, error function.
 
-The functions of the C library take one number. All relative errors are below 6e-16.
+The functions of the C library take one number, and four calls of a sine cost as much as the rest of a Taylor step.
+Relative errors of the exponentials are below 6e-16. For sine and cosine the angle is reduced to [-pi/4, pi/4] in two
+parts (Cody and Waite), followed by the polynomials of fdlibm (Sun Microsystems 1993): about one ulp of error up to 1e8.
 """
 
 from typing import Any
