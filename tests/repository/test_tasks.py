@@ -64,7 +64,7 @@ def perform(path: Path, step: re.Match[str]) -> None:
 def test_task(copy: Path, task: str) -> None:
     environment = os.environ | {"PYTHONPATH": f"{copy}{os.pathsep}{copy / 'api'}", "PYTHONWARNINGS": "error"}
     (step,) = [step for step in STEP.finditer(TASKS[task]) if not step["path"]]
-    command = ["-c", step["text"]] if step["language"] == "python" else shlex.split(step["text"])[1:]
+    command = ["-c", step["text"]] if step["language"] == "python" else ["-m", *shlex.split(step["text"])]
     if task == "figure":
         environment["PYTHONWARNINGS"] = "default"  # those of Snakemake are not ours
     done = subprocess.run(
