@@ -34,8 +34,6 @@ rule work_precision:
         code=lambda wildcards: benchmark_code("cost.work_precision"),
         baselines=installed_baselines,
         folder=subpath(output.record, parent=True),
-    message:
-        "Run time against error, {wildcards.diagram}"
     shell:
         "python -m benchmarks.cost.work_precision {wildcards.diagram} --out {params.folder} >{log}"
 
@@ -58,8 +56,6 @@ rule timed:
     params:
         code=lambda wildcards: benchmark_code(TIMED[wildcards.name]),
         module=lambda wildcards: TIMED[wildcards.name],
-    message:
-        "Benchmark {wildcards.name}"
     shell:
         "python -m benchmarks.{params.module} --out {output.record} >{log}"
 
@@ -82,7 +78,5 @@ rule bench:
     params:
         code=lambda wildcards: benchmark_code("figures.work_precision"),
         folder=subpath(output.summary, parent=True),
-    message:
-        "Summary of the benchmarks"
     shell:
         "cat {input} >{output.summary} && python -m benchmarks.figures.work_precision {params.folder} >{log}"

@@ -42,8 +42,6 @@ rule check_results:
         mem_mb=memory(1200),
     params:
         code=product_code("scripts/check_results.py", "checks/test_products.py", *DATA_CHECKS),
-    message:
-        "Testing the finished products"
     script:
         "../scripts/check_results.py"
 

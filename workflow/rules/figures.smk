@@ -9,11 +9,8 @@ DRAWN_TOGETHER = {
     "scale_law": ["figure-scale-law", "figure-scale-law-excitations"],
 }
 # figures with the caption of another one
-SAME_CAPTION = {
-    "figure-06": "figure-05",
-    "figure-12": "figure-11",
-    "figure-master-housner": "figure-master-spectra",
-}
+CAPTIONS = {"figure-06": "figure-05", "figure-12": "figure-11", "figure-master-housner": "figure-master-spectra"}
+MOTIONS = os.path.relpath(PROJECT / "workflow/motions")
 
 
 def boundaries_of(figure):
@@ -30,10 +27,7 @@ FIGURE_INPUTS = {
     "figure-master-spectra": boundaries_of("figure-master-spectra"),
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
     "figure-scale-law-excitations": {
-        "records": [
-            os.path.relpath(PROJECT / "workflow/motions" / name)
-            for name in chosen(config, "figure-scale-law-excitations")["records"]
-        ]
+        "records": expand(f"{MOTIONS}/{{name}}", name=chosen(config, "figure-scale-law-excitations")["records"])
     },
 }
 FIGURE_FILES = {
@@ -61,7 +55,7 @@ for _group, _figures in DRAWN_TOGETHER.items():
             [
                 report(
                     FIGURE_FILES[figure]["png"],
-                    caption=f"../report/{SAME_CAPTION.get(figure, figure)}.rst",
+                    caption=f"../report/{CAPTIONS.get(figure, figure)}.rst",
                     category="Figures",
                     labels={"figure": figure},
                 )
@@ -75,9 +69,6 @@ for _group, _figures in DRAWN_TOGETHER.items():
         localrule: True
         conda:
             "../envs/rocking.yaml"
-        resources:
-            mem_mb=memory(800),
-            runtime=60,
         params:
             figures={
                 figure: {

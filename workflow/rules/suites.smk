@@ -6,9 +6,9 @@ SUITE_LOGS = f"logs/suites/{SUITE['name']}"
 SUITE_FILES = {path.name: path for path in suite_configuration(SUITE, CONFIG_FOLDER).records.paths()}
 # asked for by `sensitivity`: one file for each record, and those of the suite
 HAS_SENSITIVITY = SUITE["sensitivity"] is not None
-SENSITIVITY_FILES = expand(f"{RESULTS}/sensitivity/{{file}}.nc", file=SUITE_FILES) if HAS_SENSITIVITY else []
-SENSITIVITY_PRODUCTS = {}
+SENSITIVITY_FILES, SENSITIVITY_PRODUCTS = [], {}
 if HAS_SENSITIVITY:
+    SENSITIVITY_FILES = expand(f"{RESULTS}/sensitivity/{{file}}.nc", file=SUITE_FILES)
     SENSITIVITY_PRODUCTS["sensitivity"] = f"{RESULTS}/sensitivity.nc"
     SENSITIVITY_PRODUCTS["sensitivity_rows"] = f"{RESULTS}/sensitivity.csv"
 # figures and the data set that each is drawn from
@@ -106,7 +106,5 @@ rule suite_figures:
             }
             for figure, source in SUITE_FIGURES.items()
         },
-    message:
-        "Drawing the figures of the suite"
     script:
         "../scripts/figures.py"

@@ -28,12 +28,15 @@ def draw_figure(
 ) -> None:
     """Compute and save the plotted data of a figure, draw them, and save the drawing in two formats.
 
-    `name`: its module has a function `data` that takes the paths of `inputs` and the configured values by name and
-    returns the plotted data; its function `draw` draws only these. `files`: paths of the `svg`, the `png` and the `nc`.
-    `paper`, `ours`: values that the paper prints, and values chosen here because it does not.
+    `name`: its module has a function `data` that takes the configured values and the paths of `inputs` by name,
+    which replace names of files among the values, and returns the plotted data; its function `draw` draws only
+    these. `files`: paths of the `svg`, the `png` and the `nc`. `paper`, `ours`: values that the paper prints, and
+    values chosen here because it does not.
     """
     module = importlib.import_module(f"workflow.figures.{name.replace('-', '_')}")
-    dataset = module.data(**{key: _paths(value) for key, value in inputs.items()}, **(paper or {}), **(ours or {}))
+    arguments = {**(paper or {}), **(ours or {})}
+    arguments |= {key: _paths(value) for key, value in inputs.items()}
+    dataset = module.data(**arguments)
     stem = Path(files["nc"]).stem
     attributes = {"id": stem, **attributes_of(f"figures/{stem}", provenance)}
     if ours:
