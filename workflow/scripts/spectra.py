@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rocking._boundary.cells import crossed_cells
 
+from rocking._boundary.curves import crossed_cells
 from rocking._datasets.cube import describe, read_dataset, write_dataset
 from rocking._spectra.cubes import solve_cubes
 from workflow.pulses import configured_pulse
