@@ -114,7 +114,8 @@ class CubeSlice:
         """True if the errors above this restitution were measured with the values of another cube."""
         if not self.measured:
             return True
-        return other.content == self.measured[self.restitutions.tolist().index(other.restitution)]
+        place = int(np.searchsorted(self.restitutions, other.restitution))
+        return other.content == self.measured[place]
 
     @cached_property
     def _axes_bytes(self) -> tuple[bytes, ...]:
@@ -234,7 +235,8 @@ def slice_of(
     """
     restitution = restitution_of(cube)
     content = str(cube.attrs.get("content_sha256", ""))
-    restitutions, measured = np.atleast_1d(cube.attrs.get("restitution_slices", restitution)), ()
+    restitutions = np.atleast_1d(cube.attrs.get("restitution_slices", restitution))
+    measured: tuple[str, ...] = ()
     if errors is not None and errors.axes_bytes == tuple(cube[name].values.tobytes() for name in AXES):
         window = errors.window(restitution, content)
         if window.stop:
