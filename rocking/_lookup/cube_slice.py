@@ -113,7 +113,8 @@ class CubeSlice:
         """True if the errors above this restitution were measured with the values of another cube."""
         if not self.measured:
             return True
-        return other.content == self.measured[self.restitutions.tolist().index(other.restitution)]
+        place = int(np.searchsorted(self.restitutions, other.restitution))
+        return bool(other.content == self.measured[place])
 
     @cached_property
     def _axes_bytes(self) -> tuple[bytes, ...]:
@@ -233,11 +234,13 @@ def slice_of(
     """
     restitution = restitution_of(cube)
     content = str(cube.attrs.get("content_sha256", ""))
-    restitutions, measured = np.atleast_1d(cube.attrs.get("restitution_slices", restitution)), ()
+    restitutions = np.atleast_1d(cube.attrs.get("restitution_slices", restitution))
+    measured: tuple[str, ...] = ()
     if errors is not None and errors.axes_bytes == tuple(cube[name].values.tobytes() for name in AXES):
         window = errors.window(restitution, content)
         if window.stop:
-            restitutions, measured = errors.restitutions[window], errors.digests[window]
+            restitutions = errors.restitutions[window]
+            measured = tuple(errors.digests[window])
     axes = {name: cube[name].values for name in AXES}
     layers = Layers(cube["peak_rotation"].shape, read or partial(_layer, cube))
     if read is None:

@@ -78,7 +78,7 @@ def test_blocks_of_figure_11_have_equal_groups() -> None:
 def test_scale_law_of_excitations_is_that_of_single_blocks() -> None:
     axis = {"low": 2.0, "high": 8.0, "points": 4}
     data = figure_scale_law_excitations.data(
-        records=[PROJECT / "workflow/motions/napa_HNN.csv"],
+        records=["napa_HNN.csv"],
         restitution=[0.8, 0.9],
         reference=0.9,
         slenderness={"low": 0.3, "high": 0.9, "points": 4},

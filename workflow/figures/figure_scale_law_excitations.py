@@ -21,6 +21,7 @@ from rocking.plot.style import WIDTH
 from workflow.claims.area import node_areas, share_of_area
 from workflow.figures.style import panel_letters, plotted
 
+MOTIONS = Path(__file__).parents[1] / "motions"
 LAW = 0.10  # error up to which the law is said to hold [-]
 LEVELS = (0.003, 0.01, 0.03, LAW, 0.3, 1.0)  # of the colours of the error [-]
 COLOURS = ("#08306B", "#2171B5", "#6BAED6", "#C6DBEF", "#FDBE85", "#E6550D", "#7F2704")  # blue where the law holds
@@ -43,7 +44,7 @@ ACROSS = {
 
 def data(
     *,
-    records: Sequence[Path],
+    records: Sequence[str],
     restitution: Sequence[float],
     reference: float,
     slenderness: Mapping[str, float],
@@ -52,7 +53,7 @@ def data(
 ) -> xr.Dataset:
     """Errors of the law and exponents under each excitation, where the slender block survives for every restitution.
 
-    `records`: files of recorded motions; `restitution`: eta [-]; `reference`: the eta from which
+    `records`: files of `workflow/motions`; `restitution`: eta [-]; `reference`: the eta from which
     the law predicts the other peaks [-]. Low, high and points of the axes: `slenderness` [-], g alpha/a_g, for records
     with their peak ground acceleration in place of a_g, in equal steps; `frequency_ratio` [-] for pulses and
     `frequency_parameter` p [rad/s] for records, in equal ratios.
@@ -66,7 +67,8 @@ def data(
     peaks = {
         "pulse": [peak_response(name, frequency_ratio=omega, **blocks).peak_rotation for name in PULSE_NAMES],
         "record": [
-            record_response(read_record(path), frequency_parameter=p, **blocks).peak_rotation for path in records
+            record_response(read_record(MOTIONS / name), frequency_parameter=p, **blocks).peak_rotation
+            for name in records
         ],
     }
     nodes = {"pulse": omega, "record": p}
@@ -95,7 +97,7 @@ def data(
             "title": "Error of the scale law for the coefficient of restitution, nine pulses and recorded motions",
             "summary": f"Peak rotation of slender blocks against eta squared for eta from {eta.min()} to {eta.max()}, "
             f"relative to eta = {reference}; missing where the block overturns for one of them or does not uplift.",
-            "excitation_names": " ".join([*PULSE_NAMES, *(path.stem for path in records)]),
+            "excitation_names": " ".join([*PULSE_NAMES, *(Path(name).stem for name in records)]),
             "restitution": eta,
             "reference": reference,
         },

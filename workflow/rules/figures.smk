@@ -10,7 +10,6 @@ DRAWN_TOGETHER = {
 }
 # figures with the caption of another one
 CAPTIONS = {"figure-06": "figure-05", "figure-12": "figure-11", "figure-master-housner": "figure-master-spectra"}
-MOTIONS = os.path.relpath(PROJECT / "workflow/motions")
 
 
 def boundaries_of(figure):
@@ -26,15 +25,22 @@ FIGURE_INPUTS = {
     "figure-10": boundaries_of("figure-10"),
     "figure-master-spectra": boundaries_of("figure-master-spectra"),
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
-    "figure-scale-law-excitations": {
-        "records": expand(f"{MOTIONS}/{{name}}", name=chosen(config, "figure-scale-law-excitations")["records"])
-    },
 }
 FIGURE_FILES = {
     figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in config["figures"]
 }
+# the records of a figure are files of workflow/motions: their digests are settings, as paths change with the folder of a run
+FIGURE_RECORDS = {
+    figure: {
+        name: sha256_of_file(PROJECT / "workflow/motions" / name) for name in chosen(config, figure).get("records", [])
+    }
+    for figure in config["figures"]
+}
 FIGURE_PROVENANCE = {
-    figure: provenance(["scripts/figures.py", f"figures/{figure.replace('-', '_')}.py"], config["figures"][figure])
+    figure: provenance(
+        ["scripts/figures.py", f"figures/{figure.replace('-', '_')}.py"],
+        {**config["figures"][figure], **({"motions": FIGURE_RECORDS[figure]} if FIGURE_RECORDS[figure] else {})},
+    )
     for figure in config["figures"]
 }
 # a figure that is in no group has a job of its own
