@@ -85,7 +85,7 @@ LARGEST_DEPARTURE = 0.02, 0.05
 """Largest changes of alpha and of eta from flight to flight [-]: larger ones are not independent of each other.
 
 Of ground that moves at 5 % of uplift the changes of alpha are up to 5 %. Where they are above 2 %, intervals hold alpha
-and p in 60 % of the traces (`python -m benchmarks.accuracy.free_rocking --kind ground`, without the limit).
+and p in about half of the traces (`python -m benchmarks.accuracy.free_rocking --kind ground`, without the limit).
 """
 
 EXACT = 5e-5
