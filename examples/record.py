@@ -3,7 +3,7 @@ A recorded ground motion
 ========================
 
 Does a component of the South Napa earthquake of 2014 overturn a stele of 0.5 m by 2 m? ``read_record`` reads PEER
-AT2, ESM, K-NET, columns of numbers and other formats.
+AT2, ESM, K-NET and other formats, and columns in a layout that is stated.
 """
 
 import os

@@ -6,6 +6,7 @@ from ._base.cells import named as named
 from ._base.cells import plain_name as plain_name
 from ._base.equality import EqualByValue as EqualByValue
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
+from ._base.errors import RecordFileError as RecordFileError
 from ._base.errors import UnreadableFileError as UnreadableFileError
 from ._base.errors import broadcast as broadcast
 from ._base.errors import finite as finite
@@ -48,8 +49,8 @@ from ._base.quantities import TOLERANCE as TOLERANCE
 from ._base.quantities import WIDTH as WIDTH
 from ._base.quantity import Quantity as Quantity
 from ._base.units import STANDARD_GRAVITY as STANDARD_GRAVITY
-from ._base.units import UNITS as UNITS
 from ._base.units import Scalar as Scalar
+from ._base.units import UNITS as UNITS
 from ._base.units import Values as Values
 from ._base.units import unit_name as unit_name
 from ._boundary.scan import RESOLUTION as RESOLUTION
@@ -62,6 +63,7 @@ from ._cli.fragility import suite_fragility as suite_fragility
 from ._cli.options import BaselineOrder as BaselineOrder
 from ._cli.options import OutputOptions as OutputOptions
 from ._cli.options import SeriesOptions as SeriesOptions
+from ._cli.options import TraceOptions as TraceOptions
 from ._cli.options import option as option
 from ._cli.options import said as said
 from ._cli.options import with_options as with_options
@@ -88,10 +90,10 @@ from ._dimensional.problem import search_range as search_range
 from ._dimensional.response import respond as respond
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._dimensional.table_header import Schema as Schema
+from ._dimensional.table_reader import BadRow as BadRow
 from ._dimensional.table_reader import MARK as MARK
 from ._dimensional.table_reader import MAX_CHARACTERS as MAX_CHARACTERS
 from ._dimensional.table_reader import SHEETS as SHEETS
-from ._dimensional.table_reader import BadRow as BadRow
 from ._dimensional.table_reader import Table as Table
 from ._dimensional.table_reader import TooManyRowsError as TooManyRowsError
 from ._dimensional.table_reader import csv_of_sheet as csv_of_sheet
@@ -105,8 +107,8 @@ from ._dimensional.table_reader import text_of as text_of
 from ._dimensional.thresholds import block_lines as block_lines
 from ._dimensional.thresholds import overturning_scale as overturning_scale
 from ._excitation.impulse import impulse_of as impulse_of
-from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from ._excitation.pulses import AbstractPulse as AbstractPulse
+from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from ._excitation.pulses import as_pulse as as_pulse
 from ._excitation.pulses import split_pulses as split_pulses
 from ._excitation.records.elastic_spectrum import largest_displacement as largest_displacement
@@ -117,8 +119,8 @@ from ._excitation.records.pair import PAIR_ANGLES as PAIR_ANGLES
 from ._excitation.records.pair import checked_pair as checked_pair
 from ._excitation.records.pair import rotated as rotated
 from ._excitation.records.readers.columns import read_rotations as read_rotations
-from ._excitation.records.readers.lines import TextFile as TextFile
 from ._excitation.records.readers.read_record import read_record as read_record
+from ._excitation.records.readers.text_file import TextFile as TextFile
 from ._excitation.records.record import Record as Record
 from ._excitation.records.record import offset_doubts as offset_doubts
 from ._excitation.records.vertical import highest_vertical_scale as highest_vertical_scale

@@ -93,7 +93,7 @@ class Reader(NamedTuple):
 
 def record(text: str) -> None:
     """Read a record without arguments, with those of one column, and as one of several components."""
-    for arguments in ({}, {"unit": "g", "time_step": 0.01}, {"component": "a"}):
+    for arguments in ({}, {"unit": "g", "time_step": 0.01}, {"acceleration": "a", "format": "columns"}):
         with suppress(InvalidArgumentError):
             parse_record(text.encode(), "x", **arguments)  # type: ignore[arg-type]
 
@@ -159,7 +159,9 @@ SUITE_FILE = partial(from_file, read=lambda path: read_suite(str(path)))
 
 READERS = {
     "columns": Reader(
-        record, [f"@{ROWS}", "@\n1\n2\n3\n", f"time @,a @{ROWS}", f"a,@{ROWS}", f"t,a_g{ROWS}@\n3,1\n"], RECORD
+        record,
+        [f"@{ROWS}", "@\n1\n2\n3\n", f"time @,a @{ROWS}", f"a,@{ROWS}", f"time [s],acc [g]{ROWS}@\n3,1\n"],
+        RECORD,
     ),
     "AT2": Reader(
         record, places(AT2, "Title", "ACC", "UNITS OF G", "NPTS= 3, DT= .01", "3, DT", ".01", "1 2 3"), RECORD
@@ -167,7 +169,7 @@ READERS = {
     "ESM": Reader(record, places(ESM, "0.01", "NDATA: 3", "gal", "1\n2\n3\n"), RECORD),
     "K-NET": Reader(record, places(KNET, "1", "100", "0.03", "1(gal)/1", "gal", "1 2 3"), RECORD),
     "any record": Reader(record, ["@"], RECORD),
-    "pulse in columns": Reader(PULSE_FILE, ["@", f"@{ROWS}", f"time,a @{ROWS}", f"0,1{ROWS}@\n3,1\n"], RECORD),
+    "pulse in columns": Reader(PULSE_FILE, ["@", f"@{ROWS}", f"time,acc [@]{ROWS}", f"0,1{ROWS}@\n3,1\n"], RECORD),
     "pulse in JSON": Reader(PULSE_FILE, ["{@", '{"acceleration":[@]}', '{"acceleration":[0,1],"time":@}'], PULSE),
     "suite in YAML": Reader(partial(SUITE_FILE, suffix="yaml"), ["@", "name: @\n", "hazard: [@]\n"], SUITE, (1_000,)),
     "suite in TOML": Reader(partial(SUITE_FILE, suffix="toml"), ["@", "name = @\n", "@ = 1\n", "[@]\n"], SUITE, LINES),

@@ -13,11 +13,12 @@ infinite; `closed` says which ends belong to it: "both", "left", "right" or "nei
 
 from __future__ import annotations
 
+import ast
 import math
 import operator
 import re
 import sys
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from decimal import Decimal
 from numbers import Real
 from types import NoneType
@@ -31,6 +32,7 @@ from rocking._base.units import EXAMPLES, UNITS, USUAL, WithUnit, split_quantity
 _MAX_FLOAT = sys.float_info.max
 
 MAX_TEXT = 300  # longest text of a value in a message [characters]
+MAX_FOUND = 60  # longest text of a file in a message [characters]
 
 
 class RockingError(Exception):
@@ -373,18 +375,62 @@ def one_of(parameter: str, value: str, choices: Iterable[str]) -> str:
 
 
 class RecordFileError(InvalidArgumentError):
-    """A file of a recorded motion that is damaged, ambiguous or of an unknown format.
+    """A file of a recorded motion that is damaged, or whose layout is not stated.
 
-    `line`: its number from 1, or None for the whole file; `found` and `expected`: what is there, and what should be.
+    Parameters
+    ----------
+    file : str
+        Its name.
+    line : int or None
+        Number of the line from 1, or None for the whole file.
+    found, expected
+        What is there, and what should be. In `expected` a part between backticks is an argument, `name` or
+        `name=value` with a value as Python writes it.
+    lines : sequence of str
+        Further lines of the message, such as the first lines of the file.
+    call : mapping, optional
+        Arguments that would read the file; `...` for a value that is not known.
     """
 
-    def __init__(self, file: str, line: int | None, found: Any, expected: str) -> None:
+    def __init__(
+        self,
+        file: str,
+        line: int | None,
+        found: Any,
+        expected: str,
+        lines: Sequence[str] = (),
+        call: Mapping[str, Any] | None = None,
+    ) -> None:
         super().__init__("record", found, expected)
-        self.file, self.line, self.expected = file, line, expected
-        text = str(found)
-        shown = text if len(text) <= 60 else f"{text[:60]}..."
-        place = file if line is None else f"{file}, line {line}"
-        self.args = (f"{place}: found {shown}; expected {expected}",)
+        self.file, self.line, self.expected, self.call = file, line, expected, call
+        self.lines = tuple(text.replace("`", "'") for text in lines)
+        self.args = (self.message(_as_argument, f'read_record("{file}", ', ", ", ")"),)
+
+    def message(self, spell: Callable[[str, Any], str], before: str, between: str, after: str = "") -> str:
+        """The message, with arguments as an interface spells them.
+
+        `spell` writes a name and its value, None without one; a call is written between `before` and `after`.
+        """
+        text = str(self.value).replace("`", "'")
+        shown = text if len(text) <= MAX_FOUND else f"{text[:MAX_FOUND]}..."
+        place = self.file if self.line is None else f"{self.file}, line {self.line}"
+        parts = f"{place.replace('`', chr(39))}: found {shown}; expected {self.expected}".split("`")
+        for k, part in enumerate(parts):
+            if k % 2:
+                name, equals, value = part.partition("=")
+                parts[k] = spell(name, ast.literal_eval(value) if equals else None)
+        lines = ["".join(parts), *(f"  {line}" for line in self.lines)]
+        if self.call is not None:
+            arguments = between.join(spell(name, value) for name, value in self.call.items())
+            lines.append(f"such as {before}{arguments}{after}")
+        return "\n".join(lines)
 
     def __reduce__(self) -> tuple[type[RecordFileError], tuple[Any, ...]]:
-        return type(self), (self.file, self.line, self.value, self.expected)
+        return type(self), (self.file, self.line, self.value, self.expected, self.lines, self.call)
+
+
+def _as_argument(name: str, value: Any) -> str:
+    """An argument of Python: its name in backticks, or with a value."""
+    if value is None:
+        return f"`{name}`"
+    return f"{name}=..." if value is ... else f"{name}={value!r}"

@@ -243,7 +243,7 @@ class Kind(Generic[Made]):
         read = Quantity.read if numbers else _read
         return {name: read(self.fields[name], value) for name, value in given.items() if numbers or value is not None}
 
-    def __call__(self, **given: Any) -> Made:
+    def __call__(self, /, **given: Any) -> Made:
         """Make one from what `read` reads; an error has the value that was given."""
         from rocking._base.errors import InvalidArgumentError  # noqa: PLC0415
 

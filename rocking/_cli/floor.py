@@ -33,9 +33,9 @@ def floor(
     from rocking._excitation.records.floor import floor_motion
     from rocking._excitation.records.readers.read_record import read_record
 
-    with option_errors({"periods": "--period"}), file_errors():
+    with option_errors({"periods": "--period", "format": "--file-format"}), file_errors():
         periods = [positive("period", one, "s") for one in period]
-        record = read_record(file, **vars(stated))
+        record = read_record(file, vertical=stated.vertical, **stated.stated())
         motion = floor_motion(record, periods=periods, damping=_each(damping), participation=_each(participation))
     typer.echo(csv_text(_columns(motion)), nl=False)
     typer.echo(motion.source, err=True)
@@ -46,6 +46,6 @@ def _each(values: list[float]) -> float | list[float]:
 
 
 def _columns(motion: Record) -> dict[str, Any]:
-    """Times and components, with units in the names."""
-    vertical = {} if motion.vertical is None else {"vertical_m/s2": motion.vertical.tolist()}
-    return {"time_s": motion.times.tolist(), "acceleration_m/s2": motion.acceleration.tolist(), **vertical}
+    """Times and components, with units in the names: columns that `read_record` takes as they are."""
+    vertical = {} if motion.vertical is None else {"vertical [m/s2]": motion.vertical.tolist()}
+    return {"time [s]": motion.times.tolist(), "acceleration [m/s2]": motion.acceleration.tolist(), **vertical}

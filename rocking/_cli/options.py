@@ -149,20 +149,64 @@ BaselineOrder = Annotated[
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class SeriesOptions:
-    """What files of records do not state: arguments of `read_record`."""
+_LAYOUT = "Layout of files of columns"
 
-    unit: Annotated[
-        str | None, said("Unit of the samples if the file states none: g, m/s2, cm/s2, gal, mm/s2.", "UNIT")
+
+def _layout(text: str, metavar: str, *names: str) -> Any:
+    """An option about the layout of a file."""
+    return said(text, metavar, *names, rich_help_panel=_LAYOUT)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ColumnOptions:
+    """Layout of a file of columns: arguments of `read_record` of the same names."""
+
+    time: Annotated[str | None, _layout("Column of the times: its name, or its number from 1.", "NAME|NUMBER")] = None
+    time_unit: Annotated[str | None, _layout("Unit of these times: s, ms, us, min.", "UNIT")] = None
+    time_step: Annotated[
+        str | None, option(q.TIME_STEP, text="Time step, in place of a column of times", panel=_LAYOUT)
     ] = None
-    time_step: Annotated[str | None, option(q.TIME_STEP, text="Time step if the file states none")] = None
-    component: Annotated[
+    unit: Annotated[str | None, _layout("Unit of the samples.", "UNIT")] = None
+    skip: Annotated[int, _layout("Lines above the names of the columns, or above the rows.", "NUMBER")] = 0
+    delimiter: Annotated[
         str | None,
-        said("Column or trace of a file with several; rows: one series along the rows of several columns.", "NAME"),
+        _layout("comma, semicolon, tab or blank; or the Fortran format of numbers of fixed width: 8f10.6.", "NAME"),
     ] = None
-    skip: Annotated[
-        int | None, said("Rows of numbers to skip above the samples, such as a count or a factor.", "NUMBER")
+    decimal: Annotated[str, _layout("Decimal sign, a dot or a comma.", "SIGN")] = "."
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeriesOptions(ColumnOptions):
+    """Format and layout of files of records."""
+
+    file_format: Annotated[
+        str | None,
+        _layout(
+            "AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SAC, miniSEED, TSPAIR, SLIST, columns; by default the one whose "
+            "signature the file has, else columns.",
+            "NAME",
+        ),
+    ] = None
+    acceleration: Annotated[
+        str | None, _layout("Column or channel of the samples: its name, or its number from 1.", "NAME|NUMBER")
+    ] = None
+    wrapped: Annotated[bool, _layout("All values are one series, row by row.", "", "--wrapped")] = False
+    allow_unusual: Annotated[
+        bool, _layout("Accept a PGA above 5 g, a PGV above 10 m/s, a step above 0.1 s.", "", "--allow-unusual")
+    ] = False
+
+    def stated(self) -> dict[str, Any]:
+        """The arguments of `read_record`, without that of a vertical component."""
+        names = [field.name for field in fields(SeriesOptions) if field.name != "file_format"]
+        return {"format": self.file_format, **{name: getattr(self, name) for name in names}}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TraceOptions(ColumnOptions):
+    """Layout of the trace of a rotation."""
+
+    rotation: Annotated[
+        str | None, _layout("Column of the rotations: its name, or its number from 1.", "NAME|NUMBER")
     ] = None
 
 
@@ -171,7 +215,7 @@ class FileOptions(SeriesOptions):
     """The same, and the vertical component."""
 
     vertical: Annotated[
-        str | None, said("File of the vertical component, upwards, or its column or trace in the file.", "FILE|NAME")
+        str | None, said("File of the vertical component, upwards, or its column or channel in the file.", "FILE|NAME")
     ] = None
 
 
@@ -206,7 +250,7 @@ class PictureOptions:
     ] = None
 
 
-GROUPS = (BodyOptions, SeriesOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
+GROUPS = (BodyOptions, ColumnOptions, OutputOptions, PictureOptions)  # types of arguments whose fields are options
 
 Duration = Annotated[
     str | None, said("Length: a number tau = p t, or a time such as 3s for a block with units.", "-|s")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-import re
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import FileOptions, OutputOptions, RecordOptions, said, with_options
+from rocking._cli.options import OutputOptions, RecordOptions, said, with_options
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 File = Annotated[
     str,
     typer.Argument(
-        help="Accelerogram: PEER AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC, or columns of times and accelerations.",
+        help="Accelerogram: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SAC, miniSEED, TSPAIR, SLIST, or columns whose "
+        "layout is stated.",
         metavar="FILE",
     ),
 ]
@@ -53,7 +54,7 @@ def record(
     from rocking._excitation.records.record import summary_of
     from rocking._model.block import AbstractBlock
 
-    with option_errors({"records": "--second"}), file_errors():
+    with option_errors({"records": "--second", "format": "--file-format"}), file_errors():
         form = printing.output_format(output, block)
         motion, body, restitution = read_problem(file, block)
         if fit and not isinstance(body, AbstractBlock):
@@ -65,7 +66,7 @@ def record(
                 found = body.response(motion, **given)
             else:
                 apart = Path(second).is_file()
-                other = replace(block, component=None if apart else second, vertical=None)
+                other = replace(block, acceleration=block.acceleration if apart else second, vertical=None)
                 pair = motion, read_problem(second if apart else file, other)[0]
                 angle, motion, found = _worst_direction(body, pair, given)
                 direction = {"direction_deg": angle}
@@ -114,20 +115,19 @@ def file_errors() -> Iterator[None]:
     try:
         yield
     except RecordFileError as error:
-        raise typer.BadParameter(with_options_named(str(error)), param_hint="FILE") from None
+        raise typer.BadParameter(error.message(_as_option, "", " "), param_hint="FILE") from None
     except UnreadableFileError as error:
-        if error.parameter != "path":
+        if error.parameter not in ("path", "file"):
             raise
         raise typer.BadParameter(f"{error.value}: {error.reason}", param_hint="FILE") from None
 
 
-def with_options_named(message: str) -> str:
-    """A message in which arguments of functions have the names of the options."""
-    return re.sub(
-        r"(?:(?:the )?argument )?`(unit|time_step|component|vertical|skip)`",
-        lambda found: "--" + found[1].replace("_", "-"),
-        message,
-    )
+def _as_option(name: str, value: Any) -> str:
+    """An argument of `read_record` as an option."""
+    option = "--" + {"format": "file-format"}.get(name, name).replace("_", "-")
+    if value is None or value is True:
+        return option
+    return f"{option} {'...' if value is ... else shlex.quote(str(value))}"
 
 
 def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingBody, float | str]:
@@ -137,7 +137,7 @@ def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingB
     from rocking._excitation.records.readers.read_record import read_record
 
     body, eta = read_body(options), RESTITUTION.read(options.restitution)
-    motion = read_record(file, **{one.name: getattr(options, one.name) for one in fields(FileOptions)})
+    motion = read_record(file, vertical=options.vertical, **options.stated())
     return motion.baseline_corrected(order=options.baseline_order), body, eta
 
 

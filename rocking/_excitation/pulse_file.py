@@ -3,14 +3,15 @@
 import codecs
 import json
 from dataclasses import dataclass
-from itertools import islice
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError
-from rocking._excitation.records.readers.columns import read_samples
-from rocking._excitation.records.readers.lines import TextFile
+from rocking._excitation.records.readers.columns import Table
+from rocking._excitation.records.readers.layout import Column, stated_layout
+from rocking._excitation.records.readers.text_file import TextFile
 
 MAX_BYTES = 8_000_000  # largest file of a pulse [bytes]: 100,000 times and accelerations of all digits
 KEYS = ("acceleration", "time", "period", "name")  # keys of a JSON file, arguments of `rocking.SampledPulse`
@@ -22,22 +23,21 @@ class PulseFile:
     """What a file of a pulse holds."""
 
     arguments: dict[str, Any]  # arguments of `rocking.SampledPulse`
-    text: TextFile  # the file
-    first: int | None  # index of the line of the first sample; None for JSON
+    name: str  # of the file
+    table: Table | None  # None for JSON
 
     def error(self, error: InvalidArgumentError) -> InvalidArgumentError:
         """An error about an argument as one about the file: with its name and the line."""
-        place, name = self.text.name, error.parameter
-        if error.index and self.first is None:
+        place, name = self.name, error.parameter
+        if error.index and self.table is None:
             name += f"[{error.index[0]}]"
-        elif error.index and self.first is not None:
-            rows = (k for start, lines in self.text.rows(self.first) for k, line in enumerate(lines, start) if line)
-            place += f", line {next(islice(rows, error.index[0], None)) + 1}"
+        elif error.index and self.table is not None:
+            place += f", line {self.table.line_of(error.index[0]) + 1}"
         return InvalidArgumentError("pulse", f"{place}: {name} {str(error.value)[:MAX_TEXT]}", error.allowed)
 
 
-def read_pulse_file(path: str | PathLike[str], most: int) -> PulseFile:
-    """The arguments of a pulse of at most `most` samples from a file.
+def read_pulse_file(path: str | PathLike[str], most: int, **stated: Any) -> PulseFile:
+    """The arguments of a pulse of at most `most` samples from a file in a layout that is stated.
 
     Raises `InvalidArgumentError` if the file cannot be read, with the parameter `path`; with the parameter `pulse`,
     naming the file and the line, if it does not hold a pulse.
@@ -53,12 +53,36 @@ def read_pulse_file(path: str | PathLike[str], most: int) -> PulseFile:
             raise RecordFileError(file.name, None, "a larger file", f"at most {MAX_BYTES} bytes")
         text = TextFile(file.name, content)
         if text.content.removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{":
-            return PulseFile({"name": file.stem} | _parse_json(text), text, None)
-        first, time, acceleration = read_samples(text, most)
+            return PulseFile({"name": file.stem} | _parse_json(text), text.name, None)
+        table, time, acceleration = _read_columns(text, most, **stated)
     except RecordFileError as error:
         place = error.file if error.line is None else f"{error.file}, line {error.line}"
         raise InvalidArgumentError("pulse", f"{place}: {str(error.value)[:MAX_TEXT]}", error.expected) from None
-    return PulseFile({"acceleration": acceleration, "time": time, "name": file.stem}, text, first)
+    return PulseFile({"acceleration": acceleration, "time": time, "name": file.stem}, text.name, table)
+
+
+def _read_columns(
+    text: TextFile, most: int, acceleration: Column | None = None, time: Column | None = None, **stated: Any
+) -> tuple[Table, Array | None, Array]:
+    """The columns, times if there are some, and accelerations, in any units.
+
+    Where they are neither stated nor named, a single column holds accelerations, and two hold times and accelerations.
+    """
+    with text.guarded("a pulse"):
+        table = Table(text, stated_layout(("columns",), acceleration=acceleration, time=time, **stated))
+        choice = table.choice()
+        columns = [choice.samples] if choice.time is None else [choice.samples, choice.time]
+        if columns == [None] and not table.header and table.width <= 2:
+            table.check_comma()
+            table.quantity_remarks(choice)
+            columns = [0] if table.width == 1 else [1, 0]
+        if None in columns:
+            expected = "accelerations, or times and accelerations, named `acceleration` and `time` or stated"
+            raise table.error(table.first, table.shown, expected)
+        values, *times = table.columns([column for column in columns if column is not None], times=True)
+        if values.size > most:
+            raise text.error(None, f"{values.size} rows", f"at most {most}")
+        return table, times[0] if times else None, values
 
 
 def _parse_json(text: TextFile) -> dict[str, Any]:

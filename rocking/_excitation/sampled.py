@@ -110,11 +110,21 @@ class SampledPulse(AbstractPulse):
         vars(self).update(fields | {"phases": phases, "values": values})
 
     @classmethod
-    def from_file(cls, path: str | PathLike[str], period: float | None = None) -> SampledPulse:
+    def from_file(
+        cls,
+        path: str | PathLike[str],
+        period: float | None = None,
+        *,
+        acceleration: str | int | None = None,
+        time: str | int | None = None,
+        skip: int = 0,
+        delimiter: str | None = None,
+        decimal: str = ".",
+    ) -> SampledPulse:
         """Read a pulse from a file.
 
-        Columns of numbers, separated by commas, semicolons or blanks, with or without a header: accelerations alone, or
-        times and accelerations. Or JSON: an object with the arguments of the class as keys.
+        Columns of numbers with the names `acceleration` and `time`, or without names: accelerations alone, or times and
+        accelerations. Or JSON: an object with the arguments of the class as keys.
 
         Parameters
         ----------
@@ -122,6 +132,8 @@ class SampledPulse(AbstractPulse):
             The file, of at most 8 MB; without its ending it names the pulse.
         period : float, optional
             T_p in the unit of the times, by default that of a JSON file, else the duration.
+        acceleration, time, skip, delimiter, decimal
+            Layout of the columns, as of `rocking.read_record`.
 
         Raises
         ------
@@ -129,7 +141,8 @@ class SampledPulse(AbstractPulse):
             If the file cannot be read or does not hold a pulse: with the line, what was found and what is allowed.
         """
         own = {} if period is None else {"period": positive("period", period, "-")}
-        file = read_pulse_file(path, MAX_SAMPLES)
+        layout = {"acceleration": acceleration, "time": time, "skip": skip, "delimiter": delimiter, "decimal": decimal}
+        file = read_pulse_file(path, MAX_SAMPLES, **layout)
         try:
             return cls(**file.arguments | own)
         except InvalidArgumentError as error:

@@ -1,7 +1,7 @@
 """Configuration of a suite of records: which files, blocks, levels and limit states.
 
 A configuration is a mapping, as read from a file; `docs/fragility.md` lists its keys. Those with a default may be left
-out: `DEFAULTS`, and what the files of the records state, `STATED_BY_FILES`.
+out: `DEFAULTS`, and `LAYOUT`, that of the files of the records.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._base.quantities import RESTITUTION
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
-from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_record, read_content
-from rocking._excitation.records.record import TIME_STEP, UNITS, Record
+from rocking._excitation.records.readers.layout import stated_layout
+from rocking._excitation.records.readers.read_record import FORMATS, parse_record, read_content
+from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.body import AbstractBody
 from rocking.suites.checks import check_demands
@@ -38,10 +39,21 @@ DEFAULTS: dict[str, Any] = {
     "sensitivity": None,
 }
 
-STATED_BY_FILES: dict[str, Any] = dict.fromkeys(
-    ("unit", "time_step", "component", "vertical", "skip", "baseline_order")
-)
-"""The same in its section `records`."""
+LAYOUT: dict[str, Any] = {
+    "format": None,
+    "acceleration": None,
+    "time": None,
+    "time_step": None,
+    "time_unit": None,
+    "unit": None,
+    "skip": 0,
+    "delimiter": None,
+    "decimal": ".",
+    "wrapped": False,
+    "vertical": None,
+    "allow_unusual": False,
+}
+"""Layout of the files of the records, in the section `records`: the arguments of `rocking.read_record`."""
 
 MAX_POINTS = 10_000  # most levels, and most points of one axis of the map
 MAX_CELLS = 1_000_000  # most points of the map
@@ -49,16 +61,12 @@ MAX_CELLS = 1_000_000  # most points of the map
 
 @dataclass(frozen=True)
 class RecordFiles:
-    """Folder of the records and facts that their files do not state: the keys of `docs/fragility.md`."""
+    """Folder of the records and the layout of their files: the keys of `docs/fragility.md`."""
 
     folder: Path
     pattern: str
-    unit: str | None
-    time_step: float | None
-    component: str | None
-    vertical: str | None
+    layout: Mapping[str, Any]
     baseline_order: int | None
-    skip: int | None = None
 
     def paths(self) -> list[Path]:
         """The files, at least one, in the order of their names."""
@@ -76,7 +84,7 @@ class RecordFiles:
         motion = parse_record(  # read_record would take a file of the name `vertical` in the working directory
             read_content("path", path),
             path.name,
-            **{name: getattr(self, name) for name in STATED_BY_FILES if name != "baseline_order"},
+            **self.layout,
         )
         corrected = motion.baseline_corrected(order=self.baseline_order)
         about = path.stem, corrected.source, corrected.remarks
@@ -168,30 +176,28 @@ def _name(value: Any) -> str:
 
 
 def _record_files(given: Any, folder: Path) -> RecordFiles:
-    given = _with_defaults(given, STATED_BY_FILES)
-    _keys("records", given, RecordFiles.__annotations__)
+    given = _with_defaults(given, LAYOUT | {"baseline_order": None})
+    _keys("records", given, ("folder", "pattern", *LAYOUT, "baseline_order"))
     for key in ("folder", "pattern"):
         if not isinstance(given[key], str) or not given[key]:
             raise InvalidArgumentError(f"records.{key}", given[key], "a text")
     if "/" in given["pattern"]:
         raise InvalidArgumentError("records.pattern", given["pattern"], "a pattern of file names, such as *.csv")
-    step, order = given["time_step"], given["baseline_order"]
+    order = given["baseline_order"]
     if order is not None and (type(order) is not int or not 0 <= order <= MAX_BASELINE_ORDER):
         raise InvalidArgumentError(
             "records.baseline_order", order, f"null, or an integer from 0 to {MAX_BASELINE_ORDER}"
         )
-    if given["skip"] is not None and (type(given["skip"]) is not int or not 0 <= given["skip"] <= MAX_SKIP):
-        raise InvalidArgumentError("records.skip", given["skip"], f"null, or an integer from 0 to {MAX_SKIP}")
-    return RecordFiles(
-        folder / given["folder"],
-        given["pattern"],
-        None if given["unit"] is None else one_of("records.unit", given["unit"], UNITS),
-        None if step is None else number("records.time_step", step, *TIME_STEP, unit="s"),
-        None if given["component"] is None else str(given["component"]),
-        None if given["vertical"] is None else str(given["vertical"]),
-        order,
-        given["skip"],
-    )
+    layout = {name: given[name] for name in LAYOUT}
+    try:
+        stated_layout(FORMATS, **{name: layout[name] for name in LAYOUT if name not in ("vertical", "allow_unusual")})
+    except InvalidArgumentError as error:
+        raise InvalidArgumentError(f"records.{error.parameter}", error.value, error.allowed) from None
+    if layout["vertical"] is not None and not isinstance(layout["vertical"], str | int):
+        raise InvalidArgumentError("records.vertical", layout["vertical"], "the name or the number of a column")
+    if not isinstance(layout["allow_unusual"], bool):
+        raise InvalidArgumentError("records.allow_unusual", layout["allow_unusual"], "true or false")
+    return RecordFiles(folder / given["folder"], given["pattern"], layout, order)
 
 
 def _blocks(given: Any) -> tuple[AbstractBlock, ...] | RigidBody:

@@ -311,11 +311,11 @@ def evaluate(function: Callable[..., Any], given: dict[str, Any]) -> str:
 
 def walk_commands(walk: Walk, folder: Path) -> None:
     """All options of all commands that take a number, and the numbers of the configuration of a suite."""
-    trace = "\n".join(f"{time},{rotation}" for time, rotation in zip(*TRACE, strict=True))
+    rows = "\n".join(f"{time},{rotation}" for time, rotation in zip(*TRACE, strict=True))
     files = {
         "record.csv": SAMPLES,
-        "trace.csv": trace,
-        "rotations.csv": "\n".join(map(str, TRACE[1])),
+        "trace.csv": f"time [s],rotation [rad]\n{rows}",
+        "rotations.csv": "\n".join(["rotation [rad]", *map(str, TRACE[1])]),
         "objects.csv": "width [m],height [m]\n0.4,1.6\n",
         "suite.json": json.dumps(SUITE),
     }

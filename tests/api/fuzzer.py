@@ -22,7 +22,7 @@ from rocking_api.settings import Settings
 
 from rocking._excitation.pulses import PULSE_NAMES
 from tests.api.conftest import Example, examples_of, texts
-from tests.excitation.record_files import DAMAGED, GOOD, ODD
+from tests.excitation.record_fuzzer import FILES
 
 GRANTED = 1.0
 """Time limit of a request of heavy work [s]."""
@@ -50,7 +50,7 @@ HOSTILE = [
     *("\x00", "%00", "../../etc/passwd", "a" * 256, "a" * 5000),
     *( "\ud7ff", "\U0001f600", "' OR 1=1 --", "<script>", "\r\nX: y"),
 ]  # fmt: skip
-RECORDS = [file.data for file in (*GOOD.values(), *ODD.values(), *DAMAGED.values())]
+RECORDS = [content for content, _ in FILES]
 BLOCK = {"width": "0.5", "height": "2.0"}
 STEPS = [
     *("0", "5e-324", "1e-300", "1e-12", "2e-8", "1e-4", "1e4", "1e12", "1e300", "1.7976931348623157e308", "1e400"),

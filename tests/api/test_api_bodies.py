@@ -7,7 +7,7 @@ from rocking._dimensional.body_kinds import BODIES as KINDS
 from tests.api.conftest import assert_problem, texts
 from tests.sampling import but_long, number, sample
 
-RECORD = "time [s],a [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
+RECORD = "time [s],acceleration [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
 BLOCK = {"width": 0.4, "height": 1.6}
 RECORDS = BLOCK | {"restitution": 0.9, "gravity": 9.8, "name": "a.csv"}
 TRACE = {"time": [0.02 * k for k in range(3)], "rotation": [0.1, 0.05, 0.01]}
@@ -23,7 +23,7 @@ ROUTES = {
     "/v1/records/pulse": ({"record": RECORD}, RECORDS | {"samples": 2}),
     "/v1/response": ({}, {"pulse": "sine", "slenderness": 0.4, "frequency_ratio": 5.0, "restitution": 0.85}),
     "/v1/spectrum": ({}, {"pulse": "sine", "slenderness": 0.4, "restitution": 0.85, "points": 3}),
-    "/v1/identify": (TRACE, {"confidence": 0.9, "degrees": True, "edges": 2}),
+    "/v1/identify": (TRACE, {"confidence": 0.9, "unit": "deg", "edges": 2}),
 }
 OTHER = {"pga": 2.0, "width": 0.5, "pulse": "cosine", "confidence": 0.8}
 

@@ -85,7 +85,8 @@ def test_history_and_scales_are_those_of_the_library(client, motion):
 def test_the_pulse_is_drawn_beside_the_record(client, motion):
     part = rocking.Record(motion.acceleration[800:2400], motion.time_step, "m/s2")
     plain = "\n".join(map(repr, part.acceleration.tolist())).encode()
-    found = post(client, plain, route="pulse", unit="m/s2", time_step=0.005, scale=2.0, samples=400).json()
+    stated = {"acceleration": 1, "unit": "m/s2", "time_step": 0.005}
+    found = post(client, plain, route="pulse", **stated, scale=2.0, samples=400).json()
     fit = rocking.suites.fit_pulse(part, blocks=rocking.Block(0.5, 2.0))
     assert found["pulse"]["period"] == pytest.approx(fit.period, rel=1e-6)
     assert len(found["time"]) == 400
@@ -100,10 +101,10 @@ def both_columns(share):
     """A motion of 2 s with a vertical component."""
     k = np.arange(100)
     table = np.stack([0.02 * k, 4.0 * np.sin(0.2 * k), share * np.cos(0.5 * k)], axis=1).tolist()
-    return ("t,h_m/s2,up_m/s2\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in table)).encode()
+    return ("time [s],h [m/s2],up [m/s2]\n" + "".join(f"{t!r},{a!r},{w!r}\n" for t, a, w in table)).encode()
 
 
-COLUMNS = {"component": "h", "vertical": "up"}
+COLUMNS = {"acceleration": "h", "vertical": "up"}
 
 
 @pytest.mark.parametrize("offset", [0.0, -0.03])
@@ -139,7 +140,7 @@ def test_the_vertical_component_is_a_column_of_the_body(client, offset):
 
 def test_errors_of_the_vertical_component_name_the_parameter(client):
     body = both_columns(-4.0)
-    assert_problem(post(client, body, component="h", vertical="z"), 422, "vertical")
+    assert_problem(post(client, body, acceleration="h", vertical="z"), 422, "vertical")
     assert_problem(post(client, vertical="up"), 422, "vertical")
     assert_problem(post(client, body, **COLUMNS, scale=5.0), 422, "scale")
     assert_problem(post(client, body, route="history", **COLUMNS, scale=5.0), 422, "scale")

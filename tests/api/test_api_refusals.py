@@ -139,7 +139,7 @@ def test_wrong_numbers_are_named_with_units_in_json_in_tables_and_of_records(cli
     assert assert_problem(step, 422, "time_step")["allowed"] == "a number [s]"
 
 
-RECORD = "time [s],a [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
+RECORD = "time [s],acceleration [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
 TABLE = "name,width [m],height [cm],peak_acceleration [m/s2],period [ms],restitution\nvase,0.2,80,4,500,\n"
 NESTED = "[" * 100_000 + "]" * 100_000
 GROUPS = '{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":%s}'
@@ -249,7 +249,7 @@ def test_wrong_parameters_beside_a_body_are_named(client):
     record = NAPA.read_bytes()
     for wrong in OF_RECORDS:
         assert_problem(client.post("/v1/records/response", params=SIZE | wrong, content=record), 422, next(iter(wrong)))
-    assert_problem(client.post(RESPONSE, params={"component": "Z"}, content=record), 422, "record")
+    assert_problem(client.post(RESPONSE, params={"acceleration": "Z"}, content=record), 422, "record")
     scales = "/v1/records/scales?width=0.5&height=2"
     assert_problem(client.post(scales + "&scale_min=2&scale_max=1", content=record), 422, "scale_max")
     for factor in (1e-300, 1e-200, 1e-100, 1e-30, 1e6):

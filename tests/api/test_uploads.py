@@ -144,7 +144,7 @@ HOSTILE = {
     "a name of 8 MB": lambda: b"a" * 8_000_000 + b"\n0,1\n1,2\n",
     "long lines": lambda: (b"a " * 4000 + b"\n") * number(20, 190) + b"1\n2\n",
     "openings of brackets": lambda: b"time," + b"(" * 8000 + b"\n" + b"0,1\n1,2\n2,1\n" * number(60_000, 600_000),
-    "fields that are no numbers": lambda: b"time_s,a_g\n" + b"0.01,1\n" * 1_000_000 + b"x" * 8000,
+    "fields that are no numbers": lambda: b"time [s],acc [g]\n" + b"0.01,1\n" * 1_000_000 + b"x" * 8000,
 }
 
 

@@ -55,6 +55,7 @@ def test_gyration_of_parts_is_that_of_the_whole():
         ("cone(width=1m)", "body"),
         ("-rectangle(width=1m, height=2m)", "body"),
         ("rectangle(width=1m, width=2m)", "body"),
+        ("rectangle(width=1m, height=2m, self=1)", "self"),
         ("rectangle(width=1m)", "height"),
         ("rectangle(width=1m, height=2m, wall=1cm)", "wall"),
         ("rectangle(width=1, height=2m)", "width"),

@@ -1,8 +1,7 @@
-"""Readers of accelerograms: good, odd and damaged files of each format."""
+"""Readers of accelerograms: files with their right ends, random layouts, damaged files of each format."""
 
 import pickle
 import random
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,338 +10,378 @@ import pytest
 
 import rocking
 from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
-from rocking._base.units import STANDARD_GRAVITY
-from rocking._excitation.records.readers import layout
+from rocking._base.units import STANDARD_GRAVITY as G
 from rocking._excitation.records.readers.columns import read_rotations
-from rocking._excitation.records.readers.lines import TextFile
 from rocking._excitation.records.readers.read_record import parse_record
+from rocking._excitation.records.readers.text_file import TextFile
 from rocking._excitation.records.record import UNITS
 from rocking._numba.cancellation import StopFlag
-from tests.excitation import dialects
-from tests.excitation.record_files import DAMAGED, GOOD, KNET_HEADER, KNET_ROWS, ODD, THREE, File, at2, esm, pairs, rows
+from tests.excitation.record_files import KNET_VALUES, STEP, at2, esm, knet, pairs, rows, values
 from tests.excitation.record_fuzzer import fuzz
+from tests.excitation.record_layouts import check_layout
 from tests.sampling import SEED, number
 
+FOLDER = Path(__file__).parents[1] / "data" / "field"
 
-@pytest.mark.parametrize("file", [*GOOD.values(), *ODD.values()], ids=[*GOOD, *ODD])
-def test_good_and_odd_files_are_read(file: File, tmp_path) -> None:
-    path = tmp_path / "motion.dat"  # the suffix says nothing
-    path.write_bytes(file.data)
-    record = rocking.read_record(path, **file.arguments)
-    assert record.time_step == pytest.approx(file.step, rel=1e-4)
-    np.testing.assert_allclose(record.acceleration, file.samples * UNITS[file.unit], rtol=1e-12)
-    assert "motion.dat" in record.source
+PEAK = 0.29188  # of the 40 values of the first files, in their unit
+
+SECONDS = {"time": 1, "time_unit": "s"}
+AS_COLUMNS = {"format": "columns", "acceleration": 2, **SECONDS}
+ONE = {"acceleration": 1, "unit": "g"}
+GAL = {"unit": "gal"}
+TIMED = {"unit": "gal", **SECONDS}
+ROWS = {"wrapped": True, "unit": "g", "time_step": 0.02}
+
+READ = [  # file, arguments, PGA [m/s2], time step [s], samples
+    ("knet_offset.NS", {}, 0.470458, 0.01, 160),
+    ("title_sets_unit.dat", {"skip": 1}, PEAK, 0.01, 40),
+    ("title_with_brackets.dat", {"skip": 2, "unit": "m/s2", "acceleration": 2, **SECONDS}, PEAK, 0.01, 40),
+    ("names_blank_rows_tab.dat", {"skip": 1}, PEAK * G, 0.01, 40),
+    ("corner_frequency_as_rate.txt", ONE | {"skip": 3, "time_step": 0.02}, PEAK * G, 0.02, 40),
+    ("frequency_range.dat", {"skip": 2}, PEAK * G, 0.01, 40),
+    ("factor_and_step_first.txt", ONE | {"skip": 2, "time_step": 0.01}, PEAK * G, 0.01, 40),
+    ("count_and_step_line2.txt", ONE | {"skip": 2, "time_step": 0.01}, PEAK * G, 0.01, 40),
+    ("wrapped_no_header.txt", {"wrapped": True, "unit": "g", "time_step": "10 ms"}, PEAK * G, 0.01, 40),
+    ("wrapped_interval_stated.dat", ROWS | {"skip": 4, "unit": "gal", "time_step": 0.005}, PEAK / 100, 0.005, 40),
+    ("at2_units_are.at2", {"unit": "g"}, PEAK * G, 0.02, 40),
+    ("at2_double_cr.at2", {}, PEAK * G, 0.02, 40),
+    ("component_underscore.csv", {"acceleration": "acc_NS", "time_unit": "s"}, PEAK, 0.01, 40),
+    ("component_underscore.csv", {"acceleration": "acc_EW(gal)", "time_step": 0.01}, 0.6 * PEAK, 0.01, 40),
+    ("three_components_no_time.txt", GAL | {"skip": 1, "acceleration": "N-S", "time_step": 0.01}, PEAK, 0.01, 40),
+    ("csmip_volume1.v1", {}, PEAK / 10.0 * G, 0.01, 40),
+    ("cosmos_volume2.v2", {"time_step": 0.025}, PEAK / 100.0, 0.025, 40),
+    ("jma_unit_two_names.csv", GAL | {"skip": 6, "acceleration": "NS", "time_step": 0.01}, 0.27682, 0.01, 13),
+    ("sample_counter.csv", {"time_step": 0.01}, 2.86136, 0.01, 120),
+    ("time_ms_2khz.csv", {"time_unit": "ms"}, 1.5, 0.0005, 800),
+    ("acc_g_x1000.csv", {"acceleration": "Acc (g) x1000", "unit": "mg"}, 1.71, 0.02, 400),
+    ("n_and_z.csv", {"acceleration": "N", "unit": "m/s2"}, 1.71, 0.02, 400),
+    ("n_and_z.csv", {"acceleration": 3, "unit": "m/s2"}, 0.88, 0.02, 400),
+    ("station_velletri.csv", {"acceleration": "Velletri NS"}, 1.71, 0.02, 400),
+    ("peak_in_g_data_in_gal.txt", {"skip": 1, "acceleration": 2, "unit": "cm/s2", **SECONDS}, 1.71, 0.02, 400),
+    ("quoted_decimal_commas.csv", {"decimal": ","}, 1.71, 0.02, 400),
+    ("quoted_decimal_commas.csv", {"decimal": ",", "delimiter": "comma"}, 1.71, 0.02, 400),
+    ("volts.csv", {"acceleration": "Accel 1", "unit": "g"}, 1.677, 0.02, 400),
+    ("place_above_columns.txt", {"skip": 1, "acceleration": 1, "unit": "gal", "time_step": 0.02}, 3.42, 0.02, 400),
+    ("numbered_names.txt", {"skip": 3, "acceleration": "2", "unit": "gal", **SECONDS}, 2.28, 0.02, 400),
+    ("numbered_names.txt", {"skip": 3, "acceleration": 2, "unit": "gal", **SECONDS}, 1.71, 0.02, 400),
+    ("count_of_all_channels.txt", {"skip": 4, "acceleration": 1, "unit": "gal", "time_step": 0.02}, 1.71, 0.02, 400),
+    ("blank_line_above_one_column.txt", GAL | {"skip": 3, "acceleration": 1, "time_step": 0.02}, 1.71, 0.02, 400),
+    ("at2_header_two_columns.txt", {**AS_COLUMNS, "skip": 4, "unit": "g"}, 1.71, 0.02, 400),
+    ("fixed_width_8f9.6_cards.eq", ROWS | {"skip": 1, "delimiter": "8f9.6"}, 1.71, 0.02, 400),
+    ("matched_to_spectrum.txt", {**AS_COLUMNS, "skip": 1, "unit": "m/s2"}, 1.71, 0.02, 400),
+    ("phone_uneven.csv", {"acceleration": "x", "unit": "m/s2", "time_step": 0.02}, 1.71, 0.02, 400),
+    ("comma_and_tab.txt", TIMED | {"skip": 1, "acceleration": "A2", "delimiter": r"[,\s]+"}, 2.28, 0.02, 400),
+    ("comma_and_tab.txt", TIMED | {"skip": 2, "acceleration": 3, "delimiter": ",\t"}, 2.28, 0.02, 400),
+    ("lon_lat_count_above.txt", {"skip": 2, "acceleration": 2, "unit": "m/s2", **SECONDS}, 1.71, 0.02, 400),
+    ("log_with_serial_numbers.csv", {"skip": 1, "acceleration": 4, "unit": "g", **SECONDS}, 1.71, 0.02, 400),
+]  # fmt: skip
+
+REFUSED = [  # file, arguments, what the message names
+    ("title_sets_unit.dat", {}, r"`acceleration`.*such as read_record\(.*, skip=1\)"),
+    ("frequency_range.dat", {}, r"such as read_record\(.*, skip=2\)"),
+    ("factor_and_step_first.txt", {"unit": "g", "time_step": 0.01}, "1 columns without names; .*`acceleration`"),
+    ("count_and_step_line2.txt", {"unit": "g"}, "skip=2"),
+    ("wrapped_no_header.txt", {"unit": "g", "time_step": 0.01}, "8 columns without names; .*wrapped=True"),
+    ("at2_units_are.at2", {}, r"line 3: found The units are \(g\); .*`unit`"),
+    ("component_underscore.csv", {"acceleration": "acc_NS"}, "`time_unit` .s, ms, us, min.*time_unit=..."),
+    ("cosmos_volume2.v2", {}, "states no time step; .*`time_step`"),
+    ("jma_unit_two_names.csv", {"acceleration": "NS"}, "one column NS .*skip=6"),
+    ("sample_counter.csv", {}, r"sample, acc \[g\]; .*`time` .a column. or `time_step`"),
+    ("time_ms_2khz.csv", {}, "`time_unit`"),
+    ("acc_g_x1000.csv", {}, "`acceleration` .*`unit`"),
+    ("acc_g_x1000.csv", {"acceleration": 2, "unit": "g"}, "a PGA of 174.4 g; .*allow_unusual=True"),
+    ("n_and_z.csv", {"unit": "m/s2"}, r"time \[s\], N, Z; expected the argument `acceleration`"),
+    ("station_velletri.csv", {}, r"Velletri NS \(g\), Norma NS \(g\); .*`acceleration`"),
+    ("peak_in_g_data_in_gal.txt", {}, "`acceleration` .*`time` .*`unit`"),
+    ("quoted_decimal_commas.csv", {}, "line 2: found -0,0299; .*decimal=','"),
+    ("quoted_decimal_commas.csv", {"unit": "g", "wrapped": True, "time_step": 0.02}, "decimal=','"),
+    ("simulation_velocity.txt", TIMED | {"skip": 6, "acceleration": 2}, "line 5: .*velocity.*columns"),
+    ("slist_unknown_counts.ascii", {"unit": "gal"}, "Counts; .*not converted"),
+    ("volts.csv", {"unit": "g"}, r"Accel 1 \(V\); .*`acceleration`"),
+    ("velocities_below.txt", {"acceleration": "NS", "unit": "gal", "time_step": 0.02}, "line 402: found a blank line"),
+    ("timestamps_only.csv", {"unit": "m/s2", "time_step": 0.02}, "Timestamp,X,Y,Z; .*`acceleration`"),
+    ("timestamps_only.csv", {"acceleration": 1, "unit": "m/s2", "time_step": 0.02}, "rise uniformly, as times do"),
+    ("at2_header_two_columns.txt", {}, "400 stated, 800 values .*format='columns'"),
+    ("fixed_width_8f9.6_cards.eq", ROWS, "delimiter='8f9.6'"),
+    ("matched_to_spectrum.txt", {"skip": 1, "acceleration": 2, "unit": "m/s2", **SECONDS}, "EC8 .*format='columns'"),
+    ("phone_uneven.csv", TIMED | {"acceleration": "x", "time": 2}, "interpolate .*`time_step`"),
+    ("comma_and_tab.txt", {"skip": 2, "acceleration": 3, "unit": "gal"}, "`delimiter`"),
+    ("lon_lat_count_above.txt", {"unit": "m/s2"}, "skip=2, acceleration=..., time=..."),
+    ("log_with_serial_numbers.csv", {}, "skip=2"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("file", DAMAGED.values(), ids=[*DAMAGED])
-def test_damaged_files_are_refused_with_place_and_reason(file: File, tmp_path) -> None:
-    path = tmp_path / "motion.dat"
-    path.write_bytes(file.data)
-    with pytest.raises(RecordFileError, match=file.error) as caught:
-        rocking.read_record(path, **file.arguments)
-    assert str(caught.value).startswith("motion.dat")
-    assert "; expected " in str(caught.value)
+@pytest.mark.parametrize(("file", "arguments", "peak", "step", "samples"), READ)
+def test_what_is_stated_is_read(file, arguments, peak, step, samples) -> None:
+    found = rocking.read_record(FOLDER / file, **arguments)
+    assert (found.time_step, found.samples) == (step, samples)
+    assert found.peak_acceleration == pytest.approx(peak, rel=1e-4)
 
 
-def test_a_number_of_values_that_the_header_does_not_state_is_a_remark_that_remains() -> None:
-    record = parse_record(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)).encode(), "x.at2")
-    assert record.remarks == ("the file holds 100 samples, its header states 101",)
-    assert record.source == "x.at2 (PEER AT2)"
-    assert record.baseline_corrected().remarks == record.resampled(0.005).remarks == record.remarks
-    assert parse_record(at2().encode(), "x.at2").remarks == ()
-    assert parse_record(f"NPTS: 20\n{pairs()}".encode(), "x").remarks == (
-        "the file holds 24 samples, its header states NPTS: 20",
+@pytest.mark.parametrize(("file", "arguments", "said"), REFUSED)
+def test_what_is_not_stated_is_asked_for(file, arguments, said) -> None:
+    with pytest.raises(RecordFileError, match=f"(?s){said}"):
+        rocking.read_record(FOLDER / file, **arguments)
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.iterdir()), ids=lambda path: path.name)
+def test_without_arguments_only_what_states_itself_is_read(path) -> None:
+    stated = {file: right for file, arguments, *right in READ if not arguments}
+    try:
+        found = rocking.read_record(path)
+    except RecordFileError:
+        assert path.name not in stated
+    else:
+        assert stated[path.name] == pytest.approx([found.peak_acceleration, found.time_step, found.samples], rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds
+def test_random_layouts_are_read_right_when_stated_and_never_otherwise(seed: int) -> None:
+    dice = random.Random(seed)
+    for _ in range(number(60, 20_000)):
+        check_layout(dice)
+
+
+def test_mutated_files_are_read_or_refused() -> None:
+    dice = random.Random(0)
+    count = number(300, 100_000)
+    read = sum(fuzz(dice) for _ in range(count))
+    assert 0.02 * count < read < 0.5 * count
+
+
+NAMED = {"AT2": (at2(), values() * G), "ESM": (esm(), values() / 100.0), "K-NET": (knet(), KNET_VALUES / 100.0)}
+
+
+@pytest.mark.parametrize("kind", NAMED)
+def test_named_formats_are_read_by_signature_and_by_name(kind: str) -> None:
+    text, expected = NAMED[kind]
+    for content in (text.encode(), text.replace("\n", "\r\n").encode(), text.encode("utf-16")):
+        for arguments in ({}, {"format": kind.lower()}):
+            found = parse_record(content, "motion", **arguments)
+            np.testing.assert_allclose(found.acceleration, expected, rtol=1e-12, atol=1e-15)
+            assert found.time_step == STEP
+    other = parse_record(text.encode(), "motion", unit="mm/s2", time_step=0.02)
+    said = " ".join(other.remarks)
+    assert other.time_step == 0.02
+    assert "; mm/s2 is used, as the argument `unit` says" in said
+    assert "a time step of 0.01 s; 0.02 s is used" in said
+    stop = StopFlag()
+    stop.set()
+    with pytest.raises(StoppedError):
+        parse_record(text.encode(), "motion", stop=stop)
+
+
+@pytest.mark.parametrize(
+    "line", ["4000 0.0100 NPTS, DT", "NPTS 4000 DT 0.01", "DT=.01SEC, NPTS=4000", "NPTS=4000, DT=1D-2"]
+)
+def test_forms_of_the_line_of_at2(line: str) -> None:
+    found = parse_record(at2(line, body=rows(count=3990)).encode(), "x.at2")
+    assert (found.samples, found.time_step) == (3990, 0.01)
+    assert found.remarks == ("the file holds 3990 samples, its header states 4000",)
+    assert found.baseline_corrected().remarks == found.remarks
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments", "said"),
+    [
+        (at2("NPTS= 10, DT= .01"), {}, "line 4: found 10 stated, 24 values"),
+        (at2("NPTS= 24, DT= 0"), {}, "line 4: found 0; expected the time step DT"),
+        (at2("NPTS= 1e400, DT= .01"), {}, "line 4: found 1E400"),
+        (at2("NPTS, DT"), {}, "line 4: found IndexError"),
+        (at2(units="UNITS OF CM").replace("ACCELERATION", "DISPLACEMENT"), {}, "line 3: .*expected accelerations"),
+        (at2(body="0.1 0.2\n\n0.3 0.4\n"), {}, "line 6: found a blank line"),
+        (at2(body="0.1 0.2 x\n"), {}, "line 5: found x; expected a number"),
+        (at2(), {"acceleration": 1}, "acceleration 1 beside AT2; .*format='columns'"),
+        (esm({"UNITS": "counts"}), {}, "found counts; expected a unit"),
+        (esm({"NDATA": "-1"}), {}, "found -1; expected the number of values"),
+        (esm({"DATA_TYPE": "VELOCITY"}), {}, "line 10: found VELOCITY"),
+        (knet("100Hz", "0Hz"), {}, "line 11: found 0"),
+        (knet("(gal)", "(counts)"), {}, "line 14: found counts"),
+        (knet("0.24", "1e308"), {}, "line 12: found "),
+        (knet("2000(gal)/8388608", "1e308(gal)/1e-9"), {}, "a number beyond the range of doubles"),
+        (knet("Duration", "duration"), {}, "line 12: found another line"),
+        ("<html>\n", {}, "line 1: found a web page"),
+        ('{"a": 1}', {}, "line 1: found JSON"),
+        ("", {}, "an empty file"),
+        ("1\n2\0\n", {}, "binary content"),
+        ("1," * 9000 + "\n2\n", {}, "line 1: .*at most 8192 bytes"),
+        (pairs().replace("0.122560", "nan"), {}, "line 3: found nan; expected a number"),
+        (pairs().replace("0.122560", "1e999"), {}, "line 3: found 1e999"),
+        (pairs().replace("0.122560", "1_0"), {}, "line 3: found 1_0"),
+        (pairs("").replace("0.000000", "nan", 1), AS_COLUMNS | {"unit": "g"}, "line 1: found nan"),
+        (pairs("").replace("0.000000", "ERR", 1), AS_COLUMNS | {"unit": "g"}, "line 1: found 0.000 among names"),
+        (pairs("time [s],acceleration [g]\ns,g\n"), {}, "line 2: found s; expected a number, as below it"),
+        ("time [s],x [g],acceleration [g]\n0,1,2\n0.1,2,0\n", {}, "`acceleration`"),
+        ("time [s],x,acceleration\n0,1,2\n0.1,2,0\n", {"unit": "g"}, "`acceleration`"),
+        (pairs().replace("0.122560", ""), {}, "line 3: found an empty cell"),
+        (pairs().replace("0.122560", "0.1,2"), {}, "line 3: found 3 cells"),
+        (pairs().replace("0.010,0.122560\n", ""), {}, "uniform steps"),
+        (pairs().replace("0.010,0.122560\n", '"0.010",0.122560,"\n'), {}, "cells|quotes|pandas"),
+        ("time [s],acc [g]\n" + "".join(f"{k / 128:.3f},{k % 7}\n" for k in range(20)), {}, "rounded to 0.001 s"),
+        ("time [s],acc [g]\n0,1\n0,2\n", {}, "times that increase"),
+        ("time [s],acceleration [g]\n0,0\n0.2,1\n0.4,0\n", {}, "a time step of 0.2 s; .*allow_unusual"),
+        ("time [s],acceleration [m/s2]\n" + "".join(f"{k},{3}\n" for k in range(20)), {"time_unit": "ms"}, "^$"),
+        ("0,1\n1,2\n2,0\n", {"acceleration": 1, "unit": "g", "time_step": 0.1}, "delimiter=','.*decimal=','"),
+        ("0;0\n", {"acceleration": 2, "time": 2, "time_unit": "s", "unit": "g"}, "different columns"),
+    ],
+)  # fmt: skip
+def test_damaged_files_are_refused_with_place_and_reason(text, arguments, said) -> None:
+    if said == "^$":  # the argument wins
+        assert parse_record(text.encode(), "motion", **arguments).time_step == pytest.approx(1e-3)
+        return
+    with pytest.raises(RecordFileError, match=f"(?s)^motion.*{said}"):
+        parse_record(text.encode(), "motion", **arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parameter"),
+    [
+        ({"format": "word"}, "format"),
+        ({"acceleration": 0}, "acceleration"),
+        ({"acceleration": True}, "acceleration"),
+        ({"time": " "}, "time"),
+        ({"time": 1, "time_step": 0.1}, "time_step"),
+        ({"time_unit": "h"}, "time_unit"),
+        ({"unit": "feet"}, "unit"),
+        ({"skip": -1}, "skip"),
+        ({"delimiter": "x+"}, "delimiter"),
+        ({"delimiter": "8f41.6"}, "delimiter"),
+        ({"decimal": "?"}, "decimal"),
+        ({"wrapped": True, "acceleration": 1}, "wrapped"),
+    ],
+)
+def test_arguments_out_of_range_are_named(arguments, parameter) -> None:
+    with pytest.raises(InvalidArgumentError) as caught:
+        parse_record(pairs().encode(), "motion", **arguments)
+    assert caught.value.parameter == parameter
+
+
+@pytest.mark.parametrize("unusual", ["1000", "9.9"])
+def test_what_is_unusual_is_a_question_with_an_answer(unusual: str) -> None:
+    text = pairs().replace("0.122560", unusual)
+    with pytest.raises(RecordFileError, match="allow_unusual=True"):
+        parse_record(text.encode(), "motion")
+    assert parse_record(text.encode(), "motion", allow_unusual=True).peak_acceleration == pytest.approx(
+        G * float(unusual)
     )
 
 
-@pytest.mark.parametrize(
-    ("file", "stated"),
-    [
-        (at2(), "the unit g"),
-        (esm(), "the unit cm/s2"),
-        (pairs(), "the unit g"),
-        (KNET_HEADER + KNET_ROWS, "the unit gal"),
-        ("unit: g\nunit: gal\ndt: 0.01 s\n0.1\n0.2\n-0.1\n", ""),
-        ("unit: counts\ndt: 0.01 s\n0.1\n0.2\n-0.1\n", "unit: counts"),
-    ],
-    ids=["AT2", "ESM", "columns", "K-NET", "two units", "counts"],
-)
-def test_an_argument_beats_the_file_with_a_remark_that_names_both(file: str, stated: str) -> None:
-    """What is ambiguous in the file alone is settled by the argument without one."""
-    record = parse_record(file.encode(), "x", unit="mm/s2", time_step=0.02)
-    own = parse_record(file.encode(), "x", unit="g")
-    assert record.time_step == 0.02
-    assert "a time step of 0.01 s; 0.02 s is used, as the argument `time_step` says" in " ".join(record.remarks)
-    ratio = UNITS["mm/s2"] / UNITS["g"]
-    np.testing.assert_allclose(record.acceleration, own.acceleration * ratio, rtol=1e-12)
-    assert (f"the file states {stated};" in " ".join(record.remarks)) == bool(stated)
-
-
-@pytest.mark.parametrize(
-    "file", [at2(), esm(), KNET_HEADER + KNET_ROWS, pairs()], ids=["AT2", "ESM", "K-NET", "columns"]
-)
-def test_reading_can_be_cancelled(file: str) -> None:
-    stop = StopFlag()
-    parse_record(file.encode(), "x", stop=stop)
-    stop.set()
-    with pytest.raises(StoppedError):
-        parse_record(file.encode(), "x", stop=stop)
-
-
-GROWTH = """
-import sys
-from rocking._excitation.records.readers.read_record import read_record
-
-def most():
-    (line,) = [line for line in open("/proc/self/status") if line.startswith("VmHWM")]
-    return int(line.split()[1])
-
-before = most()
-assert read_record(sys.argv[1]).samples == 600_000
-print(most() - before)
-"""
-"""Prints how much memory reading a file takes [kB]."""
-
-
-@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs the memory that Linux tells")
-@pytest.mark.parametrize(
-    ("header", "row"),
-    [
-        ("time_s,acceleration_g\n", "{0:.2f},{1:.9f}\n"),
-        ("unit: g\ndt: 0.01\n", "{1:.17f}\n"),
-        (at2("NPTS= 600000, DT= .01", body=""), "{1:19.10E}\n"),
-    ],
-    ids=["columns", "one column", "AT2"],
-)
-def test_reading_takes_at_most_four_times_the_memory_of_the_file(header: str, row: str, tmp_path) -> None:
-    path = tmp_path / "motion"
-    path.write_text(header + "".join(row.format(0.01 * k, 0.1 + k / 1e9) for k in range(600_000)))
-    grown = subprocess.run([sys.executable, "-c", GROWTH, path], check=True, capture_output=True).stdout
-    assert 1024 * int(grown) < 4 * path.stat().st_size
+def test_an_argument_beats_the_file_with_a_remark_that_names_both() -> None:
+    title = "velocity of the table\n"
+    text = title + pairs("time [s],Accel (V)\n")
+    stated = {"skip": 1, "acceleration": "accel", "unit": "g"}
+    with pytest.raises(RecordFileError, match="velocity of the table"):
+        parse_record(text.encode(), "motion", **stated)
+    found = parse_record(text.encode(), "motion", format="columns", **stated)
+    assert any("velocity of the table; g is used" in remark for remark in found.remarks)
+    found = parse_record(pairs().encode(), "motion", unit="gal", time="time", time_unit="ms", allow_unusual=True)
+    assert [remark.partition(";")[0] for remark in found.remarks] == [
+        "the file says acceleration [g]",
+        "the times are in s, says the file",
+    ]
+    found = parse_record(text.removeprefix(title).encode(), "motion", **stated | {"skip": 0})
+    assert found.remarks == ("the file says Accel (V); g is used, as the argument `unit` says",)
+    assert found.source == "motion (column 2, Accel (V), from line 2)"
 
 
 def test_errors_can_be_sent_between_processes(tmp_path) -> None:
     with pytest.raises(InvalidArgumentError, match="no such file"):
         rocking.read_record(tmp_path / "none.at2")
-    error = RecordFileError("a.at2", 3, "x", "a number")
+    error = RecordFileError("a.at2", 3, "x", "a number; or `skip=2`", ["line 1: `x`"], {"skip": 2, "unit": ...})
     copy = pickle.loads(pickle.dumps(error))
-    assert str(copy) == str(error) == "a.at2, line 3: found x; expected a number"
-    assert (copy.file, copy.line, copy.expected) == ("a.at2", 3, "a number")
+    text = "a.at2, line 3: found x; expected a number; or skip=2\n  line 1: 'x'\n"
+    assert str(copy) == str(error) == text + 'such as read_record("a.at2", skip=2, unit=...)'
 
 
 def test_seismic_formats_without_obspy_name_the_package(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "obspy", None)
-    with pytest.raises(RecordFileError, match="pip install obspy"):
-        parse_record(b"000001D " + b"\x01" * 600, "x.mseed", unit="g")
     sac = np.zeros(700, np.uint8)
     sac[304] = 6
-    with pytest.raises(RecordFileError, match="pip install obspy"):
-        parse_record(sac.tobytes(), "x.sac", unit="g")
+    traces = b"TIMESERIES XX_A__HNE_R, 2 samples, 50 sps, 2031-01-01T00:00:00, TSPAIR, FLOAT, M/S**2\n"
+    for content in (b"000001D " + b"\x01" * 600, sac.tobytes(), traces, traces.replace(b"TSPAIR", b"SLIST")):
+        with pytest.raises(RecordFileError, match="pip install 'rocking"):
+            parse_record(content, "x", unit="g")
 
 
-@pytest.mark.parametrize(
-    ("missing", "decimals", "read"), [(400, 3, True), (200, 3, False), (398, 3, False), (400, 2, False)]
-)
-def test_times_are_uniform_as_far_as_their_last_decimal_says(missing: int, decimals: int, read: bool) -> None:
-    lines = [f"{k / 128:.{decimals}f},{np.sin(k):.4f}\n" for k in range(401) if k != missing]
-    text = ("time [s],acc [g]\n" + "".join(lines)).encode()
-    if read:
-        assert parse_record(text, "rounded").time_step == pytest.approx(1 / 128, rel=1e-3)
-    else:
-        with pytest.raises(RecordFileError, match="uniform steps"):
-            parse_record(text, "rounded")
+def test_seismic_formats_with_obspy(tmp_path) -> None:
+    obspy = pytest.importorskip("obspy")
+    trace = obspy.Trace(values().astype(np.float32), {"delta": STEP, "channel": "HNE", "npts": 24})
+    for kind, name in (("SAC", "SAC"), ("miniSEED", "MSEED"), ("TSPAIR", "TSPAIR"), ("SLIST", "SLIST")):
+        path = tmp_path / kind
+        trace.write(str(path), format=name)
+        if kind in ("TSPAIR", "SLIST"):
+            path.write_text(path.read_text().replace("Counts", "M/S**2"))
+        found = rocking.read_record(path, unit="m/s2")
+        assert found.time_step == pytest.approx(STEP, rel=1e-6)
+        np.testing.assert_allclose(found.acceleration, values(), atol=1e-6)
+    trace.data = np.arange(24, dtype=np.int32)
+    trace.write(str(tmp_path / "counts"), format="MSEED")
+    with pytest.raises(RecordFileError, match="counts"):
+        rocking.read_record(tmp_path / "counts", unit="gal")
 
 
-@pytest.mark.parametrize("rows", ["0.1\n0.2\n", "1 " * 4000])
-def test_words_of_long_lines_are_not_looked_up(rows: str, monkeypatch) -> None:
-    words: list[str] = []
-    for name in ("quantities_of", "unit_name"):
-        looked_up = getattr(layout, name)
-        monkeypatch.setattr(layout, name, lambda text, *given, of=looked_up: words.append(text) or of(text, *given))
-    with pytest.raises(RecordFileError):
-        parse_record((("a " * 4000 + "\n") * 3 + rows).encode(), "long")
-    assert len(words) < 100
+UP = "time [s],vertical [gal]\n" + "".join(f"{k * STEP:.2f},{10 * (k % 9)}\n" for k in range(100))
+ACROSS = at2("NPTS= 100, DT= .01 SEC", body=rows(count=100))
 
 
-@pytest.mark.parametrize("seed", [1, SEED], ids=["stored", "drawn"])  # processes of one run draw different seeds
-def test_no_random_layout_is_read_as_another_motion(seed: int) -> None:
-    """With all that a person who knows the file may state, most are read; the seed is in a failure."""
-    count = number(100, 10_000)
-    assert dialects.run(count, seed) > 0.9 * count
-
-
-def test_mutated_files_are_read_or_refused() -> None:
-    count, dice = number(500, 100_000), random.Random(0)
-    read = sum(fuzz(dice) for _ in range(count))
-    assert 0.02 * count < read < 0.95 * count
-
-
-def test_the_vertical_component_of_a_second_file(tmp_path) -> None:
-    paths = [tmp_path / name for name in ("h.at2", "up.csv")]
-    paths[0].write_text(at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)))
-    paths[1].write_text("unit: gal\ndt: 0.01\n" + "".join(f"{10.0 * k}\n" for k in range(100)))
+@pytest.mark.parametrize(("count", "done"), [(100, ""), (95, "continued by zeros"), (104, "cut")])
+def test_the_vertical_component_of_a_second_file(count: int, done: str, tmp_path) -> None:
+    paths = [tmp_path / name for name in ("h.at2", "up.at2")]
+    paths[0].write_text(ACROSS)
+    paths[1].write_text(at2(f"NPTS= {count}, DT= .01 SEC", body=rows(count=count)))
     found = rocking.read_record(paths[0], vertical=paths[1])
-    horizontal = rocking.read_record(paths[0])
-    np.testing.assert_array_equal(found.acceleration, horizontal.acceleration)
-    np.testing.assert_allclose(found.vertical, 0.1 * np.arange(100.0), rtol=1e-14)
-    assert found.remarks == horizontal.remarks != ()
-    assert (found.name, found.source) == (horizontal.name, f"{horizontal.source}; vertical: up, up.csv (columns)")
-
-
-@pytest.mark.parametrize(("count", "done", "at_95"), [(95, "continued by zeros", 0.0), (104, "cut", 0.96)])
-def test_a_vertical_component_of_another_length_never_changes_the_horizontal_one(count, done, at_95, tmp_path) -> None:
-    paths = [tmp_path / name for name in ("h.csv", "up.csv")]
-    for path, size in zip(paths, (100, count), strict=True):
-        path.write_text("unit: gal\ndt: 0.01\n" + "".join(f"{1 + k}\n" for k in range(size)))
-    found = rocking.read_record(paths[0], vertical=paths[1])
-    assert found.samples == found.vertical.size == 100
-    np.testing.assert_allclose(found.vertical[:96], [*found.acceleration[:95], at_95], rtol=1e-14)
-    said = f"the vertical component has {count} samples and the horizontal one 100: it is {done}"
-    assert found.remarks == (said,)
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("unit: g\ndt: 0.02\n" + "1\n" * 100, r"`vertical` = 'a time step of 0.02 s' .* 0\.01 s"),
-        ("unit: g\ndt: 0.01\n" + "1\n" * 80, "`vertical` = '80 samples' .* 100"),
-        ("unit: g\ndt: 0.01\n" + "1\n" * 120, "`vertical` = '120 samples' .* 100"),
-        ("unit: g\n" + "1\n" * 100, "up.csv: .*time_step"),
-        ("<html>", "up.csv, line 1"),
-    ],
-)
-def test_a_second_file_that_does_not_belong_is_refused(text: str, said: str, tmp_path) -> None:
-    paths = [tmp_path / name for name in ("h.csv", "up.csv")]
-    paths[0].write_text("unit: g\ndt: 0.01\n" + "1\n" * 100)
-    paths[1].write_text(text)
-    with pytest.raises(InvalidArgumentError, match=said):
-        rocking.read_record(paths[0], vertical=paths[1])
+    expected = np.zeros(100)
+    expected[:count] = values(count)[:100] * G
+    np.testing.assert_allclose(found.vertical, expected, rtol=1e-12)
+    np.testing.assert_array_equal(found.acceleration, rocking.read_record(paths[0]).acceleration)
+    assert all(done in remark for remark in found.remarks)
+    for wrong in (at2("NPTS= 80, DT= .01 SEC", body=rows(count=80)), at2("NPTS= 100, DT= .02", body=rows(count=100))):
+        paths[1].write_text(wrong)
+        with pytest.raises(InvalidArgumentError, match="`vertical`"):
+            rocking.read_record(paths[0], vertical=paths[1])
 
 
 def test_the_vertical_component_of_another_column(tmp_path) -> None:
     path = tmp_path / "motion.csv"
-    path.write_text(THREE)
-    found = rocking.read_record(path, component="NS_g", vertical="ew")
-    np.testing.assert_array_equal(found.vertical, rocking.read_record(path, component="ew").acceleration)
-    assert found == parse_record(THREE.encode(), "motion.csv", component="NS_g", vertical="EW_g")
-    for given, said in (
-        ({"component": "NS_g", "vertical": "up"}, r"`vertical` = 'up' .* a component of motion.csv .*NS_g, EW_g"),
-        ({"vertical": "EW_g"}, "argument `component`"),
-        ({"component": "NS_g", "vertical": tmp_path / "none.at2"}, r"`vertical` = .*: no such file"),
-    ):
-        with pytest.raises(InvalidArgumentError, match=said):
-            rocking.read_record(path, **given)
-    path.write_text(at2())
-    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'up' .* a file with one component"):
-        rocking.read_record(path, vertical="up")
+    path.write_text(
+        "time [s],NS [g],UP [g]\n" + "".join(f"{k * STEP:.2f},{v},{v / 2}\n" for k, v in enumerate(values()))
+    )
+    found = rocking.read_record(path, acceleration="NS", vertical="up")
+    np.testing.assert_allclose(found.vertical, found.acceleration / 2.0)
+    assert found == rocking.read_record(path, acceleration=2, vertical=3)
+    for vertical in ("east", tmp_path / "none.at2"):
+        with pytest.raises(InvalidArgumentError, match=r"`vertical` = .*(one column east|no such file)"):
+            rocking.read_record(path, acceleration="NS", vertical=vertical)
 
 
 @pytest.mark.parametrize(
-    ("header", "degrees", "second", "radian"),
+    ("header", "stated", "second", "radian"),
     [
-        ("time/s,rotation", None, 1.0, 1.0),
-        ("sec,angle in degrees", None, 1.0, np.radians(1.0)),
-        ("time [s],rotation", True, 1.0, np.radians(1.0)),
-        ("time [ms],rotation [deg]", None, 1e-3, np.radians(1.0)),
-        ("time [ms],rotation [deg]", True, 1e-3, np.radians(1.0)),
-        ("t/min,theta / mrad", None, 60.0, 1e-3),
-        ("time_s,theta (°)", None, 1.0, np.radians(1.0)),
+        ("time [s],rotation [deg]", {}, 1.0, np.radians(1.0)),
+        ("time [ms],rotation [mrad]", {}, 1e-3, 1e-3),
+        ("t,roll", {"rotation": "roll", "time": "t", "time_unit": "s", "unit": "deg"}, 1.0, np.radians(1.0)),
+        ("frame,rotation [rad]", {"time_step": 1.0 / 50.0}, 1.0 / 250.0, 1.0),
     ],
 )
-def test_rotations_are_in_the_units_of_the_header(header: str, degrees: bool | None, second: float, radian: float):
-    file = TextFile("trace", f"{header}\n0,1\n5,2\n10,3\n".encode())
-    time, rotation = read_rotations(file, 9, degrees)
+def test_rotations_are_in_the_units_that_are_stated(header, stated, second, radian) -> None:
+    time, rotation = read_rotations(TextFile("trace", f"{header}\n0,1\n5,2\n10,3\n".encode()), 9, **stated)
     np.testing.assert_allclose(time, second * np.array([0.0, 5.0, 10.0]), rtol=1e-15)
     np.testing.assert_allclose(rotation, radian * np.array([1.0, 2.0, 3.0]), rtol=1e-15)
-    swapped = ",".join(reversed(header.split(",")))
-    found = read_rotations(TextFile("trace", f"{swapped}\n1,0\n2,5\n3,10\n".encode()), 9, degrees)
-    np.testing.assert_array_equal(found, (time, rotation))
 
 
-@pytest.mark.parametrize(
-    ("header", "degrees", "said"),
-    [
-        ("t,rotation [rad]", True, "rotation .rad.; expected rotations in deg, as `degrees` says"),
-        ("t,rotation_deg", False, "rotation_deg; expected rotations in rad"),
-        ("t,rotation [mrad]", True, "expected rotations in deg"),
-        ("t,rotation [rad/s]", None, "a column of rotations"),
-        ("t,top [mm]", None, "a column of rotations"),
-        ("t,acceleration", None, "a column of rotations"),
-        ("t,theta x 1e3", None, "a column of rotations"),
-        ("t,angleDeg", None, "units rad, deg, mrad"),
-        ("t [foo],rotation", None, "one of the units s, ms, us, min"),
-    ],
-)
-def test_rotations_in_other_units_are_refused(header: str, degrees: bool | None, said: str) -> None:
-    with pytest.raises(RecordFileError, match=f"trace, line 1: found the column .*{said}"):
-        read_rotations(TextFile("trace", f"{header}\n0,1\n5,2\n".encode()), 9, degrees)
+def test_traces_are_asked_for_what_they_do_not_state() -> None:
+    for name, said in (
+        ("frame_counter.csv", "`time` .*`time_step`"),
+        ("imu_roll_pitch_yaw.csv", "`rotation` .*`unit`"),
+    ):
+        with pytest.raises(RecordFileError, match=said):
+            read_rotations(TextFile(name, (FOLDER / name).read_bytes()), 10_000)
+    stated = {"rotation": "roll_deg", "unit": "deg", "time": "time_s", "time_unit": "s"}
+    _, rotation = read_rotations(TextFile("imu", (FOLDER / "imu_roll_pitch_yaw.csv").read_bytes()), 10_000, **stated)
+    assert rotation[0] == pytest.approx(np.radians(8.598))
 
 
-FOLDER = Path(__file__).parents[1] / "data" / "field"
-
-PEAK = 0.29188
-"""Of the 40 values of most files, in their unit."""
-
-READ = [  # file, arguments, samples, time step [s], PGA [m/s2]
-    ("knet_offset.NS", {}, 160, 0.01, 0.470458),
-    ("title_sets_unit.dat", {}, 40, 0.01, PEAK),
-    ("title_with_brackets.dat", {}, 40, 0.01, PEAK),
-    ("names_blank_rows_tab.dat", {}, 40, 0.01, PEAK * STANDARD_GRAVITY),
-    ("corner_frequency_as_rate.txt", {"time_step": 0.02}, 40, 0.02, PEAK * STANDARD_GRAVITY),
-    ("frequency_range.dat", {}, 40, 0.01, PEAK * STANDARD_GRAVITY),
-    ("factor_and_step_first.txt", {"unit": "g", "skip": 2, "time_step": 0.01}, 40, 0.01, PEAK * STANDARD_GRAVITY),
-    ("factor_and_step_first.txt", {"unit": "g", "skip": 0, "time_step": 0.01}, 42, 0.01, STANDARD_GRAVITY),
-    ("count_and_step_line2.txt", {"unit": "g"}, 40, 0.01, PEAK * STANDARD_GRAVITY),
-    ("wrapped_no_header.txt", {"unit": "g", "time_step": 0.01}, 40, 0.01, PEAK * STANDARD_GRAVITY),
-    ("wrapped_interval_stated.dat", {}, 40, 0.005, PEAK / 100.0),
-    ("at2_units_are.at2", {}, 40, 0.02, PEAK * STANDARD_GRAVITY),
-    ("at2_double_cr.at2", {}, 40, 0.02, PEAK * STANDARD_GRAVITY),
-    ("component_underscore.csv", {"component": "acc_NS"}, 40, 0.01, PEAK),
-    ("component_underscore.csv", {"component": "EW"}, 40, 0.01, 0.6 * PEAK),
-    ("three_components_no_time.txt", {"unit": "gal", "component": "N-S"}, 40, 0.01, PEAK),
-    ("csmip_volume1.v1", {}, 40, 0.01, PEAK / 10.0 * STANDARD_GRAVITY),
-    ("cosmos_volume2.v2", {"time_step": 0.025}, 40, 0.025, PEAK / 100.0),
-    ("jma_unit_two_names.csv", {"component": "NS"}, 13, 0.01, 0.27682),
-    ("jma_unit_two_names.csv", {"component": "NS", "unit": "gal"}, 13, 0.01, 0.27682),
-    ("sample_counter.csv", {"time_step": 0.01}, 120, 0.01, 2.861360),
-]
-
-REFUSED = [  # file, arguments, what the message names
-    ("corner_frequency_as_rate.txt", {}, "no time step; .*`time_step`"),
-    ("factor_and_step_first.txt", {"unit": "g"}, "line 1: found 1, 0.01 before 6.159000e-02; .*`skip`: 2"),
-    ("component_underscore.csv", {}, r"components acc_NS\(gal\), acc_EW\(gal\); .*`component`"),
-    ("three_components_no_time.txt", {"unit": "gal"}, "components N-S, E-W, U-D; .*`component`"),
-    ("cosmos_volume2.v2", {}, "COSMOS file that states no time step; .*`time_step`"),
-    ("jma_unit_two_names.csv", {}, "components NS, EW, UD; .*`component`"),
-    ("sample_counter.csv", {}, "the column sample, a counter.*`time_step`"),
-]
-
-
-@pytest.mark.parametrize(("file", "arguments", "samples", "step", "peak"), READ)
-def test_records_are_read(file, arguments, samples, step, peak):
-    found = parse_record((FOLDER / file).read_bytes(), file, **arguments)
-    assert (found.samples, found.time_step) == (samples, step)
-    assert found.peak_acceleration == pytest.approx(peak, rel=1e-5)
-
-
-@pytest.mark.parametrize(("file", "arguments", "said"), REFUSED)
-def test_what_is_not_stated_is_asked_for(file, arguments, said):
-    with pytest.raises(RecordFileError, match=said):
-        parse_record((FOLDER / file).read_bytes(), file, **arguments)
-
-
-def test_frames_are_no_seconds():
-    trace = TextFile("frame_counter.csv", (FOLDER / "frame_counter.csv").read_bytes())
-    with pytest.raises(RecordFileError, match=r"the column frame, a counter.*`time_step`"):
-        read_rotations(trace, 10_000, None)
-    time, rotation = read_rotations(trace, 10_000, None, 1.0 / 60.0)
-    np.testing.assert_allclose(time[:3], [0.0, 1.0 / 60.0, 2.0 / 60.0])
-    assert rotation[0] == pytest.approx(0.15, abs=1e-6)
-
-
-def test_the_offset_that_is_removed_is_stated():
-    found = parse_record((FOLDER / "knet_offset.NS").read_bytes(), "knet_offset.NS")
-    (remark,) = found.remarks
-    assert "mean of 95.002 gal, is removed" in remark
-    assert "largest acceleration about it is 47.046 gal" in remark  # Max. Acc. of the header
-    assert "95.002 gal, is removed" in found.source
+def test_units_are_those_of_the_table() -> None:
+    for unit, value in UNITS.items():
+        text = pairs(f"time [s],acceleration [{unit}]\n").encode()
+        np.testing.assert_allclose(parse_record(text, "motion").acceleration, values() * value, rtol=1e-12)

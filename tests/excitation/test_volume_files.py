@@ -1,4 +1,4 @@
-"""Made-up files in the layouts of COSMOS, CSMIP, GeoNet and SMC: several channels and blocks, numbers that touch."""
+"""Made-up files in the layouts of COSMOS, CSMIP and GeoNet: several channels and blocks, numbers that touch."""
 
 import numpy as np
 import pytest
@@ -78,13 +78,6 @@ def geonet(volume: int) -> str:
     return text
 
 
-def smc() -> str:
-    ints, reals = np.full(48, -32768), np.full(50, 1.7e38)
-    ints[[13, 15, 16]], reals[1] = [360, 2, COUNT], 200.0
-    text = "2 CORRECTED ACCELEROGRAM\n" + "*\n" * 10 + rows(ints, "{:10d}", 8) + rows(reals, "{:15.7E}", 5)
-    return text + "|\n| 99 values in units of g\n" + rows(samples(1), "{:14.7E}", 5)
-
-
 TWO_CHANNELS = cosmos().replace("Chan   1:", "Cha:  1:") + cosmos().replace("Chan   1: 90", "Chan   2: 0")
 
 
@@ -99,12 +92,11 @@ TWO_CHANNELS = cosmos().replace("Chan   1:", "Cha:  1:") + cosmos().replace("Cha
         (geonet(1), "N28W", 1, 0.02, 0.006),
         (geonet(2), "s62w", 2, 0.02, 0.006),
         (geonet(2), "Up", 3, 0.02, 0.006),
-        (smc(), None, 1, 0.005, 1e-5),
     ],
 )
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 def test_channels_are_read(text, component, channel, step, tolerance, end):
-    found = parse_record(text.replace("\n", end).encode(), "x", component=component)
+    found = parse_record(text.replace("\n", end).encode(), "x", acceleration=component)
     assert found.time_step == step
     np.testing.assert_allclose(100.0 * found.acceleration, samples(channel), atol=tolerance)
 
@@ -120,24 +112,61 @@ def test_volume_1_in_g():
 @pytest.mark.parametrize(
     ("text", "arguments", "said"),
     [
-        (csmip(), {}, "components Chan 1: 360 Deg, Chan 2: Up, Chan 3: 90 Deg; .*`component`"),
-        (csmip(), {"component": "deg"}, "expected component deg"),
-        (csmip().replace("    37", "    32"), {"component": "1"}, "expected the end of a block, as its number"),
-        (smc() + "1.0 2.0\n", {}, "found more than 37 values"),
-        (csmip()[:3000], {"component": "1"}, "values, and 37 stated in line"),
+        (csmip(), {}, "channels Chan 1: 360 Deg, Chan 2: Up, Chan 3: 90 Deg; .*`acceleration`"),
+        (csmip(), {"acceleration": "deg"}, "expected one of them, not deg"),
+        (csmip().replace("    37", "    32"), {"acceleration": "1"}, "expected the end of a block, as its number"),
+        (csmip()[:3000], {"acceleration": "1"}, "values, and 37 stated in line"),
         (cosmos(real=False), {}, "COSMOS file that states no time step"),
-        (cosmos().replace("cm/sec2(04)", "counts(50)"), {"unit": "g"}, "found counts; expected a unit"),
-        (geonet(2).replace("at 0.020 sec", "at 0.010 sec"), {"component": "Up"}, "0.02 s; expected that of its text"),
-        (geonet(2).replace("at 0.020 sec", ""), {"component": "Up"}, "0.02 s; expected that of its text, none s"),
-        ("Response and Fourier amplitude spectra\n1 2\n", {}, "response spectra .Volume 3."),
+        (cosmos().replace("cm/sec2(04)", "counts(50)"), {"unit": "g"}, "found counts; expected accelerations"),
+        (
+            geonet(2).replace("at 0.020 sec", "at 0.010 sec"),
+            {"acceleration": "Up"},
+            "at 0.010 sec intervals; expected an interval of 0.02 s",
+        ),
+        (
+            geonet(2).replace("at 0.020 sec", ""),
+            {"acceleration": "Up"},
+            "line 11: found Data  intervals; expected an interval",
+        ),
+        ("Response and Fourier amplitude spectra\n1 2\n", {}, "amplitude spectra; expected accelerations"),
         ("* VOL1DS FILE:  5522/01\nUNITS ARE SECONDS AND G/10\n1 2\n", {}, "a BHRC Volume 1 file"),
-        ("UNCORRECTED ACCELEROGRAM DATA\n\n\nRENADIC\n0.0 1.0\n", {}, "a RENADIC Volume 1 file"),
-        ("FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\n0.0 1.0\n", {}, "a USC Volume 1 file, with a time"),
-        ("CORRECTED ACCELEROGRAM OF SOMEBODY\n1 2 3\n", {}, "CORRECTED ACCELEROGRAM OF SOMEBODY; expected a Volume"),
-        (smc().replace("2.0000000E+02", "1.7000000E+38"), {}, "37 values at uneven intervals; expected uniform"),
-        (smc().replace("CORRECTED ACCELEROGRAM", "VELOCITY"), {}, "2 VELOCITY; expected an accelerogram"),
+        (
+            "UNCORRECTED ACCELEROGRAM DATA\n\n\nRENADIC\n0.0 1.0\n",
+            {},
+            "no block of accelerations; expected a Volume 1 or 2 of CSMIP",
+        ),
+        (
+            "FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\n0.0 1.0\n",
+            {},
+            "a USC Volume 1 file; expected one of AT2",
+        ),
+        ("2 CORRECTED ACCELEROGRAM\n*\n", {}, "an SMC file; expected one of AT2"),
+        ("CORRECTED ACCELEROGRAM OF SOMEBODY\n1 2 3\n", {}, "no block of accelerations; expected a Volume"),
     ],
 )
 def test_others_are_refused_by_their_names(text, arguments, said):
     with pytest.raises(RecordFileError, match=said):
         parse_record(text.encode(), "x", **arguments)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (csmip().replace("(8f10.6)", "(1i1000000000)"), "line 9: .*a width of 1 to 40"),
+        (csmip().replace("(8f10.6)", "(8f0.6)"), "line 9: .*a width of 1 to 40"),
+        (csmip().replace("    37 points", "1" + "0" * 400 + " points"), r"line 9: found 10+.*the number of values"),
+        (csmip().replace("    37 points", "999999 points"), "line 9: found 999999; expected .*in a file of this size"),
+        (csmip().replace("at  .010 sec", "at 0.000 sec"), "line 1[0-9]: found ValueError: a time step of 0.000 sec"),
+        (csmip().replace("at  .010 sec", "at 0 pts/sec"), "line 1[0-9]: found ZeroDivisionError"),
+        (cosmos().replace(" 100 Real", "1e9 Real"), "line 15: found 1e9; expected the number of values"),
+        (geonet(2).replace("      37      37      37", "    37.5      37      37"), "accelerations"),
+        (
+            geonet(2).replace("      37      37      37", "99999999      37      37"),
+            "their number in a file of this size",
+        ),
+        *((text[: len(text) // 5], "x") for text in (csmip(), cosmos(), geonet(1), geonet(2))),
+    ],
+)
+def test_hostile_headers_are_refused_with_their_line(text, said):
+    with pytest.raises(RecordFileError, match=said):
+        parse_record(text.encode(), "x", acceleration=1)

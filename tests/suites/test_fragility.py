@@ -312,12 +312,13 @@ def test_a_level_at_which_a_body_would_fly_is_refused() -> None:
 
 def test_the_vertical_component_is_never_another_file(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.csv").write_text("time_s,NS_g,up\n0,1,4\n0.5,2,5\n1,3,6\n")
-    (tmp_path / "up").write_text("unit: g\ndt: 0.5\n7\n8\n9\n")
-    files = RecordFiles(tmp_path, "*.csv", "g", None, "NS_g", "up", None)
+    (tmp_path / "a.csv").write_text("time [s],NS [g],up\n0,1,4\n0.05,2,0\n0.1,1,3\n")
+    (tmp_path / "up").write_text("time [s],acceleration [g]\n0,7\n0.05,8\n0.1,9\n")
+    layout = {"unit": "g", "acceleration": "NS", "vertical": "up"}
+    files = RecordFiles(tmp_path, "*.csv", layout, None)
     (path,) = files.paths()
-    np.testing.assert_allclose(files.read(path).vertical, STANDARD_GRAVITY * np.array([4.0, 5.0, 6.0]), rtol=1e-15)
-    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'a.csv' .* allowed: a component of a.csv"):
-        replace(files, vertical="a.csv").read(path)
+    np.testing.assert_allclose(files.read(path).vertical, STANDARD_GRAVITY * np.array([4.0, 0.0, 3.0]), rtol=1e-15)
+    with pytest.raises(InvalidArgumentError, match=r"`vertical` = 'a.csv' .* allowed: a file, or a column of a.csv"):
+        replace(files, layout=layout | {"vertical": "a.csv"}).read(path)
     with pytest.raises(InvalidArgumentError, match=r"`path` = .*none.csv.*: no such file"):
         files.read(tmp_path / "none.csv")

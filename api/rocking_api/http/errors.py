@@ -107,6 +107,7 @@ HEADERS: dict[type[Exception], dict[str, str]] = {
 """Additional headers."""
 
 MAX_TEXT = 400  # characters of a value that an error repeats
+MAX_DETAIL = 2000  # characters of the detail of an error, which may show the first lines of a file
 MAX_NUMBER = sys.float_info.max  # largest number that an error repeats; larger integers become text
 MAX_ERRORS = 20  # parameters that an error names at most
 
@@ -151,7 +152,9 @@ def problem_response(kind: Kind | int, detail: str, headers: Mapping[str, str] |
         kind = next((one for one in OTHERS if one.status == status), Kind("other", S(status), ""))
     parts = {name: _text(part) if isinstance(part, str) else part for name, part in parts.items()}
     parts["value"] = plain(parts.get("value"))
-    content = Problem(type=kind.type, title=kind.status.phrase, status=kind.status, detail=_text(detail), **parts)
+    content = Problem(
+        type=kind.type, title=kind.status.phrase, status=kind.status, detail=_text(detail, MAX_DETAIL), **parts
+    )
     return Response(content.model_dump_json(exclude_none=True), kind.status, headers, MEDIA_TYPE)
 
 
@@ -244,6 +247,6 @@ def plain(value: Any) -> float | str | None:
     return _text(str(value))
 
 
-def _text(text: str) -> str:
+def _text(text: str, most: int = MAX_TEXT) -> str:
     """The start of a text that UTF-8 can encode: JSON may hold half of a pair of escapes, here as text."""
-    return text[:MAX_TEXT].encode("utf-8", "backslashreplace").decode("utf-8")
+    return text[:most].encode("utf-8", "backslashreplace").decode("utf-8")

@@ -24,10 +24,12 @@ from pydantic_core import PydanticCustomError
 
 import rocking._base.quantities as q
 from rocking._base.quantity import Quantity
+from rocking._base.units import UNITS as QUANTITIES
 from rocking._base.units import split_quantity
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_names, pulse_parameters
 from rocking._excitation.records.processing import MAX_BASELINE_ORDER
-from rocking._excitation.records.readers.read_record import MAX_SKIP
+from rocking._excitation.records.readers.layout import MAX_SKIP
+from rocking._excitation.records.readers.read_record import FORMATS
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking._model.checks import impact_share
 
@@ -183,13 +185,25 @@ BodyRestitution = Annotated[
 
 # files of records
 
-Unit: Any = Annotated[
-    Literal[tuple(UNITS)] | None, Field(description="unit of the samples, required if the file states none")
+Unit: Any = Annotated[Literal[tuple(UNITS)] | None, Field(description="unit of the samples")]
+RecordFormat: Any = Annotated[
+    Literal[FORMATS] | None,
+    Field(description="format of the file; absent: the one whose signature the file has, else columns"),
 ]
-TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], required if the file states none")]
-Skip = Annotated[
-    int | None, between(0, MAX_SKIP, "rows of numbers to skip above the samples, such as a count or a factor [-]")
+Column = Annotated[str | None, Field(max_length=200)]
+RotationUnit: Any = Literal[tuple(QUANTITIES["rad"])]
+TimeUnit: Any = Annotated[Literal[tuple(QUANTITIES["s"])] | None, Field(description="unit of the column of times")]
+TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], in place of a column of times")]
+Skip = Annotated[int, between(0, MAX_SKIP, "lines above the names of the columns, or above the rows [-]")]
+Delimiter = Annotated[
+    str | None,
+    Field(
+        description="comma, semicolon, tab, blank; several signs if each separates; or the Fortran format of numbers "
+        "of fixed width, such as 8f10.6; absent: the sign that the first row has, else blanks",
+        max_length=20,
+    ),
 ]
+Decimal = Annotated[Literal[".", ","], Field(description="decimal sign")]
 BaselineOrder = Annotated[
     int | None,
     between(0, MAX_BASELINE_ORDER, "degree of the baseline to remove [-]; absent: only the mean of K-NET counts"),

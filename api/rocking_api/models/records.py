@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from functools import cache
 from typing import Any
+from urllib.parse import quote
 
 from pydantic import BaseModel, create_model
 
@@ -14,11 +15,16 @@ from rocking_api.models.body_params import BodyParams, JsonBody
 from rocking_api.models.quantity import (
     SCALES,
     BaselineOrder,
+    Column,
     Contact,
+    Decimal,
+    Delimiter,
     Format,
+    RecordFormat,
     Scale,
     Skip,
     TimeStep,
+    TimeUnit,
     Unit,
     between,
     said,
@@ -36,14 +42,21 @@ CAUTION = (
 
 
 class RecordFileParams(BodyParams):
-    """A body in SI units, and what the file of the record does not state."""
+    """A body in SI units, and the format and layout of the file of the record."""
 
     name: str = said("name of the file, for messages", "record", max_length=200)
-    unit: Unit = None
+    file_format: RecordFormat = None
+    acceleration: Column = said("column or channel of the samples: its name, or its number from 1", None)
+    time: Column = said("column of the times: its name, or its number from 1", None)
     time_step: TimeStep = None
-    component: str | None = said("column or trace of a file with several", None, max_length=200)
-    vertical: str | None = said("column or trace of its vertical component, upwards", None, max_length=200)
-    skip: Skip = None
+    time_unit: TimeUnit = None
+    unit: Unit = None
+    skip: Skip = 0
+    delimiter: Delimiter = None
+    decimal: Decimal = "."
+    wrapped: bool = said("all values are one series, row by row", False)
+    vertical: Column = said("column or channel of the vertical component, upwards", None)
+    allow_unusual: bool = said("accept a PGA above 5 g, a PGV above 10 m/s, a step above 0.1 s", False)
     baseline_order: BaselineOrder = None
 
 
@@ -81,6 +94,14 @@ class RecordPulseParams(RecordParams):
     """The same, and the samples for a drawing."""
 
     samples: int = between(2, MAX_DRAWN, "most samples of the drawing [-]", default=2000)
+
+
+def as_parameter(name: str, value: Any) -> str:
+    """An argument of `read_record` as a parameter of the query."""
+    name = "file_format" if name == "format" else name
+    if value is None:
+        return f"`{name}`"
+    return f"{name}={'...' if value is ... else str(value).lower() if value is True else quote(str(value))}"
 
 
 class RecordBody(RecordFileParams):

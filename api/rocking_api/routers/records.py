@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Request, Response
 
-from rocking._base.errors import InvalidArgumentError, finite
+from rocking._base.errors import InvalidArgumentError, RecordFileError, finite
 from rocking._dimensional.curves import history
 from rocking._dimensional.problem import Problem, record_groups
 from rocking._dimensional.response import changes_of, respond
@@ -22,10 +22,11 @@ from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 from rocking.suites.body_arrays import as_block
+from rocking.suites.configuration import LAYOUT
 from rocking.suites.pulse_fit import fit_pulse
 from rocking.suites.pulse_fit import summary_of as fitted_summary
 from rocking_api.http import encoding
-from rocking_api.http.errors import TooLargeError
+from rocking_api.http.errors import TooLargeError, refusal
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import records as m
 from rocking_api.models.blocks import ScaleThreshold
@@ -51,7 +52,7 @@ def _about(kind: type[m.RecordFileParams]) -> dict[str, Any]:
         name: text_content(name, _EXAMPLE)[name] for name in ("text/plain", "text/csv", "application/octet-stream")
     }
     description = (
-        "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC or columns of numbers, by its content"
+        "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet by their signatures, or columns in a stated layout"
     )
     return body_of({**files, **json_content(m.with_record(kind), example)}, kind, description)
 
@@ -114,8 +115,12 @@ async def _read(kind: type[P], request: Request, service: Service) -> tuple[P, R
 
     def read(stop: StopFlag) -> Record:
         raw = body if isinstance(body, bytes) else body.record.encode()
-        stated = {name: getattr(params, name) for name in ("unit", "time_step", "component", "vertical", "skip")}
-        return parse_record(raw, params.name, **stated, stop=stop).baseline_corrected(order=params.baseline_order)
+        stated = {name: getattr(params, name) for name in LAYOUT if name != "format"}
+        try:
+            record = parse_record(raw, params.name, format=params.file_format, **stated, stop=stop)
+        except RecordFileError as error:
+            raise refusal(error.message(m.as_parameter, "?", "&"), "record", error.value, error.expected) from None
+        return record.baseline_corrected(order=params.baseline_order)
 
     record = await service.run_parser(read, request, large=True)
     kept = record.acceleration.nbytes * (1 if record.vertical is None else 2)

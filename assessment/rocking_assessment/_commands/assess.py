@@ -27,6 +27,7 @@ HINTS = {
     "pulse": "--shapes",
     "path": "--mesh",
     "columns": "--columns",
+    "format": "--file-format",
 }
 """The option or file of each argument that an error names; other arguments are options of the same name."""
 
@@ -172,7 +173,7 @@ def assess(
             pga,
             pgv,
             None if period_min is None or period_max is None else (period_min, period_max),
-            _read(record or (), pair or (), vertical or (), baseline_order, vars(stated)),
+            _read(record or (), pair or (), vertical or (), baseline_order, stated.stated()),
             None if hazard is None else read_hazard(hazard),
             None if shapes is None else split_pulses(shapes),
             moving_ground,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking.extension import TIME_STEP, OutputOptions, option, said, with_options
+from rocking.extension import OutputOptions, TraceOptions, said, with_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,15 +19,12 @@ def identify(
     file: Annotated[
         str,
         typer.Argument(
-            help="Two columns of numbers: times in s and rotations in radians, or in the units of the header.",
+            help="Columns of times and rotations, named time \\[s] and rotation \\[rad], or in a stated layout.",
             metavar="FILE",
         ),
     ],
     output: OutputOptions,
-    degrees: Annotated[bool, said("Rotations are in degrees if the header states no unit.", "", "--degrees")] = False,
-    time_step: Annotated[
-        str | None, option(TIME_STEP, text="Time between the rows if the file only counts them")
-    ] = None,
+    stated: TraceOptions,
     edges: Annotated[int, said("1: equal edges; 2: a right and a left edge.", "1|2")] = 1,
     confidence: Annotated[float, said("Confidence of the intervals, (0, 1).", "-")] = 0.95,
 ) -> None:
@@ -37,7 +34,7 @@ def identify(
     with option_errors():
         form = output_format(output)
         with progress("fitting the trace"):
-            found = _found(file, degrees, time_step, edges, confidence)
+            found = _found(file, stated, edges, confidence)
     columns = {name: found[name].values.tolist() for name in ("edge", *_columns())}
     if form.kind == "csv":
         print_csv(columns, form)
@@ -58,16 +55,15 @@ def _columns() -> list[str]:
     return [name + end for name in ("restitution", "alpha", "frequency_parameter") for end in ("", "_lower", "_upper")]
 
 
-def _found(path: str, degrees: bool, time_step: str | None, edges: int, confidence: float) -> xr.Dataset:
+def _found(path: str, stated: TraceOptions, edges: int, confidence: float) -> xr.Dataset:
     from pathlib import Path
 
     from rocking.extension import InvalidArgumentError, TextFile, file_errors, read_bytes, read_rotations
     from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
-    step = None if time_step is None else TIME_STEP.number(TIME_STEP.read(time_step))
     with file_errors():
         file = TextFile(Path(path).name, read_bytes(path, "path"))
-        time, rotation = read_rotations(file, MAX_SAMPLES, degrees or None, step)
+        time, rotation = read_rotations(file, MAX_SAMPLES, **vars(stated))
     try:
         return identify_free_rocking(time, rotation, edges=edges, confidence=confidence)
     except InvalidArgumentError as error:

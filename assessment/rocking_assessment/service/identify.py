@@ -10,14 +10,37 @@ from fastapi import APIRouter, Request, Response
 from pydantic import Field
 from rocking_api.http.body import body_form
 from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.errors import refusal
 from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models.answer import InGroups
 from rocking_api.models.bodies import body_of, json_content, text_content
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import TableFormat, TimeStep, between, said, with_intervals
+from rocking_api.models.quantity import (
+    Column,
+    Decimal,
+    Delimiter,
+    RotationUnit,
+    Skip,
+    TableFormat,
+    TimeStep,
+    TimeUnit,
+    between,
+    said,
+    with_intervals,
+)
+from rocking_api.models.records import as_parameter
 from rocking_api.service import ServiceDep
 
-from rocking.extension import Array, InvalidArgumentError, StopFlag, TextFile, finite, read_rotations
+from rocking.extension import (
+    UNITS,
+    Array,
+    InvalidArgumentError,
+    RecordFileError,
+    StopFlag,
+    TextFile,
+    finite,
+    read_rotations,
+)
 
 router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
 
@@ -27,20 +50,29 @@ Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 
 
 class IdentifyParams(Params):
-    """How a trace is read and fitted."""
+    """How a trace is laid out as columns, and fitted."""
 
     edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
-    degrees: bool = said("the rotations are in degrees, not in radians, where the header of CSV states no unit", False)
-    time_step: TimeStep = said("time between the rows where CSV counts them in place of times [s]", None)
     confidence: float = said("confidence of the intervals [-]", 0.95, gt=0, le=0.999)
     format: TableFormat = None
+    rotation: Column = said("column of the rotations: its name, or its number from 1", None)
+    time: Column = said("column of the times: its name, or its number from 1", None)
+    time_step: TimeStep = None
+    time_unit: TimeUnit = None
+    unit: RotationUnit | None = said("unit of the rotations; of JSON rad by default", None, title="Rotation_unit")
+    skip: Skip = 0
+    delimiter: Delimiter = None
+    decimal: Decimal = "."
+
+
+LAYOUT = IdentifyParams.model_fields.keys() - {"edges", "confidence", "format"}
 
 
 class Trace(IdentifyParams):
-    """A trace in a JSON body, and how it is read and fitted."""
+    """A trace in a JSON body, and how it is fitted."""
 
-    time: Samples = said("times, ascending [s]")
-    rotation: Samples = said("rotation; positive values turn on the right edge [rad]")
+    time: Samples = said("times, ascending [s]")  # type: ignore[assignment]  # samples in place of a column
+    rotation: Samples = said("rotation; positive values turn on the right edge [rad]")  # type: ignore[assignment]
 
 
 @with_intervals(
@@ -111,11 +143,13 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
 async def post_identify(request: Request, service: ServiceDep) -> Response:
     """Return what `rocking_assessment.identify_free_rocking` finds, with intervals.
 
-    The body is JSON, or CSV with a column of times and one of rotations, in the units of its header or in s and rad.
+    The body is JSON, or CSV with the columns `time [s],rotation [rad]`, or in a layout that the parameters state.
     The response has the same format, or that of `format` or `Accept`. CSV has a row for each edge.
     """
     given = body_form(request, TABLE_FORMS)
     params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
+    if isinstance(body, Trace):
+        params = params.model_copy(update={"time": None, "rotation": None})  # the samples are no parameters
     form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
     time, rotation = await service.run_parser(lambda stop: _read(params, body, stop), request, large=True)
     return await service.run_heavy(lambda stop: _identified(params, request, time, rotation, form, stop), request)
@@ -123,12 +157,16 @@ async def post_identify(request: Request, service: ServiceDep) -> Response:
 
 def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[Array, Array]:
     """Times [s] and rotations [rad]."""
+    stated = {name: getattr(params, name) for name in LAYOUT}
     if isinstance(body, Trace):
-        if params.time_step is not None:
-            raise InvalidArgumentError("time_step", params.time_step, "none beside the times of JSON, which are in s")
-        return np.array(body.time), (math.pi / 180.0 if params.degrees else 1.0) * np.array(body.rotation)
-    stated = params.degrees if "degrees" in params.model_fields_set else None
-    return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated, params.time_step)
+        for name, value in stated.items():
+            if name != "unit" and value != IdentifyParams.model_fields[name].default:
+                raise InvalidArgumentError(name, value, "nothing about columns beside JSON, whose times are in s")
+        return np.array(body.time), UNITS["rad"][params.unit or "rad"] * np.array(body.rotation)
+    try:
+        return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, **stated)
+    except RecordFileError as error:
+        raise refusal(error.message(as_parameter, "?", "&"), "record", error.value, error.expected) from None
 
 
 def _identified(

@@ -9,7 +9,7 @@ import rocking
 from rocking._base.units import STANDARD_GRAVITY
 from tests.api.conftest import NAPA
 
-HEADER = "time_s,acceleration_g\n"
+HEADER = "time [s],acceleration [g]\n"
 
 STRONG = slice(800, 1800)
 """Samples of a record that decide what it does to a block: fast to upload, to solve and to fit."""

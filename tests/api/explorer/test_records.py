@@ -103,7 +103,7 @@ def test_what_is_asked_about_an_earlier_file_does_not_go_on_with_a_later_one(ope
     page.on("request", lambda one: asked.append(unquote(one.url)))
     damaged = (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode()
     page.locator("#file").set_input_files({"name": "damaged.csv", "mimeType": "text/csv", "buffer": damaged})
-    expect(page.locator("#file-problem")).to_have_text("damaged.csv, line 4: found what; expected a number")
+    expect(page.locator("#file-problem")).to_contain_text("damaged.csv, line 4: found what; expected a number")
     page.wait_for_timeout(300)
     assert [one for one in asked if "first" in one] == []
 
@@ -112,11 +112,13 @@ def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, cont
     page = open_page("/records")
     choose_record(page, "plain.txt", "\n".join(map(repr, (motion.acceleration / STANDARD_GRAVITY).tolist())).encode())
     expect(page.locator("#file-problem")).to_contain_text("the field “Unit of the samples”")
+    expect(page.locator("#file-problem")).to_contain_text("the field “Time step [s]”")
     expect(page.locator("#answer")).to_be_hidden()
     page.locator("#unit").select_option("g")
+    page.locator("#acceleration").fill("1")
     page.locator("#ask").click()
     expect(page.locator("#file-problem")).to_contain_text("the field “Time step [s]”")
-    page.locator("#step").fill(repr(motion.time_step))
+    page.locator("#time_step").fill(repr(motion.time_step))
     page.locator("#ask").click()
     expect(page.locator("#answer")).to_have_attribute("data-shown", re.compile("plain.txt"))
     expect(page.locator(".verdict")).to_be_visible()

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
-from tests.assessment.objects.objects.objects.objects.evidence.test_free_rocking import trace
+from tests.assessment.objects.objects.objects.objects.objects.evidence.test_free_rocking import trace
 from tests.cli.test_cli import read_csv, refused, run
 
 
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / "trace.csv"
-    np.savetxt(path, np.column_stack(trace()), delimiter=",", header="time,rotation", comments="")
+    np.savetxt(path, np.column_stack(trace()), delimiter=",", header="time [s],rotation [rad]")
     return path
 
 
@@ -31,21 +31,20 @@ def test_three_formats_hold_the_fit(file):
 @pytest.mark.parametrize(
     ("header", "times", "options", "said"),
     [
-        ("time,rotation", 1000.0, [], "a unit of times, such as time [ms]"),
-        ("time,rotation", 100.0, ["--time-step", "0.01s"], ""),
-        ("time [s],rotation", 100.0, ["--time-step", "0.01s"], "the stated time step of 0.01 s"),
-        ("time [s],rotation", 100.0, [], "is this a counter, or ms?"),
-        ("ms,angle in mrad", 1000.0, [], ""),
+        ("time,rotation [rad]", 1000.0, [], "--time-unit ..."),
+        ("time,rotation [rad]", 1000.0, ["--time-unit", "ms"], ""),
+        ("frame,rotation [rad]", 100.0, ["--time-step", "0.01s"], ""),
+        ("time [s],rotation [rad]", 100.0, [], "is this a counter, or ms?"),
         ("time [ms],rotation [deg]", 1000.0, [], ""),
-        ("time [ms],rotation [deg]", 1000.0, ["--degrees"], ""),
-        ("time [s],rotation [rad]", 1.0, ["--degrees"], "rotations in deg"),
-        ("time [s],angular velocity", 1.0, [], "expected a column of rotations"),
-        ("time [s],rotation (filtered)", 1.0, ["--degrees"], ""),
+        ("time [s],rotation", 1.0, [], "--unit (rad, deg, mrad)"),
+        ("time [s],rotation", 1.0, ["--unit", "deg"], ""),
+        ("time [s],roll", 1.0, ["--unit", "deg"], "--rotation"),
+        ("time [s],roll", 1.0, ["--unit", "deg", "--rotation", "roll"], ""),
     ],
 )
-def test_times_and_rotations_without_a_unit_that_is_understood(file, header, times, options, said):
+def test_times_and_rotations_are_in_the_units_that_are_stated(file, header, times, options, said):
     time, rotation = trace()
-    factor = 1000.0 if "mrad" in header else 180.0 / np.pi if options == ["--degrees"] or "[deg" in header else 1.0
+    factor = 180.0 / np.pi if "deg" in options or "[deg" in header else 1.0
     np.savetxt(file, np.column_stack([times * time, factor * rotation]), delimiter=",", header=header, comments="")
     if said:
         assert said in refused("identify", str(file), *options)
@@ -57,7 +56,8 @@ def test_times_and_rotations_without_a_unit_that_is_understood(file, header, tim
 
 def test_a_drift_is_warned_of(file):
     time, rotation = trace()
-    np.savetxt(file, np.column_stack([time, rotation + 1e-3 * time]), delimiter=",")
+    columns = np.column_stack([time, rotation + 1e-3 * time])
+    np.savetxt(file, columns, delimiter=",", header="time [s],rotation [rad]")
     assert "warning: " in run("identify", str(file))
     found = json.loads(run("identify", str(file), "--format=json"))
     assert found["drift"] == pytest.approx(1e-3, rel=0.05)
@@ -67,4 +67,4 @@ def test_a_drift_is_warned_of(file):
 def test_errors_name_the_file(file):
     assert "no such file" in refused("identify", str(file.with_name("none.csv")))
     file.write_text("1\n2\n3\n")
-    assert "one column" in refused("identify", str(file))
+    assert "--rotation" in refused("identify", str(file))

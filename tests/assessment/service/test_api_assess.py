@@ -14,7 +14,7 @@ from rocking_assessment.service.models import AssessedRow
 import rocking
 from rocking._base.errors import InvalidArgumentError
 from tests.api.conftest import CSV, post
-from tests.assessment.objects.objects.objects.objects.objects.dialects import Writer, errors_of
+from tests.assessment.objects.objects.objects.objects.objects.objects.dialects import Writer, errors_of
 from tests.sampling import SEED
 from tests.sheets import xlsx_bytes
 

@@ -24,7 +24,7 @@ def trace():
     return {"time": (np.arange(noisy.size) / 60).tolist(), "rotation": noisy.tolist()}
 
 
-def as_csv(trace, factor=1.0, header="time,rotation"):
+def as_csv(trace, factor=1.0, header="time [s],rotation [rad]"):
     rows = zip(trace["time"], trace["rotation"], strict=True)
     return f"{header}\n" + "".join(f"{time!r},{factor * rotation!r}\n" for time, rotation in rows)
 
@@ -41,7 +41,7 @@ def test_the_block_is_that_of_a_direct_call(client, trace):
     assert answer["rotation"] == trace["rotation"]
     nan = np.isnan(expected["fitted"].values)
     assert [value is None for value in answer["fitted"]] == nan.tolist()
-    degrees = post(client, URL, as_csv(trace, 180 / math.pi), CSV, degrees="true", confidence=0.9)
+    degrees = post(client, URL, as_csv(trace, 180 / math.pi, "time [s],rotation"), CSV, unit="deg", confidence=0.9)
     (row,) = csv.DictReader(io.StringIO(degrees.text))
     assert float(row["alpha"]) == pytest.approx(answer["alpha"][0], rel=1e-6)  # of the fit
 
@@ -49,20 +49,22 @@ def test_the_block_is_that_of_a_direct_call(client, trace):
 def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
     body = as_csv(trace, 180 / math.pi, "time [s],rotation [deg]")
     expected = client.post(URL, json=trace).json()["alpha"]
-    for query in ("", "?degrees=true"):
-        (row,) = csv.DictReader(io.StringIO(post(client, URL + query, body, CSV).text))
+    other = as_csv(trace, 180 / math.pi, "t,roll")
+    stated = {"rotation": "roll", "unit": "deg", "time": "t", "time_unit": "s"}
+    for content, query in ((body, {}), (body, {"unit": "deg"}), (other, stated)):
+        (row,) = csv.DictReader(io.StringIO(post(client, URL, content, CSV, **query).text))
         assert float(row["alpha"]) == pytest.approx(expected[0], rel=1e-6)
-    assert_problem(post(client, URL, body, CSV, degrees="false"), 422)
-    radians = as_csv(trace, 1.0, "time [s],rotation [rad]")
-    assert_problem(post(client, URL, radians, CSV, degrees="true"), 422)
+    problem = assert_problem(post(client, URL, other, CSV), 422, "record")
+    assert "such as ?rotation=...&time=...&unit=..." in problem["detail"]
 
 
 def test_frames_are_no_times(client):
     body = (Path(__file__).parents[2] / "data/field/frame_counter.csv").read_bytes()
     headers = {"Content-Type": "text/csv", "Accept": "application/json"}
     problem = assert_problem(client.post("/v1/identify", content=body, headers=headers), 422)
-    assert "the column frame, a counter" in problem["detail"]
+    assert "found frame, rotation [deg]" in problem["detail"]
+    assert "`time_step`" in problem["detail"]
     found = client.post("/v1/identify", params={"time_step": 1.0 / 60.0}, content=body, headers=headers).json()
     assert found["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]
     json = client.post(URL, params={"time_step": 0.01}, json={"time": [*range(20)], "rotation": [0.1] * 20})
-    assert assert_problem(json, 422)["parameter"] == "time_step"
+    assert_problem(json, 422, "time_step")  # no parameter beside the times of JSON

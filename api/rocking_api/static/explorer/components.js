@@ -16,13 +16,13 @@ export async function joined(files) {
   const lengths = parts.map(({ values }) => values.length);
   const length = Math.max(...lengths);
   if (length > LENGTHS * Math.min(...lengths)) throw new Problem({ detail: `the components have ${lengths.join(" and ")} samples` });
-  const columns = parts.map(({ name }) => `acc ${name.replace(/[^\w.-]/g, " ")} (g)`);
+  const columns = parts.map(({ name }) => `${name.replace(/[^\w.-]/g, " ")} [g]`);
   const rows = Array.from({ length }, (_, k) => [(k * step).toFixed(9), ...parts.map(({ values }) => values[k] ?? 0)].join());
   const upwards = parts.findIndex(({ name }) => UPWARDS.test(name));
-  const [component, second = ""] = columns.filter((_, at) => at !== upwards);
-  const text = [["time_s", ...columns].join(), ...rows].join("\n");
+  const [acceleration, second = ""] = columns.filter((_, at) => at !== upwards);
+  const text = [["time [s]", ...columns].join(), ...rows].join("\n");
   const file = new File([text], parts.map(({ name }) => name).join(" and "), { lastModified: files[0].lastModified });
-  return { file, columns, chosen: { component, second, vertical: columns[upwards] ?? "" } };
+  return { file, columns, chosen: { acceleration, second, vertical: columns[upwards] ?? "" } };
 }
 
 /** Name, time step [s] and values [g] of an AT2 file. */
@@ -41,5 +41,5 @@ async function read(file) {
 /** The names of columns in the header of a file. */
 function columnsIn(text) {
   const header = text.split(/\r?\n/).find((line) => /[a-z]/i.test(line) && /[,;\t]/.test(line) && !/[:=]/.test(line)) ?? "";
-  return header.split(/[,;\t]/).map((name) => name.trim()).filter((name) => name && !/^t(ime)?\b|^time_/i.test(name));
+  return header.split(/[,;\t]/).map((name) => name.trim()).filter((name) => name && !/^time\b/i.test(name));
 }

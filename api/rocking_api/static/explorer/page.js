@@ -56,7 +56,7 @@ function showFieldError({ parameter, value, allowed, message }, form) {
 
 /** The message of a reader, which names arguments, with the labels of the fields of the form. */
 function inTermsOf(form, message) {
-  return message.replace(/the argument `(\w+)`/g, (words, name) => {
+  return message.replace(/(?:the argument )?`(\w+)`/g, (words, name) => {
     const label = form.elements[name]?.labels?.[0]?.textContent;
     return label ? `the field “${label}”` : words;
   });

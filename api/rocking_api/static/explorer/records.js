@@ -16,7 +16,8 @@ import { onChange, refresh } from "./state.js";
 import { toSI } from "./units.js";
 
 const SAMPLES = 4000;
-const STATED = ["unit", "time_step", "component", "vertical", "baseline_order"]; // what the file does not state
+const STATED = ["file_format", "acceleration", "vertical", "time", "time_unit", "time_step", "unit", "skip", "delimiter", "decimal", "baseline_order"];
+const FLAGS = ["wrapped", "allow_unusual"];
 
 const form = document.getElementById("record");
 const input = document.getElementById("file");
@@ -74,7 +75,7 @@ async function show(_, all = true) {
   const { scale, ...unscaled } = params;
   await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }, own));
   if (own !== file) return;
-  if (second) await other.show(key(second), upload("response", { ...params, component: second }, own));
+  if (second) await other.show(key(second), upload("response", { ...params, acceleration: second }, own));
   else other.nothing();
   if (!all || own !== file) return;
   await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }, own));
@@ -97,6 +98,7 @@ function paramsOf() {
   return {
     name: file.name.slice(0, 200),
     ...Object.fromEntries(STATED.map((name) => [name, text(name)])),
+    ...Object.fromEntries(FLAGS.filter((name) => form.elements[name].checked).map((name) => [name, "true"])),
     width: quantity("width"),
     height: quantity("height"),
     scale: scale || "?",
@@ -130,10 +132,9 @@ function noteOf(found) {
   return found.rocking_model_applies ? "" : "The rocking model does not apply; held in place:";
 }
 
-/** A file that lacks its unit, step or component is explained there. */
+/** What the file does not state is stated there. */
 function openDetails() {
-  const problem = document.getElementById("file-problem").textContent;
-  if (/unit|step|component/.test(problem)) document.getElementById("more").open = true;
+  if (document.getElementById("file-problem").textContent) document.getElementById("more").open = true;
 }
 
 /** Until a file is chosen, a part of a record is shown. */
@@ -149,7 +150,7 @@ async function take(files) {
     const { chosen, columns, file: found } = await joined(files);
     if (mine !== takes) return;
     file = found;
-    for (const name of ["component", "second", "vertical"]) form.elements[name].value = chosen[name] ?? "";
+    for (const name of ["acceleration", "second", "vertical"]) form.elements[name].value = chosen[name] ?? "";
     document.getElementById("columns").replaceChildren(...columns.map((value) => element("option", "", { value })));
     document.getElementById("more").open ||= files.length > 1;
     document.getElementById("dropped").textContent = `${file.name}; drop another one anywhere on this page`;
@@ -159,7 +160,7 @@ async function take(files) {
   }
 }
 
-for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2"]) form.elements.unit.append(element("option", unit));
+for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2", "mg", "%g", "g/10", "in/s2", "ft/s2"]) form.elements.unit.append(element("option", unit));
 input.addEventListener("change", () => take(input.files));
 form.addEventListener("submit", (event) => {
   event.preventDefault();

@@ -1,587 +1,487 @@
-"""Columns of numbers: CSV, or separated by blanks; with times or without, also one series wrapped over several columns.
+"""Columns of numbers in a stated layout, read by pandas: separators, quotes and decimal signs are its work.
 
-`layout.py` decides which rows hold the samples and what names the columns, `header.py` what the lines above state.
-Times are in a column whose name says so or whose unit is one. What is not stated, or has two readings, has to be given
-as an argument.
+The line below those that are skipped is the header, unless all of it are numbers. A column of the canonical name with
+its unit in brackets, such as `time [s]` or `acceleration [g]`, states itself; all else is stated by arguments. What is
+missing is asked for, with the first lines of the file.
 """
 
-import re
+from __future__ import annotations
+
+import csv
+import io
 from array import array
-from dataclasses import replace
-from itertools import chain, islice
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import fields, replace
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from rocking._base.arrays import Array
 from rocking._base.errors import RecordFileError
-from rocking._base.units import UNITS
-from rocking._excitation.records.readers.header import LONGEST_STEP, OTHER_SERIES
-from rocking._excitation.records.readers.layout import (
-    MAX_NAMES,
-    Column,
-    Layout,
-    base_name,
-    cells_of,
-    count_rows,
-    fields_of,
-    find_layout,
-    plain_name,
-)
-from rocking._excitation.records.readers.lines import (
+from rocking._base.units import UNITS, unit_name
+from rocking._excitation.records.readers.layout import Column, Layout, Samples, stated_layout
+from rocking._excitation.records.readers.text_file import (
     HEAD_LINES,
-    MAX_LINE,
     MAX_SAMPLES,
-    NUMBER,
     TextFile,
-    agreed_step,
-    agreed_unit,
-    decoded,
-    to_float,
-    to_floats,
+    fortran_widths,
+    is_number,
+    numbers,
+    says_other_quantity,
 )
-from rocking._excitation.records.record import Record
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 STEP_TOLERANCE = 0.02
 """Largest deviation of a time from the uniform grid, in steps [-]: times are often rounded to a few digits."""
 
 LARGEST_ROUNDING = 0.3  # largest last place of times, in steps [-]: a missing row is off by more
-
-MAX_TIME = 1e12  # largest time in a column of times [s]; times are often counted from an epoch
-WRAPPED = "rows"  # the component that stands for the values of all columns, row by row
-JUMP = 3.0  # a leading value this many times larger than all others is no sample [-]
-
-SMOOTHER = 0.6
-"""Sum of the steps along the rows over that down the columns below which the rows are one series [-]: of records of 100
-and 200 samples a second in 3 to 10 columns it is 0.2 to 0.6, of three components of noise 0.66 and more."""
-
-SMOOTHER_OF_FEW = 0.5  # the same for two or three columns, which usually are components
+CELLS_AT_ONCE = 100_000  # cells of a part that pandas reads [-]
+SHOWN_LINES, SHOWN_SIGNS = 6, 80  # first lines of a file that a message shows, and signs of each
+SIGNS_OF_NUMBERS = frozenset("0123456789+-.ed\"'")
+MISSING = {"nan", "na", "n/a", "null", "none", "inf", "-inf"}  # in a row they are refused, and make no header of it
 
 
-def read(file: TextFile, unit: str | None, time_step: float | None, component: str | None, skip: int | None) -> Record:
-    """Read columns; arguments and errors as for `read_record`."""
-    layout = find_layout(file, skip)
-    header = layout.header
-    names, above = [plain_name(one.name) for one in layout.columns], " ".join(file.head[: layout.first])
-    spectrum = any(re.match(r"(natural )?period|freq", name) for name in names)
-    if any(re.fullmatch(r"t ?[1n]?", name) for name in names):  # a time or a period
-        spectrum |= any(re.search(r"\bp?s[adev]\b|respon", name) for name in names) or "spectr" in above.lower()
-    if spectrum or re.search(r"response spectr|fourier", above, re.I):
-        raise file.error(layout.line, "a spectrum", "a recorded ground acceleration against time")
-    for k, line in enumerate(file.head[: layout.first]):
-        if layout.width == 1 and OTHER_SERIES.search(line):
-            raise file.error(k, line.strip(), "accelerations")
-        if re.fullmatch(r"\s*\d\S*e[+-]?\d+ *\*\s*", line, re.I):
-            raise file.error(k, f"a factor of all numbers below, {line.strip()}", "numbers in full")
-    _check_thousands(layout)
-    times = _time_columns(layout)
-    if layout.line is None and layout.width > 1:
-        times = [] if component == WRAPPED else _unnamed_times(layout)
-        counted = layout.of_kind("counter")
-        if not times and not counted and component in (None, WRAPPED) and _is_wrapped(layout, component):
-            return _wrapped(layout, unit, time_step)
-        times = [k for k in times if layout.columns[k].name != component]
-    elif component == "T":  # transverse, if it does not rise
-        times = [k for k in times if layout.columns[k].name != "T" or _rises(_table(layout, [k])[0])]
-    chosen, unused = _chosen(layout, times, component)
-    column = layout.columns[chosen]
-    _check_name(layout, column)
-    stated = header.unit(unit)
-    in_name = column.unit("m/s2")
-    if in_name and stated.value and UNITS["m/s2"][in_name] != UNITS["m/s2"][str(stated.value)] and unit is None:
-        found = f"the unit {in_name} in a column name"
-        raise file.error(layout.line, found, f"{stated.value}, as the header says in line {(stated.line or 0) + 1}")
-    if unit is None and in_name is None and stated.value is None:
-        _check_unit_text(layout, column)
-    said = in_name or stated.value
-    agreed = agreed_unit(file, layout.line if in_name else stated.line, None if said is None else str(said), unit)
-    before = [k for k in times if k < chosen] or times
-    measured = None
-    try:
-        in_seconds = _time_factor(layout, layout.columns[before[-1]]) if before else 1.0
-    except RecordFileError as error:
-        if time_step is None:
-            raise file.error(layout.line, error.value, f"{error.expected}; or the argument `time_step`") from None
-        before = []
-    if before:
-        found_times, values = _table(layout, [before[-1], chosen])
-        known = time_step or header.step(time_step).value
-        place = _last_place(layout, before[-1]) * in_seconds
-        measured = _uniform_step(layout, found_times * in_seconds, place, known)
-        if layout.columns[before[-1]].unit("s") is None:  # the step may say which one it is
-            units = (
-                scale for scale in (1.0, 1e-3, 1e-6) if known and abs(scale * measured / float(known) - 1.0) < 1e-3
+class Quantity(NamedTuple):
+    """What is read from a file: the argument for its column, its canonical names, its SI unit."""
+
+    argument: str
+    names: tuple[str, ...]
+    unit: str
+
+
+ACCELERATION = Quantity("acceleration", ("acceleration", "accel", "acc"), "m/s2")
+ROTATION = Quantity("rotation", ("rotation",), "rad")
+TIME = Quantity("time", ("time",), "s")
+
+
+class Cell(NamedTuple):
+    """A cell of the header: its text, the name in it, and what is in brackets at its end."""
+
+    text: str
+    name: str
+    bracket: str | None
+
+
+class Choice(NamedTuple):
+    """The columns that are read, from 0, and their units; None: not stated."""
+
+    samples: int | None
+    unit: str | None
+    time: int | None
+    time_unit: str | None
+
+
+class Table:
+    """Header and rows of a file of columns."""
+
+    def __init__(self, file: TextFile, layout: Layout, quantity: Quantity = ACCELERATION) -> None:
+        self.file, self.layout, self.quantity = file, layout, quantity
+        below = islice(file.lines(layout.skip), HEAD_LINES)
+        texts = [*islice(((k, line) for k, line in below if line.strip()), 2)]
+        has_header = bool(texts) and not is_row(texts[0][1])
+        if len(texts) <= has_header:
+            raise file.error(None, f"{len(texts)} lines below those of `skip`".replace("`", ""), "rows of numbers")
+        self.header_line = texts[0][0] if has_header else None
+        self.first, row = texts[has_header]
+        self.widths = fortran_widths(layout.delimiter) if layout.delimiter else None
+        self.separator = layout.delimiter or self._separator(row, texts[0][1])
+        cells = self.cells_of(row)
+        self.width = len(cells)
+        self.header: list[Cell] = []
+        if has_header:
+            header = texts[0][1].strip("#% \t")
+            named = [_cell(text) for text in ([header] if self.width == 1 else self._names_of(header))]
+            named += [_cell("")] if len(named) == self.width - 1 and not cells[-1] else []
+            self.header = named if len(named) == self.width else []
+        self.title_lines = layout.skip if self.header else self.first
+
+    def _separator(self, row: str, header: str) -> str:
+        """The one sign between the cells of the first row."""
+        parts = row.split('"')
+        signs = [sign for sign in ",;\t" if sign in "".join(parts[::2])]
+        if self.layout.decimal == "," and len(parts) == 1 and "," in signs:
+            signs.remove(",")
+        if len(signs) > 1:
+            raise self.error(self.first, row.strip(), "the argument `delimiter`, and `decimal` if it is a comma")
+        if signs == ["\t"] and "\t" not in header:
+            return " "
+        return signs[0] if signs else " "
+
+    @property
+    def _sign(self) -> str:
+        """The sign to which all separators are translated."""
+        return " " if " " in self.separator else self.separator[0]
+
+    @property
+    def _translation(self) -> dict[int, str]:
+        """Other separators, each with that sign."""
+        signs = self.separator + ("\t" if self._sign == " " else "")
+        return {ord(sign): self._sign for sign in signs if sign != self._sign}
+
+    def cells_of(self, line: str) -> list[str]:
+        """The cells of a line."""
+        if self.widths is not None:
+            count, width = self.widths
+            cells = [line[k * width : (k + 1) * width] for k in range(count)]
+        else:
+            line = line.translate(self._translation).strip(" ")
+            cells = next(csv.reader([line], delimiter=self._sign, skipinitialspace=True), [])
+        cells = [cell.strip() for cell in cells]
+        return [cell for cell in cells if cell] if self.widths or self._sign == " " else cells
+
+    def _names_of(self, header: str) -> list[str]:
+        """The cells of the header; one that starts with a bracket behind a blank belongs to the one before."""
+        names: list[str] = []
+        for text in self.cells_of(header):
+            if names and text[:1] in ("[", "(") and self._sign == " ":
+                names[-1] += f" {text}"
+            else:
+                names.append(text)
+        return names
+
+    @property
+    def shown(self) -> str:
+        """The names of the columns, or their number, for messages."""
+        return ", ".join(cell.text for cell in self.header) or f"{self.width} columns without names"
+
+    def check_comma(self) -> None:
+        """Refuse rows such as 0,1 without names, which are two columns or one of decimal commas."""
+        if self.separator != "," or self.layout.delimiter is not None or self.header:
+            return
+        for _, line in islice(self.file.lines(self.first), HEAD_LINES):
+            if not all(is_number(cell.replace(",", ".", 1)) for cell in line.replace(";", " ").split()):
+                return
+        expected = 'the argument `delimiter=","` or `decimal=","`: the comma separates columns or decimals'
+        raise self.error(self.first, "numbers with one comma", expected)
+
+    def quantity_remarks(self, choice: Choice) -> list[str]:
+        """Remarks on titles and the name of the column that contradict `unit`.
+
+        Raises `RecordFileError` where one says velocity, displacement, counts or a spectrum, unless the format is
+        stated as well.
+        """
+        layout = self.layout
+        texts = [*islice(self.file.lines(0), self.title_lines)]
+        cell = self.header[choice.samples] if self.header and choice.samples is not None else _cell("")
+        other = [(k, text.strip()) for k, text in [*texts, (self.header_line, cell.text)] if says_other_quantity(text)]
+        if other and (layout.format is None or layout.unit is None):
+            raise self.file.other_quantity(*other[0])
+        unit = UNITS[self.quantity.unit].get(str(layout.unit))
+        if unit is not None and cell.bracket is not None and not other:
+            in_name = unit_name(cell.bracket, self.quantity.unit)
+            other = [] if UNITS[self.quantity.unit].get(str(in_name)) == unit else [(self.header_line, cell.text)]
+        remarks = [f"the file says {text}; {layout.unit} is used, as the argument `unit` says" for _, text in other]
+        in_name = self._unit(choice.time, TIME)
+        if in_name not in (None, choice.time_unit):
+            remarks.append(
+                f"the times are in {in_name}, says the file; {choice.time_unit} is used, as `time_unit` says"
             )
-            measured *= next(units, 1.0)
-            if measured > LONGEST_STEP and time_step is None:
-                raise _no_unit_of_times(layout, measured)
-    else:
-        (values,) = _table(layout, [chosen])
-        if layout.width > 1 and _is_uniform(values):
-            raise file.error(layout.line, f"{column.shown}, which rises uniformly", "a column of accelerations")
-    file.check_values(values)
-    remarks = (*header.remarks(), *_check_count(layout, values))
-    if not before and not layout.skipped and layout.counted is None:
-        _check_leading(layout, values, time_step, slice(chosen, chosen + 1))
-    step = _agreed_step(layout, values.size, measured, time_step)
-    stem = file.name.rsplit(".", 1)[0]
-    name = stem if component is None else f"{stem} {column.name}"
-    left = f"; not used: {', '.join(unused)}" if unused else ""
-    return Record(values, step, agreed, name=name, source=f"{file.name} (columns{left})", remarks=remarks)
+        return remarks
 
+    # the columns that are stated
 
-def read_samples(file: TextFile, most: int) -> tuple[int, Array | None, Array]:
-    """Index of the first row, times if there are two columns, and accelerations, in any units; at most `most` rows."""
-    expected = "one column of accelerations, or two of times and accelerations"
-    layout = find_layout(file, 0, expected=expected)
-    if layout.width > 2:
-        raise file.error(layout.first, f"{layout.width} columns", expected)
-    named = layout.of_kind("time")
-    if layout.width == 1:
-        if named:
-            raise file.error(layout.first, "a column of times only", "a column of accelerations")
-        _check_name(layout, layout.columns[0])
-        return layout.first, None, _table(layout, [0], most)[0]
-    times = (named or [0])[0]
-    _check_name(layout, layout.columns[1 - times])
-    time, values = _table(layout, [times, 1 - times], most)
-    return layout.first, time, values
+    def choice(self) -> Choice:
+        """The columns and units that the arguments and the header state."""
+        samples = self._column(self.layout.acceleration, self.quantity)
+        time = self._column(self.layout.time, TIME) if self.layout.time_step is None else None
+        unit = self.layout.unit or self._unit(samples, self.quantity)
+        return Choice(samples, unit, time, self.layout.time_unit or self._unit(time, TIME))
 
+    def missing(self, choice: Choice) -> list[str]:
+        """The arguments that are missing."""
+        wrapped = self.layout.wrapped
+        missing = [] if wrapped or choice.samples is not None else [self.quantity.argument]
+        if choice.time is None and self.layout.time_step is None:
+            missing.append("time_step" if wrapped or self.width == 1 else "time")
+        elif choice.time is not None and choice.time_unit is None:
+            missing.append("time_unit")
+        named = [k for k in range(len(self.header)) if self._unit(k, self.quantity)]
+        is_stated = choice.unit is not None or (choice.samples is None and bool(named))
+        return missing if is_stated else [*missing, "unit"]
 
-def read_rotations(
-    file: TextFile, most: int, degrees: bool | None, time_step: float | None = None
-) -> tuple[Array, Array]:
-    """Times [s] and rotations [rad], at most `most` rows, in the units that the header states.
+    def check_stated(self, choice: Choice) -> None:
+        """Refuse a file whose layout is not stated: what is missing, and what there is to choose from."""
+        missing = self.missing(choice)
+        quantity = self.quantity
+        texts = {
+            quantity.argument: f"`{quantity.argument}` (a column: its name, or its number from 1)",
+            "time": "`time` (a column) or `time_step`",
+            "time_step": "`time_step`",
+            "time_unit": f"`time_unit` ({', '.join(UNITS['s'])})",
+            "unit": f"`unit` ({', '.join(UNITS[quantity.unit])})",
+        }
+        if missing:
+            expected = "the argument " + " and ".join(texts[name] for name in missing)
+            if quantity is ACCELERATION and self.width > 2 and not (self.header or self.layout.wrapped):
+                expected += "; or `wrapped=True` if the rows are one series"
+            line = self.first if self.header_line is None else self.header_line
+            raise self.error(line, self.shown, expected, missing)
+        if choice.samples is not None and choice.samples == choice.time:
+            raise self.error(None, "one column", f"different columns for `time` and `{quantity.argument}`")
+        self.check_comma()
+        wrong = [cell.text for cell in self.header if "." in cell.text and is_number(cell.text)]
+        if wrong:
+            raise self.error(self.header_line, f"{wrong[0]} among names", "names, or numbers only", [])
+        lines = (line for _, line in self.file.lines(self.first) if line.strip())
+        rows = [self.cells_of(line) for line in islice(lines, 0 if self.layout.wrapped else 2)]
+        for column in zip(*rows, strict=False):
+            words = [cell for cell in column if cell and not is_number(cell.replace(",", "."))]
+            if len(rows) == 2 and words == [column[0]] and column[1] != column[0]:
+                expected = "a number, as below it; or another number of lines in `skip`"
+                raise self.error(self.first, column[0], expected, [])
 
-    Without units these are seconds, and degrees or radians as `degrees` says; None: radians, unless the file states
-    another unit. A counter, such as the number of a frame, is no time: `time_step` [s], or a rate in the header, gives
-    the times then.
+    def _column(self, stated: Column | None, quantity: Quantity) -> int | None:
+        """The column of an argument, or of a canonical name."""
+        if isinstance(stated, int):
+            if stated > self.width:
+                raise self.error(self.first, self.shown, f"column {stated}, as `{quantity.argument}` says", [])
+            return stated - 1
+        wanted = quantity.names if stated is None else (stated.strip().lower(),)
+        named = [k for k, cell in enumerate(self.header) if {cell.name.lower(), cell.text.lower()} & {*wanted}]
+        if stated is None:
+            # a canonical name states nothing beside other columns in such units or, without a unit, beside any other
+            others = [k for k, cell in enumerate(self.header) if cell.name.lower() not in (*TIME.names, "vertical")]
+            alike = [k for k in others if self._unit(k, quantity)]
+            alone = quantity is TIME or named in (others, alike)
+            return named[0] if len(named) == 1 and alone else None
+        if len(named) == 1:
+            return named[0]
+        if not named and wanted[0].isdecimal() and 0 < int(wanted[0][:5]) <= self.width:
+            return int(wanted[0][:5]) - 1
+        raise self.error(self.header_line, self.shown, f"one column {stated} for `{quantity.argument}`", [])
 
-    Raises `RecordFileError` if the file holds anything else, or rotations in another unit than `degrees` says.
-    """
-    layout = find_layout(file, 0, "rad", "one column of rotations, or two of times and rotations")
-    times = _time_columns(layout)
-    if layout.line is None and layout.width > 1:
-        times = _unnamed_times(layout)
-    chosen = [k for k in range(layout.width) if k not in times and layout.columns[k].kind not in ("counter", "other")]
-    if not chosen and len(rest := [k for k in range(layout.width) if k not in times]) == 1:
-        chosen = rest
-    if len(times) > 1 or len(chosen) != 1:
-        found = f"columns {', '.join(one.shown for one in layout.columns)}"
-        raise file.error(layout.line, found, "one column of times and one of rotations")
-    column = layout.columns[chosen[0]]
-    _check_name(layout, column, "rotations")
-    given = None if degrees is None else "deg" if degrees else "rad"
-    if column.unit("rad") is None and _NO_ROTATION.search(column.name):
-        raise file.error(layout.line, f"the column {column.shown}", "a column of rotations")
-    in_name = column.unit("rad") if given else _stated_unit(layout, column, "rad")
-    stated = layout.header.unit(given, "a unit of rotation: rad, deg, mrad")
-    if in_name and stated.value and in_name != stated.value:
-        raise file.error(layout.line, f"the column {column.shown}", f"{stated.value}, as the header says")
-    unit = in_name or (None if stated.value is None else str(stated.value))
-    if unit is not None and given is not None and unit != given:
-        raise file.error(layout.line, f"the column {column.shown}", f"rotations in {given}, as `degrees` says")
-    if not times:
-        if layout.width == 1 and time_step is None and not layout.header.found.get("step"):
-            expected = "a column of times and one of rotations, or the argument `time_step`"
-            raise file.error(layout.first, "one column", expected)
-        (rotation,) = _table(layout, chosen, most)
-        step = _agreed_step(layout, rotation.size, None, time_step)
-        if layout.file.overruled:
-            raise layout.file.error(None, layout.file.overruled[0], "one time step")
-        return step * np.arange(rotation.size, dtype=np.float64), rotation * UNITS["rad"][unit or given or "rad"]
-    time, rotation = _table(layout, [times[0], chosen[0]], most)
-    time *= _time_factor(layout, layout.columns[times[0]])
-    if layout.columns[times[0]].unit("s") is None and layout.line is not None:
-        if time_step is not None:
-            time = time_step * np.arange(time.size, dtype=np.float64)
-        elif time.size > 1 and (step := float(np.median(np.diff(time)))) > LONGEST_STEP:
-            raise _no_unit_of_times(layout, step)
-    elif time_step is not None and time.size > 1 and abs(np.median(np.diff(time)) / time_step - 1.0) > STEP_TOLERANCE:
-        found = f"times with a step of {np.median(np.diff(time)):g} s"
-        raise file.error(layout.line, found, f"the stated time step of {time_step:g} s")
-    return time, rotation * UNITS["rad"][unit or given or "rad"]
+    def _unit(self, column: int | None, quantity: Quantity) -> str | None:
+        """The unit in brackets in the name of a column."""
+        bracket = self.header[column].bracket if self.header and column is not None else None
+        return None if bracket is None else unit_name(bracket, quantity.unit)
 
+    # the rows
 
-_NO_ROTATION = re.compile(
-    r"acc|veloc|\brate|speed|gyro|omega|[_ ]dot\b|counts\b|\b(?:cos|sin|tan)\b|\bx ?1", re.IGNORECASE
-)
-"""Names of columns of other quantities, or of a function or a multiple of the rotation."""
+    def series(self) -> Array:
+        """All values, row by row; rows but the last are of one length."""
+        values = array("d")
+        short = None
+        for k, line in self.file.lines(self.first):
+            cells = self.cells_of(line)
+            if cells and (short is not None or len(cells) > self.width):
+                expected = f"{self.width} in each line but the last"
+                raise self.error(k if short is None else short, "another number of cells", expected)
+            if 0 < len(cells) < self.width:
+                short = k
+            if len(values) > MAX_SAMPLES:
+                raise self.file.error(k, f"more than {MAX_SAMPLES} values", f"at most {MAX_SAMPLES}")
+            values.extend(self._numbers(cells, lambda _, line=k: line))  # type: ignore[misc]
+        return self.file.checked(np.frombuffer(values))
 
+    def columns(self, wanted: list[int], *, times: bool) -> list[Array]:
+        """Some columns; without `times` that show whether a row is missing, no line between the rows is blank."""
+        found = [array("d") for _ in wanted]
+        rows = 0
+        for frame in self._frames():
+            short = frame.iloc[:, -1].isna().to_numpy()
+            if self._sign == " " and short.any():
+                expected = f"{self.width} cells, as in line {self.first + 1}"
+                raise self.error(self.line_of(rows + int(short.argmax())), "fewer cells", expected)
+            for values, column in zip(found, wanted, strict=True):
+                values.extend(self._numbers(frame.iloc[:, column].tolist(), lambda k, row=rows: self.line_of(row + k)))  # type: ignore[misc]
+            rows += len(frame)
+            if rows > MAX_SAMPLES:
+                raise self.file.error(None, f"more than {MAX_SAMPLES} rows", f"at most {MAX_SAMPLES}")
+        self._check_lines(rows, times)
+        return [np.frombuffer(values) for values in found]
 
-def _no_unit_of_times(layout: Layout, step: float) -> RecordFileError:
-    expected = "a unit of times, such as time [ms], or the argument `time_step`"
-    return layout.file.error(layout.line, f"a time step of {step:g}, without a unit", expected)
+    def _frames(self) -> Iterator[pd.DataFrame]:
+        """Parts of the rows as texts."""
+        import pandas as pd  # noqa: PLC0415  # other commands and the rules of a workflow start without it
 
-
-def _time_columns(layout: Layout) -> list[int]:
-    """The columns of times by their names; a bare T in a later place is a component."""
-    found = layout.of_kind("time")
-    if len(found) == layout.width:
-        raise layout.file.error(layout.first, "a column of times only", "a column of samples")
-    bare = [k for k in found if layout.columns[k].name == "T" and k > 0]
-    return [k for k in found if k not in bare]
-
-
-def _unnamed_times(layout: Layout) -> list[int]:
-    """The first of several columns without names, if its values are uniform times in s.
-
-    Whole numbers and long steps may also be a counter, or times in another unit: the column is marked as a counter.
-    """
-    if times := layout.of_kind("time"):  # of day
-        return times
-    cells = [cells_of(layout, row)[0] for row in layout.file.head[layout.first :] if row.strip()]
-    if len(cells) > 2 and all(map(NUMBER.fullmatch, cells)) and not _rises(np.array([*map(to_float, cells[1:])])):
-        return []  # perhaps one series, whose last row is shorter
-    (values,) = _table(layout, [0])
-    if not _rises(values):
-        if _is_uniform(values[1:]):
-            found = f"{layout.file.head[layout.first].strip()} above rows whose first numbers rise"
-            more = "" if layout.skipped else ", or the argument `skip`"
-            raise layout.file.error(layout.first, found, f"times from the first row on{more}")
-        return []
-    step = (values[-1] - values[0]) / (values.size - 1)
-    if step <= LONGEST_STEP and (values != np.round(values)).any():
-        return [0]
-    layout.columns[0] = replace(layout.columns[0], kind="counter")
-    return []
-
-
-def _is_wrapped(layout: Layout, component: str | None) -> bool:
-    """Whether the rows of unnamed columns are one series.
-
-    The header may count the values, or the rows. Else neighbours along the rows, and from the end of a row to the start
-    of the next one, have to differ less than those down the columns, and alike.
-
-    Raises `RecordFileError` if both readings are possible.
-    """
-    file, width = layout.file, layout.width
-    if component == WRAPPED:
-        return True
-    counts = [one.value for one in layout.header.found.get("count", [])] + [layout.counted[0] if layout.counted else 0]
-    rows = count_rows(file, layout.first)
-    if any((rows - 1) * width < (count or 0) <= rows * width for count in counts) and rows not in counts:  # type: ignore[operator]
-        return True
-    whole = _whole_rows(layout)
-    if len(whole) > 2 and rows not in counts and np.isfinite(whole).all():
-        whole = whole / max(float(np.abs(whole).max()), 1.0)  # no sum overflows
-        series = whole.ravel()
-        along, down = np.abs(np.diff(series)), np.abs(np.diff(whole, axis=0)).mean()
-        places = [along[k::width].mean() for k in range(width)]
-        if along.mean() < (SMOOTHER if width > 3 else SMOOTHER_OF_FEW) * down and max(places) < 3.0 * min(places):
-            return True
-    names = ", ".join(one.name for one in layout.columns)
-    expected = f"the argument `component`: one of them, or {WRAPPED} for one series along the rows"
-    raise file.error(layout.line, f"{width} columns without names, {names}", expected)
-
-
-def _wrapped(layout: Layout, unit: str | None, time_step: float | None) -> Record:
-    """One series, several values a line."""
-    file, header = layout.file, layout.header
-    said = header.unit(unit)
-    agreed = agreed_unit(file, said.line, None if said.value is None else str(said.value), unit)
-    remarks, width, kept = list(header.remarks()), layout.width, slice(None)
-    if (numbers := _numbers_of_rows(layout)) is not None:
-        width, kept = width - 1, slice(None, -1) if numbers else slice(1, None)
-        remarks.append(f"the {'last' if numbers else 'first'} column rises uniformly, and is no part of the series")
-    if layout.separator is None and not layout.comma and numbers is None:
-        values = file.values(layout.first)
-    else:
-        lines = chain.from_iterable(lines for _, lines in file.rows(layout.first))
-        texts = chain.from_iterable(cells_of(layout, decoded(line))[kept] for line in lines if line)
-        values = np.array([file.number(layout.first, text, "a number") for text in texts])
-        file.check_values(values)
-    rows = count_rows(file, layout.first)
-    if not (rows - 1) * width < values.size <= rows * width:
-        raise file.error(layout.first, f"{values.size} values in {rows} lines", f"{width} values in each line")
-    if not layout.skipped and layout.counted is None:
-        _check_leading(layout, values, time_step, kept)
-    step = _agreed_step(layout, values.size, None, time_step)
-    for one in header.found.get("count", []):
-        remarks += file.checked_count(values, int(one.value or 0), one.line)
-    source = f"{file.name} (columns, one series along the rows)"
-    return Record(values, step, agreed, name=file.name.rsplit(".", 1)[0], source=source, remarks=remarks)
-
-
-def _whole_rows(layout: Layout) -> Array:
-    """The first rows that have as many numbers as the first one, shape (rows, columns)."""
-    cells = (cells_of(layout, row) for row in layout.file.head[layout.first :])
-    rows = [[*map(to_float, row)] for row in cells if len(row) == layout.width and all(map(NUMBER.fullmatch, row))]
-    return np.array(rows).reshape(len(rows), layout.width)
-
-
-def _numbers_of_rows(layout: Layout) -> int | None:
-    """The first or the last of the columns of one series, if it numbers the rows or holds times."""
-    table = _whole_rows(layout)
-    found = [k for k in range(layout.width) if len(table) > 3 and _is_uniform(table[:, k])]
-    if found and found not in ([0], [layout.width - 1]):
-        names = ", ".join(layout.columns[k].name for k in found)
-        raise layout.file.error(layout.first, f"{names}, which rise uniformly", "rows of samples only")
-    return found[0] if found else None
-
-
-def _rises(values: Array) -> bool:
-    """Whether there are several values, each above the one before."""
-    return values.size > 1 and bool((np.diff(values) > 0.0).all())
-
-
-def _is_uniform(values: Array) -> bool:
-    """Whether there are at least three values that rise by equal steps."""
-    steps = np.diff(values)
-    return _rises(values) and values.size > 2 and bool(np.ptp(steps) < STEP_TOLERANCE * steps.max())
-
-
-def _chosen(layout: Layout, times: list[int], component: str | None) -> tuple[int, list[str]]:
-    """The column of the component, by its name or a part of it, and the names of those that are not used."""
-    columns, file = layout.columns, layout.file
-    others = [k for k in range(layout.width) if k not in times]
-    if component is None:
-        samples = [k for k in others if columns[k].kind not in ("counter", "other")]
-        if len(samples) != 1:
-            listed = samples or others
-            if not listed:
-                raise file.error(layout.first, "a column of times only", "a column of accelerations")
-            if len(listed) == 1:
-                return listed[0], []
-            names = ", ".join(columns[k].shown for k in listed)
-            rows = f", or {WRAPPED} for one series along the rows" if layout.line is None and len(listed) > 3 else ""
-            raise file.error(layout.line, f"components {names}", f"the argument `component`: one of them{rows}")
-        return samples[0], [columns[k].shown for k in others if k != samples[0]]
-    plain = plain_name(component)
-    for key in (
-        lambda name: [name.lower()] if component.strip().lower() == name.lower() else [],
-        lambda name: [base_name(name), plain_name(name)],
-        lambda name: plain_name(name).split()[:1],
-        lambda name: plain_name(name).split(),
-    ):
-        found = [k for k in others if any(plain_name(part) == plain for part in key(columns[k].name))]
-        if len(found) == 1:
-            return found[0], []
-    numbered = re.fullmatch(r"column (\d+)", plain)  # whatever a line above says
-    if numbered and int(numbered[1]) - 1 in others:
-        return int(numbered[1]) - 1, []
-    names = ", ".join(columns[k].shown for k in others)
-    raise file.error(layout.line, f"components {names}", f"component {component}")
-
-
-def _check_name(layout: Layout, column: Column, kind: str = "accelerations") -> None:
-    """Refuse a column of other quantities, by its name or unit."""
-    if column.kind in ("other", "counter"):
-        raise layout.file.error(layout.line, f"the column {column.shown}", f"a column of {kind}")
-
-
-def _check_unit_text(layout: Layout, column: Column) -> None:
-    """Refuse a column whose name has something else than a unit of acceleration in brackets."""
-    texts = re.findall(r"[(\[]([^()\[\]]*)[)\]]", column.shown)
-    if any(not re.fullmatch(r"[a-z]{1,3}\d?|\d+", text, re.I) for text in texts):  # components, such as (NS)
-        raise layout.file.error(
-            layout.line, f"the column {column.shown}", "a unit of acceleration, such as cm/s2; or the argument `unit`"
-        )
-
-
-def _agreed_step(layout: Layout, count: int, measured: float | None, given: float | None) -> float:
-    """The time step [s] that the column of times, the header, a line of count and step, and the argument agree in."""
-    file, counted = layout.file, layout.counted
-    if counted is not None:
-        if counted[0] != count:
-            shown = file.head[layout.first - 1].strip()
-            allowed = f"the number of values, {count}, and a time step; or the argument `skip`"
-            raise file.error(layout.first - 1, shown, allowed)
-        measured = measured or counted[1]
-    said = layout.header.step(given)
-    stated = None if said.value is None else float(said.value)
-    if measured is None:
-        if stated is None and given is None and (counters := layout.of_kind("counter")):
-            shown = f"the column {layout.columns[counters[0]].shown}, a counter or times in no known unit"
-            raise file.error(layout.line, shown, "times, a step or rate in the header, or the argument `time_step`")
-        return agreed_step(file, said.line, stated, given)
-    if stated is not None and given is None and abs(measured / stated - 1.0) > 1e-3:
-        raise file.error(said.line, f"a time step of {stated:g} s", f"{measured:g} s, as the column of times says")
-    return agreed_step(file, layout.first, measured, given)
-
-
-def _check_thousands(layout: Layout) -> None:
-    """Refuse numbers such as 1,104 if all with this sign have three digits behind it: it may separate thousands."""
-    content, start = layout.file.content, layout.file.start_of(layout.first)
-    for sign in (b",", b".") if layout.separator in (";", "\t") else ():
-        place = content.rfind(b"\n", 0, max(content.find(sign, start), start)) + 1
-        numbers = re.compile(rb"(?<![^\s;])[^\s;%b]*+[%b][^\s;]*+" % (sign, sign))
-        fields = [*islice(numbers.finditer(content, place), MAX_NAMES)]
-        if fields and all(_THOUSANDS.fullmatch(field[0]) for field in fields):
-            found = f"{decoded(fields[0][0])}, whose {decoded(sign)} may separate thousands"
-            raise layout.file.error(None, found, "numbers without it, or with decimals that show what it is")
-
-
-_THOUSANDS = re.compile(rb"[+-]?[1-9]\d{0,2}([.,]\d{3})+")
-
-
-def _check_count(layout: Layout, values: Array) -> list[str]:
-    """The remark on a number of values that the header does not state; several components one below the other."""
-    remarks = []
-    for one in layout.header.found.get("count", []):
-        times = values.size / float(one.value or 1)
-        if times in (2.0, 3.0) and layout.width == 1 and not layout.skipped:
-            allowed = "one component; or the argument `skip`, 0 if all are samples of one"
-            raise layout.file.error(one.line, f"{one.text}, and {values.size} values", allowed)
-        if times != 1.0 and 0.1 < times < 10.0:
-            remarks.append(f"the file holds {values.size} samples, its header states {one.text}")
-    return remarks
-
-
-def _check_leading(layout: Layout, values: Array, time_step: float | None, kept: slice) -> None:
-    """Refuse some columns with a count, a step or a factor at the start, or a count at the end, by size and form."""
-    if values[-1] == values.size - 1 and values[-1] > JUMP * np.abs(values[:-1]).max():
-        found = f"{values[-1]:g} behind as many values"
-        raise layout.file.error(None, found, "samples only; or the argument `skip`: 0")
-    rows = (cells_of(layout, row)[kept] for row in layout.file.head[layout.first :] if row.strip())
-    texts = [*chain.from_iterable(rows)][:HEAD_LINES]
-    forms, digits = zip(*map(_form, texts), strict=True)
-    uniform = len(texts) > 6 and len({*forms[3:]}) == 1
-    exact = len(texts) > 12 and sum(count > 3 for count in digits[3:]) > 0.8 * (len(texts) - 3)
-    stated = [one.value for one in layout.header.found.get("step", [])] + [time_step, *_GRAVITY]
-    lead = 0
-    for k in range(min(3, values.size - 2)):
-        below = np.abs(values[k + 1 :])
-        value, others = abs(values[k]), below.max()
-        whole = value == round(value)
-        counted = whole and value > 3.0 and values.size - 3 <= value <= values.size
-        written = forms[k] != forms[-1] if uniform else exact and digits[k] <= 2 and (whole or value <= LONGEST_STEP)
-        peak = value == others > 2.0 * below[0] and np.count_nonzero(below == others) == 1
-        known = layout.width == 1 and values[k] in stated
-        if value > 0.0 and (counted or peak or known or written or value > JUMP * others):
-            lead = k + 1
-    if lead:
-        shown = ", ".join(texts[:lead])
-        skip = -(-lead // len(range(layout.width)[kept]))
-        allowed = f"samples only; or the argument `skip`: {skip} if these are a count, a step or a factor, 0 if samples"
-        raise layout.file.error(layout.first, f"{shown} before {texts[lead]}", allowed)
-
-
-_GRAVITY = (9.8, 9.81, 9.807, 9.80665, 980.0, 980.665, 981.0, 386.0, 386.09, 386.089, 386.4, 32.17, 32.174, 32.2)
-"""Factors from g [-] that people write above the samples."""
-
-
-def _form(text: str) -> tuple[tuple[int, bool], int]:
-    """The number of decimals of a number, whether it has an exponent, and its number of significant digits."""
-    mantissa, *exponent = re.split(r"[EeDd]", text.rstrip(",;"))
-    decimals = mantissa.replace(",", ".").partition(".")[2]
-    return (len(decimals), bool(exponent)), len(re.sub(r"\D", "", mantissa).lstrip("0"))
-
-
-def _table(layout: Layout, columns: list[int], most: int = MAX_SAMPLES) -> list[Array]:
-    """Some columns of all rows; each row has the columns of the first."""
-    file, width = layout.file, layout.width
-    mark = None if layout.separator is None else layout.separator.encode()
-    found = [array("d") for _ in columns]
-    for k, raw in file.rows(layout.first):
-        lines = [line.replace(b",", b".") for line in raw] if layout.comma else raw
-        # blank lines between rows of several columns are left out: the times show whether a row is missing
-        rows = [line.split(mark) for line in lines if line or width == 1]
+        start = 0
+        for _ in range(self.first):
+            start = self.file.content.index(b"\n", start) + 1
+        body = self.file.content[start:]
+        if self.widths is not None:
+            body = "\n".join(",".join(self.cells_of(line)) for _, line in self.file.lines(self.first)).encode()
+        elif self._translation:
+            others = bytes(self._translation)
+            body = body.translate(bytes.maketrans(others, self._sign.encode() * len(others)))
+        sign = "," if self.widths is not None else self._sign
+        options: dict[str, Any] = {"sep": r"\s+" if sign == " " else sign, "header": None, "skipinitialspace": True}
+        options |= {"dtype": object, "keep_default_na": False, "chunksize": max(1, CELLS_AT_ONCE // self.width)}
         try:
-            if any(len(row) != width for row in rows):
-                raise ValueError("not only whole rows")
-            numbers = to_floats([*chain.from_iterable(rows)])
-        except ValueError:
-            numbers = []
-            for j, line in enumerate(lines, k):
-                if line or width == 1:
-                    numbers += _row(layout, j, decoded(line))
-        for values, column in zip(found, columns, strict=True):
-            values.extend(numbers[column::width])
-        if len(found[0]) > most:
-            raise file.error(k, f"more than {most} rows", f"at most {most}")
-    return [np.frombuffer(values) for values in found]
+            with pd.read_csv(io.BytesIO(body), **options) as reader:
+                for frame in reader:
+                    if self.file.stop is not None:
+                        self.file.stop.check()
+                    yield frame
+        except pd.errors.ParserError as error:
+            for k, line in self.file.lines(self.first):
+                cells = len(self.cells_of(line))
+                if cells > self.width:
+                    expected = f"{self.width} cells, as in line {self.first + 1}"
+                    raise self.error(k, f"{cells} cells", expected) from None
+            raise self.file.error(None, str(error).strip(), "rows that pandas can read") from None
+
+    def _numbers(self, texts: list[Any], line_of: Callable[[int], int]) -> list[float]:
+        """The numbers of some cells; `line_of` gives the line of one that is wrong."""
+        cells = [text.rstrip() if isinstance(text, str) else "" for text in texts]
+        if self.layout.decimal == ",":  # a dot beside it is no number
+            cells = [cell.replace(".", "?").replace(",", ".") for cell in cells]
+        with suppress(ValueError):
+            values = numbers(cells)
+            if np.isfinite(values).all():
+                return values
+        wrong = next(k for k, cell in enumerate(cells) if not (is_number(cell) and np.isfinite(numbers([cell]))))
+        text = str(texts[wrong]) if cells[wrong] else "an empty cell"
+        expected = "a number"
+        if self.layout.decimal == "." and is_number(text.replace(",", ".")):
+            expected = 'a number; or `decimal=","`'
+        elif text.count(".") > 1 and is_row(text):
+            expected = 'a number; or, where numbers touch, their format, such as `delimiter="8f9.6"`'
+        raise self.error(line_of(wrong), text, expected)
+
+    def line_of(self, row: int) -> int:
+        """The line of a row: rows are the lines that are not blank."""
+        lines = (k for k, line in self.file.lines(self.first) if line.strip())
+        return next(islice(lines, row, None), self.first)
+
+    def _check_lines(self, rows: int, times: bool) -> None:
+        """Refuse a blank line between rows without times, and quotes that join several lines to one row."""
+        blank = None
+        count = 0
+        for k, line in self.file.lines(self.first):
+            if not line.strip():
+                blank = k if blank is None else blank
+                continue
+            if blank is not None and not times:
+                expected = "rows up to the end: cut the file here if another block follows, or take the blank lines out"
+                raise self.error(blank, "a blank line between the rows", expected)
+            count += 1
+        if count != rows:
+            raise self.file.error(None, f"{count} lines that are {rows} rows", "quotes that are closed on their line")
+
+    # messages
+
+    def error(self, line: int | None, found: str, expected: str, missing: list[str] | None = None) -> RecordFileError:
+        """An error with the first lines of the file, and with arguments where `missing` ones can be said."""
+        head = self.file.head[:SHOWN_LINES]
+        lines = [f"line {k + 1}: {text[:SHOWN_SIGNS]}" for k, text in enumerate(head)]
+        call = None if missing is None else self._call(missing)
+        return RecordFileError(self.file.name, None if line is None else line + 1, found, expected, lines, call)
+
+    def _call(self, missing: list[str]) -> dict[str, Any] | None:
+        """Arguments that would read the file; `...` for what cannot be said."""
+        call: dict[str, Any] = {}
+        for field in fields(self.layout):
+            value = getattr(self.layout, field.name)
+            if value != field.default:
+                call[self.quantity.argument if field.name == "acceleration" else field.name] = value
+        skip, missing = self._lines_above(missing)
+        call |= {"skip": skip} if skip else {}
+        return call | dict.fromkeys(missing, ...) if skip or missing else None
+
+    def _lines_above(self, missing: list[str]) -> tuple[int, list[str]]:
+        """The number of lines above the names or the rows, 0 for what is stated, and what is missing beside it."""
+        head = self.file.head
+        for skip in range(1, len(head) - 1) if self.layout.skip == 0 else ():
+            with suppress(RecordFileError):
+                below = Table(self.file, replace(self.layout, skip=skip), self.quantity)
+                if below.header_line == skip and not below.missing(below.choice()):
+                    return skip, []
+        counts = [len(line.replace(",", " ").replace(";", " ").split()) for line in head]
+        start = len(counts)
+        while start and is_row(head[start - 1]) and counts[start - 1] == counts[-1]:
+            start -= 1
+        if self.layout.skip or start <= self.first or len(counts) - start < 3:
+            return 0, missing
+        return (start - 1 if counts[start - 1] == counts[-1] else start), missing
 
 
-def _row(layout: Layout, index: int, line: str) -> list[float]:
-    """The numbers of a line."""
-    file = layout.file
-    if line.startswith(("#", "%", "!")):  # it may stand for rows that are missing
-        raise file.error(index, f"the comment {line}", "comments only above the first row")
-    fields = fields_of(line, layout.separator)
-    if not line:
-        raise file.error(index, "a blank line", "a number")
-    if len(fields) != layout.width:
-        raise file.error(index, f"{len(fields)} columns", f"{layout.width}, as in line {layout.first + 1}")
-    wrong = next((part for part in fields if not NUMBER.fullmatch(part)), None)
-    if wrong is not None:
-        skip = "; or the argument `skip`: so many rows of numbers above are no samples"
-        text = not any(NUMBER.fullmatch(part) for part in fields)
-        more = skip if text and index < layout.first + 4 and not layout.skipped else ""
-        raise file.error(index, wrong or "an empty field", f"a number{more}")
-    return [*map(to_float, fields)]
+def read(file: TextFile, layout: Layout) -> Samples:
+    """Read the acceleration in the columns of a file."""
+    table = Table(file, layout)
+    choice = table.choice()
+    remarks = table.quantity_remarks(choice)
+    table.check_stated(choice)
+    name = file.name.rsplit(".", 1)[0]
+    step = layout.time_step
+    if choice.samples is None:
+        values = table.series()
+        text = "one series row by row"
+    else:
+        wanted = [choice.samples] if choice.time is None else [choice.samples, choice.time]
+        values, *times = table.columns(wanted, times=choice.time is not None)
+        file.checked(values)
+        if times:
+            step = uniform_step(table, times[0] * UNITS["s"][str(choice.time_unit)])
+        text = f"column {choice.samples + 1}"
+        if table.header:
+            text += f", {table.header[choice.samples].text}"
+            name += f" {table.header[choice.samples].name}" if layout.acceleration is not None else ""
+    source = f"{file.name} ({text}, from line {table.first + 1})"
+    return Samples(values, float(step or 0.0), str(choice.unit), name, source, remarks)
 
 
-def _time_factor(layout: Layout, column: Column) -> float:
-    """Seconds in the unit of the column of times, seconds if nothing states one."""
-    unit = _stated_unit(layout, column, "s")
-    tail = re.fullmatch(r"(?:time|t|zeit|temps|tempo|tiempo) (\w+)", plain_name(column.name))
-    if unit is None and tail and tail[1] not in ("elapsed", "axis", "stamp", "vector", "relative"):  # such as time h
-        raise _no_unit(layout, column, "s")
-    return UNITS["s"][unit or "s"]
+def read_rotations(file: TextFile, most: int, **stated: Any) -> tuple[Array, Array]:
+    """Times [s] and rotations [rad] of a trace, at most `most` rows.
 
-
-def _stated_unit(layout: Layout, column: Column, quantity: str) -> str | None:
-    """The unit of times or rotations of a column, None without; other text in brackets or after a slash is refused."""
-    unit = column.unit(quantity)
-    if unit is None and re.search(r"[(\[/\u00b0]|deg|grad|milli", column.shown, re.IGNORECASE):
-        raise _no_unit(layout, column, quantity)
-    return unit
-
-
-def _no_unit(layout: Layout, column: Column, quantity: str) -> RecordFileError:
-    expected = f"one of the units {', '.join(UNITS[quantity])}"
-    return layout.file.error(layout.line, f"the column {column.shown}", expected)
-
-
-def _last_place(layout: Layout, column: int) -> float:
-    """The unit of the last decimal of a column: in its first or its last rows, where numbers of as many digits are
-    rounded more.
+    `stated` are arguments of `read_record` about columns, with `rotation` for the column, in `unit`, rad, deg or mrad.
     """
-    last = decoded(layout.file.content[-MAX_LINE:]).splitlines()[1:][-20:]
-    found = []
-    for lines in (layout.file.head[layout.first :], last):
-        rows = (cells_of(layout, line) for line in lines)
-        texts = [row[column].upper().replace("D", "E") for row in rows if len(row) == layout.width]
-        found.append(min((_last_exponent(text) for text in texts if NUMBER.fullmatch(text)), default=-20.0))
-    return float(10.0 ** min(max(found), 300.0))
+    layout = stated_layout(("columns",), "rad", "rotation", **stated)
+    with file.guarded("columns"):
+        table = Table(file, layout, ROTATION)
+        choice = table.choice()
+        table.check_stated(choice)
+        wanted = [column for column in (choice.samples, choice.time) if column is not None]
+        values, *times = table.columns(wanted, times=choice.time is not None)
+        if values.size > most:
+            raise file.error(None, f"{values.size} rows", f"at most {most}")
+        if times:
+            seconds = times[0] * UNITS["s"][str(choice.time_unit)]
+        else:
+            seconds = np.arange(values.size, dtype=np.float64) * float(layout.time_step or 0.0)
+        return seconds, values * UNITS["rad"][str(choice.unit)]
 
 
-def _last_exponent(number: str) -> float:
-    """The power of ten of the last digit of a number, whose exponent may have any size."""
-    mantissa, _, exponent = number.replace(",", ".").partition("E")
-    return float(exponent or 0) - len(mantissa.partition(".")[2])
+def uniform_step(table: Table, times: Array) -> float:
+    """The step [s] of times that are uniform to 2 % of a step, or as far as their last decimal says.
 
-
-def _uniform_step(layout: Layout, times: Array, place: float, known: float | str | None) -> float:
-    """The step of times that are uniform, as far as their last place says; the error names the first line that is not.
-
-    Each time is off by half of the last place, and so are the two that give the step; `known` is more exact where few
-    times do not settle it.
+    The error names the first line that is not.
     """
-    file, first = layout.file, layout.first
-    if times.size < 2:
-        raise file.error(first, "one row", "at least 2")
-    if not np.abs(times).max() <= MAX_TIME:
-        raise file.error(None, f"a time of {np.abs(times).max():g} s", f"times up to {MAX_TIME:g} s")
-    known = None if known is None else float(known)
-    if known and place > LARGEST_ROUNDING * known and np.ptp(times - known * np.arange(times.size)) <= 1.001 * place:
-        return known  # several times are rounded to the same
-    step = float((times[-1] - times[0]) / (times.size - 1))
-    middle = float(np.median(np.diff(times), overwrite_input=True))
+    steps = np.diff(times)
+    middle = float(np.median(steps))
     if not (middle > 0.0 and np.isfinite(middle)):
-        raise file.error(first + 1, f"times {times[0]:g} and {times[1]:g}", "times that increase")
-    off = times[0] + step * np.arange(times.size) - times
+        raise table.error(table.first, f"times {times[0]:g} and {times[1]:g}", "times that increase")
+    step = float(times[-1] - times[0]) / steps.size
+    digits = 0
+    while digits < 9 and not np.allclose(times * 10.0**digits, np.round(times * 10.0**digits), rtol=1e-15, atol=1e-6):
+        digits += 1
+    place = 10.0**-digits  # the last decimal of the times [s]
     rounding = 1.001 * place if place <= LARGEST_ROUNDING * step else 0.0
-    largest = max(off.max(), -off.min())
-    if step > 0.0 and largest <= max(STEP_TOLERANCE * step, rounding):
-        if largest > 0.01 * place and place > 1e-3 * step * (times.size - 1):
-            if known is None:
-                allowed = "times with more decimals, a step in the header, or the argument `time_step`"
-                raise file.error(first, f"times rounded to {place:g} s, about {step:.3g} s apart", allowed)
-            if abs(known - step) * (times.size - 1) <= place:
-                return known
-        return float(f"{step:.12g}")  # removes the rounding of the difference
-    wrong = int(np.abs(np.diff(times) / middle - 1.0).argmax())
-    more = "; or the argument `skip`" if wrong == 0 and not layout.skipped else ""
-    found = f"a step of {times[wrong + 1] - times[wrong]:g} s"
-    raise file.error(first + wrong + 1, found, f"uniform steps of {middle:g} s{more}")
+    deviation = float(np.abs(times[0] + step * np.arange(times.size) - times).max())
+    if not (step > 0.0 and deviation <= max(STEP_TOLERANCE * step, rounding)):
+        wrong = int(np.abs(steps / middle - 1.0).argmax())
+        expected = (
+            f"uniform steps of {middle:g} s: interpolate the samples to uniform times; or `time_step`, if the samples "
+            "are uniform and the times are not"
+        )
+        raise table.error(table.line_of(wrong + 1), f"a step of {steps[wrong]:g} s", expected)
+    if deviation > 0.01 * place and place > 1e-3 * step * steps.size:
+        expected = "times with more decimals, or the argument `time_step`"
+        raise table.error(table.first, f"times rounded to {place:g} s, about {step:.3g} s apart", expected)
+    return float(f"{step:.12g}")  # removes the rounding of the difference
+
+
+def is_row(line: str) -> bool:
+    """True if all of a line are numbers, or stand for missing ones, whatever separates them."""
+    words = line.replace(",", " ").replace(";", " ").lower().split()
+    numeric = (word in MISSING or SIGNS_OF_NUMBERS.issuperset(word) for word in words)
+    return any(map(str.isdecimal, line)) and all(numeric)
+
+
+def _cell(text: str) -> Cell:
+    text = " ".join(text.split())
+    start = text.rfind({"]": "[", ")": "("}.get(text[-1:], "\n"))
+    return Cell(text, text[:start].strip(), text[start + 1 : -1].strip()) if start >= 0 else Cell(text, text, None)

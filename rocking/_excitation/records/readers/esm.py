@@ -1,47 +1,44 @@
-"""ESM ASCII files (Engineering Strong-Motion database, DYNA format): 64 lines `KEY: value`, then one value a line."""
+"""ESM ASCII (Engineering Strong-Motion database, DYNA 1.2): 64 lines `KEY: value`, then one value a line."""
 
-from rocking._excitation.records.readers.lines import TextFile, agreed_step, agreed_unit, joined, parse_unit
-from rocking._excitation.records.record import Record
+from rocking._base.units import unit_name
+from rocking._excitation.records.readers.layout import Layout, Samples
+from rocking._excitation.records.readers.text_file import TextFile
 
 HEADER_LINES = 64
 
 
 def is_esm(file: TextFile) -> bool:
-    """Whether the header has the keys of the format."""
-    keys = {line.split(":", 1)[0].strip().upper() for line in file.head[:HEADER_LINES] if ":" in line}
-    return {"SAMPLING_INTERVAL_S", "UNITS"} <= keys or {"SAMPLING_INTERVAL_S", "NDATA"} <= keys
+    """Whether the file starts with the key EVENT_NAME and has the key SAMPLING_INTERVAL_S."""
+    return file.head[0].startswith("EVENT_NAME:") and any(
+        line.startswith("SAMPLING_INTERVAL_S:") for line in file.head[:HEADER_LINES]
+    )
 
 
-def read(file: TextFile, unit: str | None, time_step: float | None) -> Record:
-    """Read an ESM file; arguments and errors as for `read_record`."""
-    header: dict[str, tuple[int, str]] = {}
-    first = 0
-    while first < len(file.head) and ":" in file.head[first]:
-        key, value = file.head[first].split(":", 1)
-        header[key.strip().upper()] = first, value.strip()
-        first += 1
-
-    def entry(key: str) -> tuple[int, str]:
-        if key not in header:
-            raise file.error(None, f"no header line {key}", f"one within {HEADER_LINES} lines `KEY: value`")
-        return header[key]
-
-    kind = header.get("DATA_TYPE", (0, "ACCELERATION"))
-    if kind[1].upper() not in ("ACCELERATION", ""):
-        raise file.error(kind[0], kind[1], "DATA_TYPE: ACCELERATION")
-    line, text = entry("SAMPLING_INTERVAL_S")
-    step = agreed_step(file, line, file.positive(line, text, "the sampling interval [s]"), time_step)
-    unit_line, unit_text = header.get("UNITS", (line, ""))
-    stated = parse_unit(unit_text)
-    if unit_text and stated is None and unit is None:
-        raise file.error(unit_line, unit_text, "a unit of acceleration, such as cm/s^2")
-    agreed = agreed_unit(file, unit_line, stated, unit)
-    count_line, count_text = entry("NDATA")
-    count = file.count(count_line, count_text, "the number of values NDATA")
-    values = file.values(first)
-    remarks = file.checked_count(values, count, count_line)
-    codes = [header.get(key, (0, ""))[1] for key in ("NETWORK", "STATION_CODE", "LOCATION", "STREAM")]
+def read(file: TextFile, layout: Layout) -> Samples:
+    """Read an ESM file."""
+    layout.refuse_columns(file, "ESM")
+    lines: dict[str, int] = {}
+    texts: dict[str, str] = {}
+    for k, line in enumerate(file.head[:HEADER_LINES]):
+        key, _, text = line.partition(":")
+        lines[key] = k
+        texts[key] = text.strip()
+    for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"):
+        if key not in texts:
+            raise file.error(None, f"no header line {key}", f"{HEADER_LINES} lines `KEY: value`".replace("`", ""))
+    kind = texts.get("DATA_TYPE", "ACCELERATION")
+    if kind != "ACCELERATION":
+        raise file.error(lines["DATA_TYPE"], kind, "DATA_TYPE: ACCELERATION")
+    step = file.number(lines["SAMPLING_INTERVAL_S"], texts["SAMPLING_INTERVAL_S"], "the sampling interval [s]")
+    count = file.size(lines["NDATA"], texts["NDATA"], "the number of values")
+    remarks: list[str] = []
+    unit = layout.agreed_unit(unit_name(texts["UNITS"], "m/s2"), remarks)
+    if unit is None:
+        raise file.error(lines["UNITS"], texts["UNITS"], "a unit of acceleration, such as cm/s^2; or `unit`")
+    values = file.values(HEADER_LINES)
+    remarks += file.count_remarks(values, count, lines["NDATA"])
+    codes = [texts.get(key, "") for key in ("NETWORK", "STATION_CODE", "LOCATION", "STREAM")]
+    event = texts.get("EVENT_NAME") or texts.get("EVENT_ID", "")
+    source = "; ".join(filter(None, [f"{file.name} (ESM ASCII)", event]))
     name = ".".join(codes).strip(".") or file.name
-    event = header.get("EVENT_NAME", (0, ""))[1] or header.get("EVENT_ID", (0, ""))[1]
-    source = joined([f"{file.name} (ESM ASCII)", event])
-    return Record(values, step, agreed, name=name, source=source, remarks=remarks)
+    return Samples(values, layout.agreed_step(step, remarks) or step, unit, name, source, remarks)

@@ -1,84 +1,155 @@
-"""`read_record`: reads an accelerogram file; the format is recognised by the content, not by the name."""
+"""`read_record`: reads an accelerogram file in a named format, or columns in a layout that its arguments state."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError, integer, number, one_of
-from rocking._base.units import Scalar
-from rocking._excitation.records.readers import columns, esm, knet, peer_at2, seismic, volumes
-from rocking._excitation.records.readers.lines import MAX_LINE, TextFile
-from rocking._excitation.records.record import TIME_STEP, UNITS, Record
+from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError
+from rocking._base.units import STANDARD_GRAVITY, Scalar
+from rocking._excitation.records.readers import at2, columns, esm, knet, seismic, volumes
+from rocking._excitation.records.readers.layout import Column, Layout, Samples, stated_layout
+from rocking._excitation.records.readers.text_file import TextFile
+from rocking._excitation.records.record import Record
 
 if TYPE_CHECKING:  # loads the compiler
     from rocking._numba.cancellation import StopFlag
 
 MAX_BYTES = 200_000_000  # largest file that is read [bytes]
-MAX_SKIP = 100  # most rows of numbers above the samples [-]
 
 MAX_SHIFT = 0.02
 """Largest distance in time of the last samples of two components whose steps differ by rounding, in steps [-]."""
 
 MAX_LENGTH_RATIO = 1.1  # largest ratio of the numbers of samples of two components of one record [-]
 
+MAX_USUAL_STEP = 0.1  # time step above which the reader asks [s]
+MAX_USUAL_PGA = 5.0 * STANDARD_GRAVITY  # peak acceleration above which it asks [m/s2]
+MAX_USUAL_PGV = 10.0  # peak velocity above which it asks [m/s]
+
+
+class TextFormat(NamedTuple):
+    """A format of text: whether its signature is in a file, and its reader."""
+
+    recognises: Callable[[TextFile], bool]
+    read: Callable[[TextFile, Layout], Samples]
+
+
+TEXT_FORMATS = {
+    "AT2": TextFormat(at2.is_at2, at2.read),
+    "ESM": TextFormat(esm.is_esm, esm.read),
+    "K-NET": TextFormat(knet.is_knet, knet.read),
+    "COSMOS": TextFormat(volumes.is_cosmos, volumes.read_cosmos),
+    "GeoNet": TextFormat(volumes.is_geonet, volumes.read_geonet),
+    "CSMIP": TextFormat(volumes.is_csmip, volumes.read_csmip),
+}
+"""In the order in which their signatures are looked for: GeoNet is a CSMIP whose first line names its maker."""
+
+FORMATS = (*TEXT_FORMATS, *seismic.NAMES, "columns")
+"""Names of formats, of any case of letters."""
+
+REFUSED = {
+    "<": "a web page or XML",
+    "{": "JSON",
+    "* VOL1DS": "a BHRC Volume 1 file",
+    "FILE ": "a USC Volume 1 file",
+    "0 RAW": "an SMC file of raw data",
+    "1 UNCORRECTED ACCEL": "an SMC file",
+    "2 CORRECTED ACCEL": "an SMC file",
+    "#K-NET CSV": "a K-NET CSV file",
+}
+"""Starts of files of other formats, which are refused by name."""
+
 
 def read_record(
-    path: str | PathLike[str],
+    file: str | PathLike[str],
+    format: str | None = None,  # noqa: A002  # the word of the contract, as in pandas
     *,
-    unit: str | None = None,
+    acceleration: Column | None = None,
+    time: Column | None = None,
     time_step: Scalar | None = None,
-    component: str | None = None,
-    vertical: str | PathLike[str] | None = None,
-    skip: int | None = None,
+    time_unit: str | None = None,
+    unit: str | None = None,
+    skip: int = 0,
+    delimiter: str | None = None,
+    decimal: str = ".",
+    wrapped: bool = False,
+    vertical: Column | PathLike[str] | None = None,
+    allow_unusual: bool = False,
 ) -> Record:
-    """A record of ground acceleration from a file, or from two files if the vertical component has its own.
+    """A record of ground acceleration from a file in a named format, or in columns whose layout is stated.
 
-    The format is recognised by the content: PEER AT2, ESM ASCII, K-NET, COSMOS, CSMIP, GeoNet, SMC, TSPAIR, columns of
-    times and accelerations or of accelerations alone (docs/records.md), SAC and miniSEED with the package obspy.
-    Nothing is corrected or resampled, but for the offset of K-NET counts: their mean is removed.
+    Nothing is recognised by its looks: a format is stated, or has a signature that it prescribes; columns are stated,
+    or have the names `time` and `acceleration` (`acc`, `accel`) with units in brackets, such as
+    `time [s],acceleration [g]`. What is missing is asked for. Nothing is corrected or resampled, but for the offset of
+    K-NET counts: their mean is removed (docs/records.md).
 
     Parameters
     ----------
-    path : str or path
+    file : str or path
         The file.
-    unit : str, optional
-        Unit of the samples: "m/s2", "cm/s2", "gal", "mm/s2", "g", "mg", "%g", "g/10", "in/s2" or "ft/s2". Required
-        where the file states none, or one that is not understood; where it states another, this one is used, with a
-        remark that names both.
+    format : str, optional
+        AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, columns; SAC, miniSEED, TSPAIR, SLIST with the package obspy. By default
+        the one whose signature the file has, else columns. "columns" overrules any signature.
+    acceleration : str or int, optional
+        The column: its name in the header, with or without the unit in brackets, or its number from 1. Likewise the
+        channel of a file with several.
+    time : str or int, optional
+        The column of the times, which are uniform.
     time_step : float, optional
-        Time step [s], [1e-6, 10]; likewise.
-    component : str, optional
-        Name of the column or trace, where the file has several; "rows" for one series that is wrapped over several
-        columns, where the file does not show it.
-    vertical : str or path, optional
-        File of the vertical component, upwards positive, with one component that starts at the same time; or, where
-        there is no file of this name, its column or trace in the first file. `unit` and `time_step` count for both. A
-        vertical component of another length, by a tenth at most, is cut or continued by zeros, with a remark.
+        Time step [s], [1e-6, 10], in place of a column of times.
+    time_unit : str, optional
+        Unit of the column of times: "s", "ms", "us" or "min".
+    unit : str, optional
+        Unit of the samples: "m/s2", "cm/s2", "gal", "mm/s2", "g", "mg", "%g", "g/10", "in/s2" or "ft/s2".
     skip : int, optional
-        Rows of numbers above the samples of a file of columns, such as a count, a step or a factor, [0, 100]. A column
-        whose first numbers look like these is refused unless this is given.
+        Lines above the names of the columns, or above the rows where there are no names. The line below them names the
+        columns, unless all of it are numbers.
+    delimiter : str, optional
+        What separates columns: "comma", "semicolon", "tab", "blank" (any number of blanks and tabs), or these signs;
+        several signs if each separates; a Fortran format such as "8f10.6" for numbers of fixed width, behind which the
+        rest of the line is left out. By default the one of these signs that is in the first row, else blanks.
+    decimal : str, optional
+        Decimal sign: "." or ",".
+    wrapped : bool, optional
+        Whether all values are one series, row by row.
+    vertical : str, int or path, optional
+        File of the vertical component, upwards positive, in the same layout, which starts at the same time; or, where
+        there is no file of this name, its column or channel in the first file. A vertical component of another length,
+        by a tenth at most, is cut or continued by zeros, with a remark.
+    allow_unusual : bool, optional
+        Accept a time step above 0.1 s, a PGA above 5 g, a PGV above 10 m/s, which usually are a wrong unit.
 
     Raises
     ------
     RecordFileError
-        If a file is damaged, ambiguous or of an unknown format: with the line, what was found and what was expected.
+        If a file is damaged, its layout is not stated, or the result is unusual: with the line, what was found, what
+        was expected and, where that can be said, the arguments that would read it.
     InvalidArgumentError
         If a file cannot be read, an argument is out of range, or the components differ in step or length.
     """
-    content, name = read_content("path", path), Path(path).name
-    stated: dict[str, Any] = {"unit": unit, "time_step": time_step, "skip": skip}
-    found = parse_record(content, name, **stated, component=component)
-    if vertical is None:
-        return found
-    if isinstance(vertical, PathLike) or Path(vertical).is_file():
+    content, name = read_content("file", file), Path(file).name
+    stated: dict[str, Any] = {
+        "format": format,
+        "acceleration": acceleration,
+        "time": time,
+        "time_step": time_step,
+        "time_unit": time_unit,
+        "unit": unit,
+        "skip": skip,
+        "delimiter": delimiter,
+        "decimal": decimal,
+        "wrapped": wrapped,
+        "allow_unusual": allow_unusual,
+    }
+    if isinstance(vertical, PathLike) or (isinstance(vertical, str) and Path(vertical).is_file()):
+        record = parse_record(content, name, **stated)
         upwards = parse_record(read_content("vertical", vertical), Path(vertical).name, **stated)
-    else:
-        upwards = _vertical(content, name, vertical, f"a file, or a component of {name}", **stated)
-    return _with_vertical(found, upwards)
+        return _with_vertical(record, upwards)
+    return parse_record(content, name, **stated, vertical=vertical)
 
 
 def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
@@ -90,121 +161,97 @@ def read_content(parameter: str, path: str | PathLike[str]) -> bytes:
         raise UnreadableFileError(parameter, str(path), error) from None
 
 
-def _with_vertical(found: Record, upwards: Record) -> Record:
-    """A record with another one as its vertical component."""
-    shift = abs(upwards.time_step / found.time_step - 1.0) * min(found.samples, upwards.samples)
-    if shift > MAX_SHIFT:
-        allowed = f"a component with the step of the horizontal one, {found.time_step:g} s"
-        raise InvalidArgumentError("vertical", f"a time step of {upwards.time_step:g} s", allowed)
-    counts = sorted((found.samples, upwards.samples))
-    if counts[1] > MAX_LENGTH_RATIO * counts[0]:
-        allowed = f"about as many samples as the horizontal component, {found.samples}"
-        raise InvalidArgumentError("vertical", f"{upwards.samples} samples", allowed)
-    remarks = [*found.remarks, *(f"vertical component: {remark}" for remark in upwards.remarks)]
-    if upwards.samples != found.samples:
-        done = "cut" if upwards.samples > found.samples else "continued by zeros"
-        remarks.append(
-            f"the vertical component has {upwards.samples} samples and the horizontal one {found.samples}: it is {done}"
-        )
-    samples = np.zeros(found.samples)
-    samples[: upwards.samples] = upwards.acceleration[: found.samples]
-    source = f"{found.source}; vertical: {upwards.name}, {upwards.source}"
-    about = found.name, source, remarks
-    return Record(found.acceleration, found.time_step, "m/s2", *about, vertical=samples)
-
-
 def parse_record(
     content: bytes,
     name: str,
     *,
-    unit: str | None = None,
-    time_step: Scalar | None = None,
-    component: str | None = None,
-    vertical: str | None = None,
-    skip: int | None = None,
+    vertical: Column | None = None,
+    allow_unusual: bool = False,
     stop: StopFlag | None = None,
+    **stated: Any,
 ) -> Record:
     """Read a recorded ground acceleration from the bytes of a file; `name` is its name for messages.
 
-    `vertical` is a column or trace of this file. `stop` cancels the work, which then raises `StoppedError`. Other
-    parameters and errors as for `read_record`.
+    `stated` are the other arguments of `read_record`; `vertical` is a column or channel of this file. `stop` cancels
+    the work, which then raises `StoppedError`. Errors as for `read_record`.
     """
-    stated: dict[str, Any] = {"unit": unit, "time_step": time_step, "skip": skip, "stop": stop}
-    found = _parsed(content, name, component=component, **stated)
-    if vertical is None:
-        return found
-    return _with_vertical(found, _vertical(content, name, vertical, f"a component of {name}", **stated))
-
-
-def _vertical(content: bytes, name: str, vertical: str, allowed: str, **stated: Any) -> Record:
-    """The vertical component in the file of the horizontal one; `allowed` is what an error says of its name."""
-    try:
-        return _parsed(content, name, component=vertical, **stated)
-    except RecordFileError as error:
-        raise InvalidArgumentError("vertical", vertical, f"{allowed} ({error})") from None
-
-
-def _parsed(
-    content: bytes,
-    name: str,
-    unit: str | None,
-    time_step: Scalar | None,
-    component: str | None,
-    skip: int | None,
-    stop: StopFlag | None = None,
-) -> Record:
-    """One component."""
-    if unit is not None:
-        one_of("unit", unit, UNITS)
-    step = None if time_step is None else number("time_step", time_step, *TIME_STEP, unit="s")
-    passed = None if skip is None else integer("skip", skip, 0, MAX_SKIP)
+    layout = stated_layout(FORMATS, **stated)
     if len(content) > MAX_BYTES:
         raise RecordFileError(name, None, "a larger file", f"at most {MAX_BYTES} bytes")
-    if seismic.is_seismic(content):
-        return seismic.read(content, name, unit, step, component)
+    record = _record(content, name, layout, stop)
+    if vertical is not None:
+        upwards = stated_layout(FORMATS, **{**stated, "acceleration": vertical})
+        try:
+            record = _with_vertical(record, _record(content, name, upwards, stop))
+        except RecordFileError as error:
+            raise InvalidArgumentError("vertical", vertical, f"a file, or a column of {name} ({error})") from None
+    if not allow_unusual:
+        _check_usual(record, name)
+    return record
+
+
+def _record(content: bytes, name: str, layout: Layout, stop: StopFlag | None) -> Record:
+    """One component."""
+    kind = layout.format or seismic.format_of(content)
+    if kind in seismic.NAMES:
+        file = TextFile(name, b"a", stop)  # for messages
+        with file.guarded(kind):
+            layout.refuse_columns(file, kind, channels=True)
+            return _as_record(seismic.read(content, name, layout, kind))
     file = TextFile(name, content, stop)
-    _check_text(file.content, name)
-    try:
-        found = _read_text(file, unit, step, component, passed)
-    except RecordFileError:
-        raise
-    except InvalidArgumentError as error:  # samples that make no record, such as zeros only
-        raise file.error(None, f"{error.parameter} {error.value}", error.allowed) from None
-    if not file.overruled:
-        return found
-    about = found.name, found.source, (*found.remarks, *file.overruled)
-    return Record(found.acceleration, found.time_step, "m/s2", *about)
+    if kind is None:
+        kind = next((name for name, form in TEXT_FORMATS.items() if form.recognises(file)), "columns")
+        start = file.head[0].lstrip().upper()
+        if kind == "columns":
+            refused = next((text for prefix, text in REFUSED.items() if start.startswith(prefix)), None)
+            if refused:
+                raise file.error(0, refused, f"one of {', '.join(FORMATS)}: convert it")
+    with file.guarded(kind):
+        reader = columns.read if kind == "columns" else TEXT_FORMATS[kind].read
+        return _as_record(reader(file, layout))
 
 
-def _read_text(
-    file: TextFile, unit: str | None, time_step: float | None, component: str | None, skip: int | None
-) -> Record:
-    kind = None
-    if esm.is_esm(file):
-        reader = esm.read
-    elif knet.is_knet(file):
-        reader = knet.read
-    elif kind := volumes.format_of(file):
-        if skip is None:
-            return volumes.read(file, kind, unit, time_step, component)
-    elif peer_at2.is_at2(file):
-        reader = peer_at2.read
-    else:
-        return columns.read(file, unit, time_step, component, skip)
-    if skip is not None:
-        raise file.error(None, f"`skip` = {skip}", "no rows to skip in a file of a known format")
-    if component is not None:
-        raise file.error(None, "a file with one component", "no name of a component")
-    return reader(file, unit, time_step)
+def _as_record(samples: Samples) -> Record:
+    texts = samples.name, samples.source, tuple(samples.remarks)
+    return Record(samples.values, samples.step, samples.unit, *texts)
 
 
-def _check_text(content: bytes, name: str) -> None:
-    """Refuse what is no text of numbers."""
-    if not content or content.isspace():
-        raise RecordFileError(name, None, "an empty file", "a recorded ground acceleration")
-    if b"\0" in content:
-        raise RecordFileError(name, None, "binary content", "text, or a SAC or miniSEED file")
-    start = content[:MAX_LINE].lstrip()[:40].decode("latin-1")
-    if start.startswith(("<", "{")):
-        expected = "numbers or the header of a known format, not a web page or JSON"
-        raise RecordFileError(name, 1, start.splitlines()[0], expected)
+def _check_usual(record: Record, name: str) -> None:
+    """Ask about a record that usually comes from a wrong unit or column."""
+    peak = max(record.peak_acceleration, record.peak_vertical_acceleration)
+    rises = np.diff(record.acceleration)
+    questions = [
+        (rises.min() > 0.98 * rises.max() > 0.0, "values that rise uniformly, as times do", "accelerations"),
+        (record.time_step > MAX_USUAL_STEP, f"a time step of {record.time_step:g} s", f"at most {MAX_USUAL_STEP:g} s"),
+        (peak > MAX_USUAL_PGA, f"a PGA of {peak / STANDARD_GRAVITY:.4g} g", "at most 5 g"),
+        (
+            record.peak_velocity > MAX_USUAL_PGV,
+            f"a PGV of {record.peak_velocity:.4g} m/s",
+            f"at most {MAX_USUAL_PGV:g} m/s without an offset of the acceleration",
+        ),
+    ]
+    for unusual, found, limit in questions:
+        if unusual:
+            expected = f"{limit}, in the units and columns stated; or `allow_unusual=True`, if it is right"
+            raise RecordFileError(name, None, found, expected)
+
+
+def _with_vertical(record: Record, upwards: Record) -> Record:
+    """A record with another one as its vertical component."""
+    shift = abs(upwards.time_step / record.time_step - 1.0) * min(record.samples, upwards.samples)
+    if shift > MAX_SHIFT:
+        allowed = f"a component with the step of the horizontal one, {record.time_step:g} s"
+        raise InvalidArgumentError("vertical", f"a time step of {upwards.time_step:g} s", allowed)
+    counts = sorted((record.samples, upwards.samples))
+    if counts[1] > MAX_LENGTH_RATIO * counts[0]:
+        allowed = f"about as many samples as the horizontal component, {record.samples}"
+        raise InvalidArgumentError("vertical", f"{upwards.samples} samples", allowed)
+    remarks = [*record.remarks, *(f"vertical component: {remark}" for remark in upwards.remarks)]
+    if upwards.samples != record.samples:
+        done = "cut" if upwards.samples > record.samples else "continued by zeros"
+        counted = f"has {upwards.samples} samples and the horizontal one {record.samples}"
+        remarks.append(f"the vertical component {counted}: it is {done}")
+    samples = np.zeros(record.samples)
+    samples[: upwards.samples] = upwards.acceleration[: record.samples]
+    texts = record.name, f"{record.source}; vertical: {upwards.name}, {upwards.source}", remarks
+    return Record(record.acceleration, record.time_step, "m/s2", *texts, vertical=samples)
