@@ -49,8 +49,8 @@ from ._base.quantities import TOLERANCE as TOLERANCE
 from ._base.quantities import WIDTH as WIDTH
 from ._base.quantity import Quantity as Quantity
 from ._base.units import STANDARD_GRAVITY as STANDARD_GRAVITY
-from ._base.units import Scalar as Scalar
 from ._base.units import UNITS as UNITS
+from ._base.units import Scalar as Scalar
 from ._base.units import Values as Values
 from ._base.units import unit_name as unit_name
 from ._boundary.scan import RESOLUTION as RESOLUTION
@@ -90,10 +90,10 @@ from ._dimensional.problem import search_range as search_range
 from ._dimensional.response import respond as respond
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._dimensional.table_header import Schema as Schema
-from ._dimensional.table_reader import BadRow as BadRow
 from ._dimensional.table_reader import MARK as MARK
 from ._dimensional.table_reader import MAX_CHARACTERS as MAX_CHARACTERS
 from ._dimensional.table_reader import SHEETS as SHEETS
+from ._dimensional.table_reader import BadRow as BadRow
 from ._dimensional.table_reader import Table as Table
 from ._dimensional.table_reader import TooManyRowsError as TooManyRowsError
 from ._dimensional.table_reader import csv_of_sheet as csv_of_sheet
@@ -107,8 +107,8 @@ from ._dimensional.table_reader import text_of as text_of
 from ._dimensional.thresholds import block_lines as block_lines
 from ._dimensional.thresholds import overturning_scale as overturning_scale
 from ._excitation.impulse import impulse_of as impulse_of
-from ._excitation.pulses import AbstractPulse as AbstractPulse
 from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES
+from ._excitation.pulses import AbstractPulse as AbstractPulse
 from ._excitation.pulses import as_pulse as as_pulse
 from ._excitation.pulses import split_pulses as split_pulses
 from ._excitation.records.elastic_spectrum import largest_displacement as largest_displacement

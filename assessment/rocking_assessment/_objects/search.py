@@ -12,6 +12,7 @@ from rocking.extension import (
     RESOLUTION,
     Array,
     Flags,
+    Index,
     Outcome,
     Problem,
     Record,
@@ -137,18 +138,23 @@ def searched_factor(motions: Sequence[Motion]) -> float:
 
 
 def estimated_outcomes(
-    body: BodyArray, records: Sequence[Motion], first: Array, ground: Array, stop: StopFlag | None = None
+    body: BodyArray, records: Sequence[Motion], line: Index, ground: Array, stop: StopFlag | None = None
 ) -> Flags:
-    """Whether one of some records overturns each body from either side at peak ground accelerations (levels,) [m/s2].
+    """Whether one of some records overturns a body from either side, by the estimate of the search under records.
 
-    Array (bodies, levels), by the estimate of the search under records (`rocking._solver.records.estimate`), which
-    takes a fifth of the time. `first`: acceleration of each body below which none does, which are not computed.
+    The estimate (`rocking._solver.records.estimate`) takes a fifth of the time of a response.
+
+    Parameters
+    ----------
+    line : int array (strengths,)
+        The body of each strength.
+    ground : float array (strengths,)
+        Peak ground accelerations [m/s2].
     """
-    line, level = np.nonzero(ground >= first[:, None])
-    overturned = np.zeros((first.size, ground.size), dtype=np.bool_)
+    overturned = np.zeros(line.size, dtype=np.bool_)
     for motion in records:
         record: Any = motion.motion
-        factor = ground[level] * (motion.peak_acceleration / motion.ground / record.peak_acceleration)
+        factor = ground * (motion.peak_acceleration / motion.ground / record.peak_acceleration)
         for problem in problems_of(body, motion, np.full(body.shape, record.peak_acceleration)):
-            overturned[line, level] |= record_lines(problem, stop).estimated(line, factor)[0]
+            overturned |= record_lines(problem, stop).estimated(line, factor)[0]
     return overturned

@@ -192,8 +192,9 @@ def test_the_annual_rate_is_the_sum_over_the_ranges_that_overturn() -> None:
     overturned = block.response(record, scale=np.sqrt(edges[:-1] * edges[1:]) / record.peak_acceleration).overturned
     assert (np.diff(overturned.astype(int)) < 0).sum() > 2
     expected = -np.diff(exceeded) @ overturned
-    assert row["annual_rate_lower"] == row["annual_rate"] == pytest.approx(expected, rel=0.01)
-    assert row["annual_rate_upper"] == pytest.approx(row["annual_rate_lower"] + 1e-7)
+    assert row["annual_rate"] == pytest.approx(expected, rel=0.01)
+    assert row["annual_rate_lower"] < row["annual_rate"] < row["annual_rate_upper"]
+    assert row["annual_rate_upper"] - row["annual_rate_lower"] < 0.002 * expected
 
 
 def test_strengths_at_which_the_vertical_acceleration_reaches_g_do_not_count_as_survived() -> None:
