@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -35,10 +36,16 @@ def _origins(given: Any) -> Any:
         raise ValueError('a JSON list of origins, such as ["https://example.org"]') from None
 
 
+PREFIX = "ROCKING_"  # of the environment variables
+
+OTHERS = {"PLAIN_NUMBA", "NO_BROWSER", "CHROMIUM", "RUN", "RUN_NUMBER", "SERVER", "DATA_SETS", "MOTIONS", "SMOKE_RUN"}
+"""Variables with the prefix that are no settings: of the solver, the workflow, the guide and the tests."""
+
+
 class Settings(BaseSettings):
     """Settings of one service; `cors_origins` is empty by default."""
 
-    model_config = SettingsConfigDict(env_prefix="ROCKING_", frozen=True, extra="forbid")
+    model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True, extra="forbid")
 
     results: Folder = Field(default=Path("results"), description="folder that the workflow filled")
     guide: Folder = Field(default=Path("build/docs"), description="folder of the guide, which `make docs` fills")
@@ -58,3 +65,14 @@ class Settings(BaseSettings):
     cors_origins: Annotated[tuple[str, ...], NoDecode, BeforeValidator(_origins)] = Field(
         default=(), description="web origins that may read the responses"
     )
+
+
+def variables() -> list[str]:
+    """The environment variables of the settings, sorted."""
+    return sorted(f"{PREFIX}{name}".upper() for name in Settings.model_fields)
+
+
+def unknown_variables(environment: Iterable[str]) -> list[str]:
+    """The variables of an environment with the prefix that nothing reads, such as a misspelt setting, sorted."""
+    known = {*variables(), *(f"{PREFIX}{name}" for name in OTHERS)}
+    return sorted(name for name in environment if name.upper().startswith(PREFIX) and name.upper() not in known)

@@ -7,8 +7,11 @@ solver, the data sets and the unit registry.
 from __future__ import annotations
 
 import atexit
+import errno
 import gc
+import os
 import sys
+import warnings
 from typing import Annotated, Any
 
 import typer
@@ -26,6 +29,10 @@ UsageError: Any = typer.BadParameter.__mro__[1]
 """What typer raises for arguments that it does not understand; newer versions bring their own copy of click."""
 
 
+FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
+"""Errors of the system where standard output or a temporary folder can hold no more."""
+
+
 class Commands(TyperGroup):
     """The commands; what is wrong with an argument is printed in a line of its own."""
 
@@ -34,6 +41,7 @@ class Commands(TyperGroup):
         if not extra.get("standalone_mode", True):
             return super().main(*args, **extra)
         extra["standalone_mode"] = False
+        warnings.formatwarning = lambda message, *_: f"warning: {message}\n"  # without a line of the source
         try:
             sys.exit(super().main(*args, **extra) or 0)
         except UsageError as error:
@@ -44,6 +52,12 @@ class Commands(TyperGroup):
             sys.exit(error.exit_code)
         except ImportError as error:  # a package of an extra
             typer.echo(f"rocking: {error}", err=True)
+            sys.exit(1)
+        except OSError as error:
+            if error.errno not in FULL:
+                raise
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to write fails again
+            typer.echo(f"rocking: the output cannot be written: {error.strerror}", err=True)
             sys.exit(1)
 
 

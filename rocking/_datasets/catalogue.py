@@ -19,7 +19,7 @@ import xarray as xr
 
 from rocking._base.errors import DatasetError
 from rocking._datasets.checksum import sha256_of
-from rocking._datasets.cube import decode_dataset
+from rocking._datasets.cube import decode_dataset, reject_large
 
 CLOCK_TICK = 20_000_000
 """Changes of a file within this time may have the same time stamp [ns]: file system clocks advance by 1 to 10 ms."""
@@ -98,11 +98,15 @@ class DataFile:
         return self._file.fileno()
 
     def content(self) -> bytes:
-        """All bytes of the file, of one version; `DatasetError` if it cannot be read or changes all the time."""
+        """All bytes of the file, of one version.
+
+        Raises `DatasetError` if it cannot be read, is larger than `MAX_FILE_BYTES`, or changes all the time.
+        """
         try:
             # the version is the same before and after the read, so that all bytes are of it; else read again
             for _ in range(MAX_READS):
                 self.version = self._settled()
+                reject_large(self.name, self.version.size)
                 self._file.seek(0)
                 content = self._file.read()
                 if self.is_unchanged():

@@ -127,21 +127,26 @@ def decode_slice(content: bytes, name: Path | str, path: Path, version: FileVers
     with open_checked(content, name) as cube:
         check_spectrum(cube, name)
         try:
-            return slice_of(cube, sha256_of(content), partial(_layer_of_file, path, version))
+            return slice_of(cube, sha256_of(content), partial(_layer_of_file, name, path, version))
         except InvalidArgumentError as error:
             raise DatasetError(f"{name}: {error}; build it again") from error
 
 
-def _layer_of_file(path: Path, version: FileVersion | None, angle: int) -> Nodes:
-    """The nodes (n, m) of an angle, from a version of a file."""
+def _layer_of_file(name: Path | str, path: Path, version: FileVersion | None, angle: int) -> Nodes:
+    """The nodes (n, m) of an angle, from a version of a file; messages have its `name`."""
     try:
         with open_netcdf(path) as cube:
             found = _layer(cube, angle)
     except (OSError, RuntimeError, ValueError, KeyError) as error:
-        raise DatasetError(f"{path}: cannot be read: {error}") from error
+        raise DatasetError(f"{name}: cannot be read: {_reason(error)}") from error
     if version is None or version_of(path) != version:
-        raise DatasetError(f"{path}: was replaced after it was opened; open it again")
+        raise DatasetError(f"{name}: was replaced after it was opened; open it again")
     return found
+
+
+def _reason(error: Exception) -> str:
+    """What a library says of a file, without its path."""
+    return str(error.strerror or "") if isinstance(error, OSError) else str(error)
 
 
 def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:

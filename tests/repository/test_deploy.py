@@ -18,6 +18,7 @@ from pathlib import Path
 import httpx2
 import pytest
 import typer
+from rocking_api.command import HEALTHCHECK_SECONDS
 from rocking_api.settings import Settings
 
 from rocking._cli.app import app
@@ -60,6 +61,13 @@ def test_container_copies_what_exists():
     assert [name for name in sources if not (ROOT / name).exists()] == []
 
 
+def test_nothing_but_what_is_copied_reaches_the_build_of_the_container():
+    first, *rest = [line for line in (ROOT / ".containerignore").read_text().splitlines() if line[:1] != "#"]
+    sources = {part for line in instructions("COPY") if "--from" not in line for part in line.split()[:-1]}
+    assert first == "*"
+    assert {line.removeprefix("!") for line in rest if line.startswith("!")} == sources
+
+
 def test_container_installs_what_has_the_hashes_of_the_lock(tmp_path):
     shutil.copy(ROOT / "environment.lock", tmp_path)
     shutil.copy(DEPLOY / "service.lock", tmp_path)
@@ -91,7 +99,8 @@ def test_unit_starts_the_service_and_stops_it_in_time(unit):
     assert options["host"] == "127.0.0.1"
     variables = dict(line.split("=") for line in unit["Environment"])
     assert set(variables) - {"NUMBA_CACHE_DIR"} <= VARIABLES
-    assert int(unit["TimeoutStopSec"][0]) > int(variables["ROCKING_STOP_SECONDS"])
+    # uvicorn waits for a worker that dies before it answers, then for the requests that run
+    assert int(unit["TimeoutStopSec"][0]) > int(variables["ROCKING_STOP_SECONDS"]) + HEALTHCHECK_SECONDS
     assert unit["SocketBindAllow"] == [f"tcp:{options['port']}"]
     assert variables["NUMBA_CACHE_DIR"] == f"%C/{unit['CacheDirectory'][0]}"
     configparser.ConfigParser(strict=False, interpolation=None).read(DEPLOY / "rocking.service")
