@@ -214,9 +214,7 @@ class Catalogue:
 
     def open(self, name: str) -> DataFile:
         """Open the file of a data set; the caller closes it. Raises `UnknownDatasetError` or `DatasetError`."""
-        parts = name.split("/")
-        if len(parts) < 2 or not all(_PART.fullmatch(part) for part in parts):
-            raise UnknownDatasetError(name)
+        self.check_name(name)
         path = self.results / f"{name}.nc"
         try:
             return DataFile(name, path)
@@ -229,6 +227,13 @@ class Catalogue:
                 raise UnknownDatasetError(name) from None
             raise _unreadable(name, error) from error
 
+    @staticmethod
+    def check_name(name: str) -> None:
+        """Raise `UnknownDatasetError` for a text that is no name of a data set, such as one with a hidden folder."""
+        parts = name.split("/")
+        if len(parts) < 2 or not all(_PART.fullmatch(part) for part in parts):
+            raise UnknownDatasetError(name)
+
     def product(self, name: str) -> DatasetFile:
         """Size and sha256 of a data set; raises as `open`."""
         with self.open(name) as file:
@@ -238,6 +243,11 @@ class Catalogue:
         """Size and sha256 of an open data set, computed once per version of the file."""
         with self.lock:
             return self._products.value(file.name, file, self._dataset_file)
+
+    def known_digest(self, file: DataFile) -> str | None:
+        """The sha256 of an open data set if it was computed for this version of the file before."""
+        product = self._products.current(file.name)
+        return None if product is None else product.sha256
 
     def _dataset_file(self, file: DataFile) -> DatasetFile:
         content = file.content()

@@ -35,22 +35,36 @@ class AssessParams(Params):
     """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
     pga: float | None = between(
-        *STRENGTHS, f"{PGA.meaning} [m/s2], required without records", default=None, examples=[3.0]
+        *STRENGTHS, f"{PGA.meaning}, required without records", default=None, examples=[3.0], unit="m/s2"
     )
     pgv: float | None = between(
-        *STRENGTHS, "PGV [m/s], sets the period of each pulse; either this or periods", default=None, examples=[0.3]
+        *STRENGTHS,
+        "PGV, sets the period of each pulse; either this or periods",
+        default=None,
+        examples=[0.3],
+        unit="m/s",
     )
-    period_min: float | None = between(*LENGTH, "shortest period of the pulses, with `period_max` [s]", default=None)
-    period_max: float | None = between(*LENGTH, "longest period of the pulses, with `period_min` [s]", default=None)
+    period_min: float | None = between(
+        *LENGTH, "shortest period of the pulses, with `period_max`", default=None, unit="s"
+    )
+    period_max: float | None = between(
+        *LENGTH, "longest period of the pulses, with `period_min`", default=None, unit="s"
+    )
     shapes: str | None = said("pulses, with commas; absent: all that end at rest", None, examples=["sine,ricker"])
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
-    floor_periods: str | None = said("periods of the building [s], for objects on a floor, separated by commas", None)
-    floor_damping: str = said("damping ratios of these modes [-], one for all or one for each", "0.05")
-    floor_participation: str = said("participation factors times mode shapes at the floor [-], likewise", "1")
+    floor_periods: str | None = said(
+        "periods of the building, for objects on a floor, separated by commas", None, unit="s"
+    )
+    floor_damping: str = said("damping ratios of these modes, one for all or one for each", "0.05", unit="-")
+    floor_participation: str = said("participation factors times mode shapes at the floor, likewise", "1", unit="-")
     baseline_order: BaselineOrder = None
-    samples: int = between(0, MAX_SAMPLES, "variants of each object in its tolerance and 0.05 of eta [-]", default=0)
-    seed: int = between(0, 2**53, "seed of these variants [-]", default=0)
-    resolution: float = between(*RESOLUTIONS, "largest relative step of factors on a record [-]", default=RESOLUTION)
+    samples: int = between(
+        0, MAX_SAMPLES, "variants of each object in its tolerance and 0.05 of eta", default=0, unit="-"
+    )
+    seed: int = between(0, 2**53, "seed of these variants", default=0, unit="-")
+    resolution: float = between(
+        *RESOLUTIONS, "largest relative step of factors on a record", default=RESOLUTION, unit="-"
+    )
     sensitivity: bool = said("find the factors of changed objects, and the sizes that survive", True)
     standards: str = said("checks by standards, with commas between, or all", "", examples=["static,asce43"])
     format: TableFormat = None
@@ -109,7 +123,7 @@ class SuiteRecordBody(BaseModel):
     acceleration: Samples = said("horizontal acceleration at uniform steps, in `unit`")
     second: Samples | None = said("other horizontal component; the pair counts as one record at all angles", None)
     vertical: Samples | None = said("vertical acceleration, upwards", None)
-    time_step: float = said("time between samples [s]")
+    time_step: float = said("time between samples", unit="s")
     unit: str = said("unit of the samples", "m/s2")
     name: str = said("name for the answer", "", max_length=40)
 
@@ -129,8 +143,8 @@ class HazardBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    intensity: Levels = said("peak ground accelerations, ascending [m/s2]")
-    annual_rate: Levels = said("annual rates of exceedance [1/year]")
+    intensity: Levels = said("peak ground accelerations, ascending", unit="m/s2")
+    annual_rate: Levels = said("annual rates of exceedance", unit="1/year")
 
 
 class AssessBody(AssessParams):
@@ -161,7 +175,7 @@ AssessedRow: type[BaseModel] = create_model(
 class UnreadRow(BaseModel):
     """A row of the table that was not read."""
 
-    row: int = said("number in the table, from 1 [-]")
+    row: int = said("number in the table, from 1", unit="-")
     column: str = said("name of the column; empty: the whole row")
     reason: str = said("what was found and what is allowed")
 
@@ -171,8 +185,10 @@ class AssessResponse(Echoed[AssessParams], Solved[AssessParams]):
 
     rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]
     motions: list[str] = said("motions of the site; each acts from both sides")
-    highest_factor: float = said("highest factor searched [-]")
-    resolution: float = said("largest relative distance between the factors tried on records, 0 without records [-]")
+    highest_factor: float = said("highest factor searched", unit="-")
+    resolution: float = said(
+        "largest relative distance between the factors tried on records, 0 without records", unit="-"
+    )
     bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
     details: dict[str, list[str]] = said("unchanged cells of the object of each row, by the headers of the table", {})
     columns: dict[str, str] = said("meaning of the columns that were read, by header")

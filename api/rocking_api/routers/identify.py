@@ -33,18 +33,20 @@ Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 class IdentifyParams(Params):
     """How a trace is read and fitted."""
 
-    edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
+    edges: int = between(
+        1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge", default=1, unit="-"
+    )
     degrees: bool = said("the rotations are in degrees, not in radians, where the header of CSV states no unit", False)
-    time_step: TimeStep = said("time between the rows where CSV counts them in place of times [s]", None)
-    confidence: float = said("confidence of the intervals [-]", 0.95, gt=0, le=0.999)
+    time_step: TimeStep = said("time between the rows where CSV counts them in place of times", None, unit="s")
+    confidence: float = said("confidence of the intervals", 0.95, gt=0, le=0.999, unit="-")
     format: TableFormat = None
 
 
 class Trace(IdentifyParams):
     """A trace in a JSON body, and how it is read and fitted."""
 
-    time: Samples = said("times, ascending [s]")
-    rotation: Samples = said("rotation; positive values turn on the right edge [rad]")
+    time: Samples = said("times, ascending", unit="s")
+    rotation: Samples = said("rotation; positive values turn on the right edge", unit="rad")
 
 
 @with_intervals(
@@ -57,13 +59,13 @@ class IdentifyResponse(InGroups[IdentifyParams]):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
     edge: list[str] = said("both, or right and left")
-    impact_time: list[float] = said("times of the impacts of the fit [s]")
-    offset: float = said("rotation at rest, at the first impact [rad]")
-    noise: float = said("standard deviation of the residual [rad]")
-    sample_noise: float = said("standard deviation of independent errors of the samples [rad]")
-    time: list[float] = said("times of the samples [s]")
-    rotation: list[float] = said("rotation as given [rad]")
-    fitted: list[float | None] = said("rotation of the block [rad]; null where nothing is fitted")
+    impact_time: list[float] = said("times of the impacts of the fit", unit="s")
+    offset: float = said("rotation at rest, at the first impact", unit="rad")
+    noise: float = said("standard deviation of the residual", unit="rad")
+    sample_noise: float = said("standard deviation of independent errors of the samples", unit="rad")
+    time: list[float] = said("times of the samples", unit="s")
+    rotation: list[float] = said("rotation as given", unit="rad")
+    fitted: list[float | None] = said("rotation of the block; null where nothing is fitted", unit="rad")
     warnings: list[str] = said("why the intervals are wider than the samples alone would have them")
 
 
