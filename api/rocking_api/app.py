@@ -12,16 +12,21 @@ from prometheus_fastapi_instrumentator import Instrumentator
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
+from rocking_api import mesh_reader
 from rocking_api.http.errors import RESPONSES, add_handlers
 from rocking_api.http.limits import Limit, RequestLimits
 from rocking_api.models.answer import VERSION
 from rocking_api.models.pulses import MAX_BODY
 from rocking_api.routers import (
+    assess,
     blocks,
     curves,
     datasets,
     guide,
     health,
+    identify,
+    object_page,
+    objects_page,
     overturning,
     pages,
     pulses,
@@ -34,7 +39,10 @@ from rocking_api.settings import Settings
 
 LOG = logging.getLogger("rocking.service")
 
-ROUTES = (response, blocks, records, curves, overturning, pulses, suites, datasets, health, pages)
+ROUTES = (
+    *(response, blocks, records, curves, overturning, pulses, suites, datasets, health, pages),
+    *(assess, identify, objects_page, object_page),
+)
 
 MAX_JSON = 2 * 1024 * 1024
 """Largest JSON body with blocks [bytes], fifty thousand of them: it takes 0.05 s of the event loop."""
@@ -62,6 +70,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         redirect_slashes=False,
         lifespan=_lifespan,
         responses=RESPONSES,
+        telemetry={"tracing": False, "metrics": False, "logs": False},  # without an exporter, 3 % of a short request
     )
     app.state.service = Service(settings)
     app.state.when_ready = when_ready
@@ -79,6 +88,11 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         "/v1/response": Limit(min(MAX_JSON, settings.max_body_bytes), settings.max_body_bytes),
         "/v1/blocks/response": Limit(MAX_JSON, blocks.MAX_BODY),
         "/v1/records/": Limit(settings.max_record_bytes, settings.max_record_bytes),
+        "/v1/assess": Limit(assess.MAX_BODY, assess.MAX_BODY),
+        "/v1/identify": Limit(identify.MAX_BODY, identify.MAX_BODY),
+        "/objects/text": Limit(assess.MAX_BODY, assess.MAX_BODY),
+        "/objects": Limit(3 * assess.MAX_BODY, 3 * assess.MAX_BODY),  # with signs that are escaped
+        "/object": Limit(mesh_reader.MAX_MESH, mesh_reader.MAX_MESH),
     }
     Instrumentator(excluded_handlers=["/metrics"]).instrument(app).expose(app, tags=["health"])
     add_handlers(app)

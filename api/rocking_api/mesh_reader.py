@@ -1,23 +1,25 @@
-"""Mesh files of clients, read by another process: `rocking_api.mesh_process`."""
+"""Mesh files of clients, read by the helper process, which loads trimesh and little else."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 from rocking._assessment.objects import STEP, Plane
 from rocking._base.errors import one_of
 from rocking._base.units import UNITS
 from rocking._model.body import PolygonProperties
-from rocking._numba.cancellation import StopFlag
+from rocking_api.execution.helper import Helper, read_from_file
 from rocking_api.http.errors import UnsupportedBodyError
-from rocking_api.limited_process import result_of
 
 MAX_MESH = 16 * 1024 * 1024
 """Largest file [bytes]: 330,000 triangles of a binary STL file, which take 5 s of processor time."""
 
 ENDINGS = (".stl", ".ply", ".obj", ".glb")
+
+CORNERS = 200  # most corners of a footprint that are kept, for its drawing [-]
 
 
 @dataclass(frozen=True)
@@ -34,14 +36,24 @@ def can_read_meshes() -> bool:
     return find_spec("trimesh") is not None
 
 
-def read_mesh(raw: bytes, name: str, unit: str, stop: StopFlag) -> MeshShape:
-    """The shape of a mesh from the bytes of its file, by another process."""
+async def read_mesh(helper: Helper, raw: bytes, name: str, unit: str) -> MeshShape:
+    """The shape of a mesh from the bytes of its file."""
     one_of("unit", unit, UNITS["m"])
     ending = PurePath(name).suffix.lower()
     if ending not in ENDINGS:
         raise UnsupportedBodyError("mesh", ending or name, f"one of {', '.join(ENDINGS)}")
     if not can_read_meshes():
         raise UnsupportedBodyError("mesh", ending, 'dimensions: meshes need pip install "rocking[mesh]" on the service')
-    found = result_of("rocking_api.mesh_process", raw, "mesh", name, stop, (unit, str(STEP)))
-    planes = {float(angle): Plane.of(PolygonProperties(*values)) for angle, values in found["planes"].items()}
-    return MeshShape(planes, [(x, y) for x, y in found["footprint"]], found["remarks"])
+    planes, footprint, remarks = await helper.read("mesh", name, read_from_file, _shape_of, raw, name, unit)
+    return MeshShape({angle: Plane.of(found) for angle, found in planes.items()}, footprint, remarks)
+
+
+def _shape_of(path: Path, unit: str) -> tuple[dict[float, PolygonProperties], list[tuple[float, float]], list[str]]:
+    """The properties of a mesh in the planes across the sides of its base, its footprint, and what was repaired."""
+    from rocking._dimensional.mesh import directions_across, mesh_footprint, mesh_properties  # noqa: PLC0415
+
+    footprint = mesh_footprint(path, unit)
+    found = {angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_across(footprint, STEP)}
+    remarks = next(remarks for _, remarks in found.values())
+    corners = footprint[:: len(footprint) // CORNERS + 1].tolist()
+    return {angle: properties for angle, (properties, _) in found.items()}, [(x, y) for x, y in corners], remarks

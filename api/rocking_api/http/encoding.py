@@ -39,8 +39,8 @@ CONTENT: dict[int | str, dict[str, Any]] = {200: {"content": {MEDIA_TYPES["csv"]
 """For the OpenAPI description: the other formats of a response."""
 
 JsonOrFile = Annotated[
-    Annotated[M, Tag("json")] | Annotated[bytes, Tag("file")],
-    Discriminator(lambda value: "file" if isinstance(value, bytes) else "json"),
+    Annotated[M, Tag("<json>")] | Annotated[bytes, Tag("<file>")],
+    Discriminator(lambda value: "<file>" if isinstance(value, bytes) else "<json>"),
     Body(),
 ]
 """A body that is a JSON object of some model, or a file of another media type as it is."""

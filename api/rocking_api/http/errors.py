@@ -243,7 +243,7 @@ def _of_validation(error: Mapping[str, Any]) -> InvalidArgumentError:
     return InvalidArgumentError(name, plain(value), allowed)
 
 
-TAGS = {"json", "file", "name", "samples", "value"}
+TAGS = {"<json>", "<file>", "<name>", "<samples>"}
 """Parts of the places of errors that name an alternative, not a field."""
 
 

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator, model_validator
 
 from rocking._assessment.columns import OUTPUTS
 from rocking._assessment.site import LENGTH, STRENGTHS, Site
 from rocking._assessment.standards import checked_clauses
 from rocking._base.errors import InvalidArgumentError, plain_numbers
-from rocking._base.quantities import PGA
+from rocking._base.quantities import PERIOD, PGA, PGV
 from rocking._base.quantity import Quantity
 from rocking._boundary.scan import RESOLUTION, RESOLUTIONS
 from rocking._excitation.pulses import as_pulse, split_pulses
 from rocking._excitation.records.record import Record
-from rocking_api.models.answer import Echoed, Solved
+from rocking_api.models.answer import Solved
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import BaselineOrder, TableFormat, between, said
+from rocking_api.models.quantity import BaselineOrder, TableFormat, between, read_as, said
 
 MAX_OBJECTS = 2000  # most rows of a table [-]
 MAX_RECORDS = 100  # most records of a site [-]
@@ -31,25 +31,25 @@ Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
 Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
 
 
+Pga: Any = read_as(PGA.restricted(*STRENGTHS), f"{PGA.meaning}, required without records", float | None, examples=[3.0])
+Pgv: Any = read_as(
+    PGV.restricted(*STRENGTHS),
+    "PGV, sets the period of each pulse; either this or periods",
+    float | None,
+    examples=[0.3],
+)
+_PERIOD = PERIOD.restricted(*LENGTH)
+PeriodMin: Any = read_as(_PERIOD, "shortest period of the pulses, with `period_max`", float | None)
+PeriodMax: Any = read_as(_PERIOD, "longest period of the pulses, with `period_min`", float | None)
+
+
 class AssessParams(Params):
     """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
-    pga: float | None = between(
-        *STRENGTHS, f"{PGA.meaning}, required without records", default=None, examples=[3.0], unit="m/s2"
-    )
-    pgv: float | None = between(
-        *STRENGTHS,
-        "PGV, sets the period of each pulse; either this or periods",
-        default=None,
-        examples=[0.3],
-        unit="m/s",
-    )
-    period_min: float | None = between(
-        *LENGTH, "shortest period of the pulses, with `period_max`", default=None, unit="s"
-    )
-    period_max: float | None = between(
-        *LENGTH, "longest period of the pulses, with `period_min`", default=None, unit="s"
-    )
+    pga: Pga = None
+    pgv: Pgv = None
+    period_min: PeriodMin = None
+    period_max: PeriodMax = None
     shapes: str | None = said("pulses, with commas; absent: all that end at rest", None, examples=["sine,ricker"])
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
     floor_periods: str | None = said(
@@ -125,7 +125,7 @@ class SuiteRecordBody(BaseModel):
     vertical: Samples | None = said("vertical acceleration, upwards", None)
     time_step: float = said("time between samples", unit="s")
     unit: str = said("unit of the samples", "m/s2")
-    name: str = said("name for the answer", "", max_length=40)
+    name: str = said("name for the answer", "", max_length=200)
 
     def motion(self, number: int, order: int | None) -> Record | tuple[Record, Record]:
         """The record, or the pair, without a baseline of a degree."""
@@ -150,19 +150,23 @@ class HazardBody(BaseModel):
 class AssessBody(AssessParams):
     """Objects, a site, and its records and hazard curve, if it has any."""
 
-    takes_lists: ClassVar = True
-
     objects: list[dict[str, Any]] = said("one a row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS)
     records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS)
     hazard: HazardBody | None = said("hazard curve of the site, with records", None)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _of_list(cls, value: Any) -> Any:
+        """A list is one of objects, with the site in the query."""
+        return {"objects": value} if isinstance(value, list) else value
+
 
 def _field(column: Quantity) -> Any:
     kinds: dict[str, Any] = {"": str, "bool": bool}
-    unit = f" [{column.unit}]" if column.unit not in ("", "bool") else ""
+    unit = column.unit if column.unit != "bool" else ""
     optional = column.name != "uplifts" and column.unit != ""
     kind = kinds.get(column.unit, float)
-    return (kind | None if optional else kind), said(f"{column.meaning}{unit}")
+    return (kind | None if optional else kind), said(column.meaning, unit=unit)
 
 
 AssessedRow: type[BaseModel] = create_model(
@@ -180,7 +184,7 @@ class UnreadRow(BaseModel):
     reason: str = said("what was found and what is allowed")
 
 
-class AssessResponse(Echoed[AssessParams], Solved[AssessParams]):
+class AssessResponse(Solved[AssessParams]):
     """Objects at a site, the worst first."""
 
     rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]

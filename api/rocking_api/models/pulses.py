@@ -53,8 +53,8 @@ def _name_of(pulse: str | SampledPulse) -> str:
 
 
 GivenPulse = Annotated[
-    Annotated[PulseName, Tag("name")] | Annotated[PulseSamples, AfterValidator(_made), Tag("samples")],
-    Discriminator(lambda value: "name" if isinstance(value, str) else "samples"),
+    Annotated[PulseName, Tag("<name>")] | Annotated[PulseSamples, AfterValidator(_made), Tag("<samples>")],
+    Discriminator(lambda value: "<name>" if isinstance(value, str) else "<samples>"),
     PlainSerializer(_name_of, return_type=str),
     said("a pulse by its name, or by samples"),
 ]

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, Any
 
 import numpy as np
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field
 
 from rocking._base.arrays import Array
@@ -14,16 +14,14 @@ from rocking._base.errors import InvalidArgumentError, finite
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, Form, csv_response, json_response, negotiated_form
-from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import InGroups
-from rocking_api.models.bodies import body_of, json_content, text_content
+from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, text_content
+from rocking_api.models.answer import InGroups, Url
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import TableFormat, TimeStep, between, said, with_intervals
+from rocking_api.models.quantity import TableFormat, TimeStep, between, said
+from rocking_api.routers.curves import json_of
 from rocking_api.service import ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", tags=["response"])
 
 MAX_SAMPLES = 20_000  # most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped
 
@@ -49,15 +47,21 @@ class Trace(IdentifyParams):
     rotation: Samples = said("rotation; positive values turn on the right edge", unit="rad")
 
 
-@with_intervals(
-    restitution=(list[float], "eta of the impacts after which it turns on the edge", "-"),
-    alpha=(list[float], "slenderness angle", "rad"),
-    frequency_parameter=(list[float], "p", "rad/s"),
-    drift=(float, "drift of the sensor", "rad/s"),
-)
 class IdentifyResponse(InGroups[IdentifyParams]):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
+    restitution: list[float] = said("eta of the impacts after which it turns on the edge", unit="-")
+    restitution_lower: list[float] = said("lower end of its interval", unit="-")
+    restitution_upper: list[float] = said("upper end of its interval", unit="-")
+    alpha: list[float] = said("slenderness angle", unit="rad")
+    alpha_lower: list[float] = said("lower end of its interval", unit="rad")
+    alpha_upper: list[float] = said("upper end of its interval", unit="rad")
+    frequency_parameter: list[float] = said("p", unit="rad/s")
+    frequency_parameter_lower: list[float] = said("lower end of its interval", unit="rad/s")
+    frequency_parameter_upper: list[float] = said("upper end of its interval", unit="rad/s")
+    drift: float = said("drift of the sensor", unit="rad/s")
+    drift_lower: float = said("lower end of its interval", unit="rad/s")
+    drift_upper: float = said("upper end of its interval", unit="rad/s")
     edge: list[str] = said("both, or right and left")
     impact_time: list[float] = said("times of the impacts of the fit", unit="s")
     offset: float = said("rotation at rest, at the first impact", unit="rad")
@@ -107,24 +111,34 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
     "/identify",
     summary="The block from a measured free rocking",
     response_model=IdentifyResponse,
-    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
-    openapi_extra=body_of(
-        {**json_content(Trace, EXAMPLE), **text_content(MEDIA_TYPES["csv"], _CSV)},
-        IdentifyParams,
-        "times and rotations of a sensor or a video, with noise and an offset",
-    ),
+    responses={200: {"content": {"text/csv": {}}}},
+    openapi_extra={
+        "requestBody": {
+            "content": text_content("text/csv", _CSV),
+            "description": "times and rotations of a sensor or a video, with noise and an offset",
+        }
+    },
 )
-async def post_identify(request: Request, service: ServiceDep) -> Response:
-    """Restitution, slenderness angle and frequency parameter with intervals, as `rocking.identify_free_rocking`.
+async def post_identify(
+    body: JsonOrFile[Trace],
+    query: Annotated[IdentifyParams, Query()],
+    request: Request,
+    service: ServiceDep,
+    url: Url,
+) -> Any:
+    """Restitution, slenderness angle and frequency parameter with intervals, as `identify_free_rocking`.
 
     The body is JSON, or CSV with a column of times and one of rotations, in the units of its header or in s and rad.
-    The response has the same format, or that of `format` or `Accept`. CSV has a row for each edge.
+    The response has the format of the body, or that of `format`. CSV has a row for each edge.
     """
-    given = body_form(request, TABLE_FORMS)
-    params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
-    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
-    time, rotation = await service.run_parser(lambda stop: _read(params, body, stop), request, large=True)
-    return await service.run_heavy(lambda stop: _identified(params, request, time, rotation, form, stop), request)
+    given = body_form(request, ("json", "csv"))
+    params = query if isinstance(body, bytes) else body
+
+    def work(stop: StopFlag) -> Response:
+        time, rotation = _read(params, body, stop)
+        return _identified(params, time, rotation, params.format or given, url, stop)
+
+    return await service.solve(work, request)
 
 
 def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[Array, Array]:
@@ -137,9 +151,7 @@ def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[
     return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, stated, params.time_step)
 
 
-def _identified(
-    params: IdentifyParams, request: Request, time: Array, rotation: Array, form: Form, stop: StopFlag
-) -> Response:
+def _identified(params: IdentifyParams, time: Array, rotation: Array, form: str, url: str, stop: StopFlag) -> Response:
     # scipy.stats takes longer to import than the service to start
     from rocking._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
 
@@ -151,4 +163,4 @@ def _identified(
     columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
     columns |= {name: found[name].item() for name in TRACE_NUMBERS}
     columns["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
-    return json_response(IdentifyResponse.model_construct(query=params, **edges, **columns), request)
+    return json_of(IdentifyResponse.model_construct(query=params, url=url, **edges, **columns))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
 
@@ -12,20 +11,19 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse
 
 from rocking._assessment.directions import factors_by_direction
-from rocking._assessment.objects import Object, Plane
+from rocking._assessment.objects import Object
 from rocking._assessment.search import HIGHEST_FACTOR
 from rocking._assessment.site import Site
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantities import RESTITUTION
 from rocking._base.units import Scalar
+from rocking._numba.cancellation import StopFlag
 from rocking_api.dial import dial_of, worst_directions
-from rocking_api.http.caching import revalidated
-from rocking_api.http.parameters import query_parameters
-from rocking_api.mesh_reader import ENDINGS, MAX_MESH, can_read_meshes, read_mesh
+from rocking_api.mesh_reader import ENDINGS, can_read_meshes, read_mesh
 from rocking_api.models.assess import modes_of
 from rocking_api.routers.pages import POLICY, html
-from rocking_api.service import Service, ServiceDep
+from rocking_api.service import ServiceDep
 from rocking_api.settings import Settings
 
 PATH = "/object"
@@ -70,39 +68,36 @@ router = APIRouter(prefix=PATH, include_in_schema=False)
 @router.get("")
 async def get_object_page(request: Request, service: ServiceDep) -> Response:
     """The page with the object of its address, or an example."""
-    asked = query_parameters(request)
+    asked = dict(request.query_params)
     given = fields_of(asked)
     if given["shape"] == "mesh" or not (_is_asked(asked) or service.kernels.is_loaded):
-        return revalidated(request, page_of(given, settings=service.settings))
+        return page_of(given, settings=service.settings)
+
+    def work(stop: StopFlag) -> tuple[Object, xr.Dataset]:
+        one = _object(given)
+        return one, factors_by_direction(one.planes_around, one.restitution, site_of(given).find_motions(stop), stop)
+
     try:
-        site, one = await service.run_io(lambda: (site_of(given), _object(given)))
-        found = await _assessed(one.planes_around, one.restitution, site, request, service)
+        one, found = await service.solve_one(work, request)
     except InvalidArgumentError as error:
         return page_of(given, error=error, settings=service.settings)
-    page = page_of(given, found=found, footprint=one.footprint, settings=service.settings)
-    return revalidated(request, page)
+    return page_of(given, found=found, footprint=one.footprint, settings=service.settings)
 
 
 @router.post("")
 async def post_mesh(request: Request, service: ServiceDep, file: str = "") -> Response:
     """The page with the object of a mesh, the body; `file` is its name."""
-    given = fields_of(query_parameters(request) | {"shape": "mesh"})
-    raw = await service.read_body(request, MAX_MESH)
+    given = fields_of({**request.query_params, "shape": "mesh"})
     site, restitution = site_of(given), _restitution(given)
-    mesh = await service.run_parser(lambda stop: read_mesh(raw, file, given["unit"], stop), request, in_process=True)
-    found = await _assessed(mesh.planes, restitution, site, request, service)
+    mesh = await read_mesh(service.helper, await request.body(), file, given["unit"])
+
+    def work(stop: StopFlag) -> xr.Dataset:
+        return factors_by_direction(mesh.planes, restitution, site.find_motions(stop), stop)
+
+    found = await service.solve(work, request)
     notes = [f"The mesh {remark}." for remark in mesh.remarks]
     given |= {"name": file}
     return page_of(given, found=found, footprint=np.array(mesh.footprint), notes=notes, settings=service.settings)
-
-
-async def _assessed(
-    planes: Mapping[float, Plane], restitution: Scalar, site: Site, request: Request, service: Service
-) -> xr.Dataset:
-    await service.kernels.wait()
-    return await service.executor.run(
-        lambda stop: factors_by_direction(planes, restitution, site.find_motions(stop), stop), request
-    )
 
 
 def site_of(given: dict[str, str]) -> Site:
