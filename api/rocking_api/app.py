@@ -100,7 +100,7 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
     for module in ROUTES:
         app.include_router(module.router)
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
-    app.mount("/guide", guide.GuideFiles(settings.guide))
+    app.mount("/guide", guide.GuideFiles(settings))
     app.add_middleware(
         RequestLimits, limits=limits, default=Limit(MAX_BODY, MAX_BODY), seconds=settings.arrival_seconds
     )

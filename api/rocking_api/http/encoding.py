@@ -14,9 +14,10 @@ import xarray as xr
 from fastapi import Body, Request, Response
 from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
-from pydantic import Discriminator, Tag
+from pydantic import BaseModel, Discriminator, Tag
 
 from rocking._base.arrays import Array
+from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking._datasets.cube import MODEL_RESULT, VARIABLES
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
@@ -25,6 +26,8 @@ from rocking_api.execution.evaluation import FIELDS, BatchResult
 from rocking_api.http.errors import UnsupportedBodyError
 
 M = TypeVar("M")
+P = TypeVar("P", bound=BaseModel)
+Q = TypeVar("Q", bound=BaseModel)
 
 Form = Literal["json", "csv", "nc", "nrml"]
 
@@ -59,6 +62,15 @@ def body_form(request: Request, accepted: Sequence[Form]) -> Form:
             return form
     types = ", ".join(MEDIA_TYPES[form] for form in accepted)
     raise UnsupportedBodyError("Content-Type", declared, f"one of {types}")
+
+
+def stated(body: P | bytes, query: Q) -> P | Q:
+    """The parameters of a request: those of the query beside a file, those of a JSON body otherwise."""
+    if isinstance(body, bytes):
+        return query
+    for name in query.model_fields_set:
+        raise InvalidArgumentError(name, getattr(query, name), "in the JSON body, which holds all parameters")
+    return body
 
 
 def text_content(media_type: str, example: str) -> dict[str, Any]:

@@ -240,6 +240,10 @@ def _of_validation(error: Mapping[str, Any]) -> InvalidArgumentError:
     allowed = str(error["msg"]).removeprefix("Input should be ").removeprefix("Value error, ")
     if kind == "literal_error":
         allowed = f"one of {context['expected']}"
+    elif kind.startswith("float"):
+        allowed = "a number"
+    elif kind.startswith("int"):
+        allowed = "an integer"
     return InvalidArgumentError(name, plain(value), allowed)
 
 

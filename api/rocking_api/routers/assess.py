@@ -12,7 +12,7 @@ from rocking._assessment.site import Site
 from rocking._assessment.tables import ObjectTable, objects_of_text
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.encoding import JsonOrFile, body_form, text_content, text_response
+from rocking_api.http.encoding import JsonOrFile, body_form, stated, text_content, text_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models.answer import Url
 from rocking_api.models.assess import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
@@ -54,7 +54,7 @@ async def post_assess(
     """
     given = body_form(request, ("json", "csv"))
     is_list = isinstance(body, AssessBody) and body.model_fields_set <= {"objects"}
-    params = query if isinstance(body, bytes) or is_list else body
+    params = query if is_list else stated(body, query)
 
     def work(stop: StopFlag) -> Response:
         raw = body if isinstance(body, bytes) else json.dumps(body.objects).encode()

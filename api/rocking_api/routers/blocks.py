@@ -19,7 +19,7 @@ from rocking._dimensional.table import BlockTable, read_table, respond_table
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
-from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, text_content
+from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, stated, text_content
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models import blocks as m
 from rocking_api.models.answer import Url
@@ -68,12 +68,12 @@ async def post_blocks(
     optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`.
     """
     given = body_form(request, ("json", "csv"))
-    shared = body if isinstance(body, m.BlockRows) else params
+    shared = stated(body, params)
 
     def work(stop: StopFlag) -> m.BlocksResponse | Response:
         table = _read_table(body, shared, stop)
         columns: dict[str, Any] = {**respond_table(table, stop)}
-        if (params.format or shared.format or given) == "csv":
+        if (shared.format or given) == "csv":
             return csv_response(columns, "blocks")
         columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
         query = m.BlocksParams.model_construct(**{name: getattr(shared, name) for name in m.BlocksParams.model_fields})

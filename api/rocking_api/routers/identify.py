@@ -14,7 +14,7 @@ from rocking._base.errors import InvalidArgumentError, finite
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, text_content
+from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, stated, text_content
 from rocking_api.models.answer import InGroups, Url
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import TableFormat, TimeStep, between, said
@@ -132,7 +132,7 @@ async def post_identify(
     The response has the format of the body, or that of `format`. CSV has a row for each edge.
     """
     given = body_form(request, ("json", "csv"))
-    params = query if isinstance(body, bytes) else body
+    params = stated(body, query)
 
     def work(stop: StopFlag) -> Response:
         time, rotation = _read(params, body, stop)

@@ -64,7 +64,7 @@ async def post_response(
     url: Url,
 ) -> m.RecordResponse | m.RecordBodyResponse:
     """Outcome, rotation, displacement, friction, and all scales at which the outcome changes, by (2.2)."""
-    params = query if isinstance(body, bytes) else body
+    params = encoding.stated(body, query)
 
     def work(stop: StopFlag) -> m.RecordResponse | m.RecordBodyResponse:
         return _response(service, params, _record(body, params, stop), url, stop)
@@ -90,7 +90,7 @@ async def post_history(
 
     In groups for a block; in SI units for a body with other edges. With `mass` the reactions also in newtons.
     """
-    params = query if isinstance(body, bytes) else body
+    params = encoding.stated(body, query)
     limit = service.settings.max_samples
     if params.samples is not None and params.samples > limit:
         raise TooLargeError("samples", params.samples, f"at most {limit}")
@@ -119,7 +119,7 @@ async def post_scales(
     url: Url,
 ) -> Any:
     """Outcome and peak rotation over the scale of the record, and every scale at which the outcome changes."""
-    params = query if isinstance(body, bytes) else body
+    params = encoding.stated(body, query)
     return await service.solve(lambda stop: _scales(params, _record(body, params, stop), url, stop), request)
 
 
@@ -132,7 +132,7 @@ async def post_pulse(
     url: Url,
 ) -> m.RecordPulseResponse:
     """Parameters of the pulse, how both motions overturn the block, and their accelerations and velocities."""
-    params = query if isinstance(body, bytes) else body
+    params = encoding.stated(body, query)
     return await service.solve(lambda stop: _pulse(params, _record(body, params, stop), url, stop), request)
 
 

@@ -15,7 +15,7 @@ from rocking_api.execution.evaluation import evaluate, evaluate_many
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models.answer import Url
-from rocking_api.models.batch import Batch, batch_of, parse_csv, parse_netcdf
+from rocking_api.models.batch import Batch, Columns, batch_of, parse_csv, parse_netcdf
 from rocking_api.models.params import GROUPS, LookupOptions, ResponseParams, TableParams
 from rocking_api.models.pulses import BatchBody
 from rocking_api.models.responses import BatchQuery, BatchResponse, PointResponse, columns_of, point_response
@@ -72,35 +72,23 @@ async def post_response(
     JSON holds all parameters; beside CSV and netCDF they are in the query, also groups that the table does not hold.
     """
     given = encoding.body_form(request, ("json", "csv", "nc"))
-    options, form = _options(body, params, given)
+    shared = encoding.stated(body, params)
+    if shared.pulse is None:
+        raise InvalidArgumentError("pulse", None, "required in the query")
 
-    def work(stop: StopFlag) -> Any:
-        batch = _batch(body, params, options, given, service.settings.max_points, stop)
-        return _answered(service, batch, form, url, stop)
+    def work(stop: StopFlag) -> BatchResponse | Response:
+        batch = _batch(body, shared, given, service.settings.max_points, stop)
+        return _answered(service, batch, shared.format or given, url, stop)
 
     return await service.solve_one(work, request)
 
 
-def _options(body: BatchBody | bytes, params: TableParams, given: encoding.Form) -> tuple[LookupOptions, encoding.Form]:
-    """The options of a batch, and the format of its response."""
-    if isinstance(body, BatchBody):
-        stated = params.model_fields_set - {"format"}
-        if stated:
-            raise InvalidArgumentError(min(stated), getattr(params, min(stated)), "in the body, beside the groups")
-        return body, params.format or body.format or given
-    if params.pulse is None:
-        raise InvalidArgumentError("pulse", None, "required in the query")
-    names = LookupOptions.model_fields
-    return LookupOptions(**{name: getattr(params, name) for name in names}), params.format or given
-
-
-def _batch(
-    body: BatchBody | bytes, params: TableParams, options: LookupOptions, given: str, most: int, stop: StopFlag
-) -> Batch:
+def _batch(body: BatchBody | bytes, params: BatchBody | TableParams, given: str, most: int, stop: StopFlag) -> Batch:
     """The points of a request."""
-    if isinstance(body, BatchBody):
-        return batch_of(options, {}, {name: getattr(body, name) for name in GROUPS}, most)
-    columns = parse_csv(body, most, stop) if given == "csv" else parse_netcdf(body, most)
+    options = LookupOptions.model_construct(**{name: getattr(params, name) for name in LookupOptions.model_fields})
+    columns: Columns = {}
+    if isinstance(body, bytes):
+        columns = parse_csv(body, most, stop) if given == "csv" else parse_netcdf(body, most)
     return batch_of(options, columns, {name: getattr(params, name) for name in GROUPS}, most)
 
 
