@@ -194,9 +194,18 @@ def examples_of(description):
                     query[name] = value
             for media_type, body in operation.get("requestBody", {}).get("content", {None: {"example": ""}}).items():
                 if body.get("schema", {}).get("format") != "binary":
-                    assert "example" in body, f"{path}: {media_type} has no example"
-                    content = json.dumps(body["example"]) if media_type == JSON else body["example"]
-                    yield Example(path, operation, method.upper(), url, query, media_type, content)
+                    example = body["example"] if "example" in body else example_of_model(body["schema"], description)
+                    content = json.dumps(example) if media_type == JSON else example
+                    beside = {} if media_type == JSON else query  # JSON holds all parameters
+                    yield Example(path, operation, method.upper(), url, beside, media_type, content)
+
+
+def example_of_model(schema, description):
+    """What a page fills in for a body of a model: the examples of its required fields."""
+    model = description["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
+    pulse = {"acceleration": [0.0, 1.0, 0.0], "name": "triangle"}
+    required = {name: model["properties"][name] for name in model["required"] if name != "pulse"}
+    return {"pulse": pulse} | {name: part["examples"][0] for name, part in required.items()}
 
 
 def texts(query):

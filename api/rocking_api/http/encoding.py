@@ -73,9 +73,11 @@ def stated(body: P | bytes, query: Q) -> P | Q:
     return body
 
 
-def text_content(media_type: str, example: str) -> dict[str, Any]:
-    """The OpenAPI description of a body that is text."""
-    return {media_type: {"schema": {"type": "string"}, "example": example}}
+def body_of(json_example: Any, texts: Mapping[str, str], description: str = "") -> dict[str, Any]:
+    """What the OpenAPI description of a route adds to its body: an example of JSON, and of texts by media type."""
+    content: dict[str, Any] = {MEDIA_TYPES["json"]: {"example": json_example}}
+    content |= {media: {"schema": {"type": "string"}, "example": text} for media, text in texts.items()}
+    return {"requestBody": {"content": content, **({"description": description} if description else {})}}
 
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:

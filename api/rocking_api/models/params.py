@@ -57,6 +57,11 @@ class ResponseParams(LookupOptions):
     restitution: q.Restitution
 
 
+_Slenderness: Any = q.read_as(q.SLENDERNESS, kind=float | None)
+_FrequencyRatio: Any = q.read_as(q.FREQUENCY_RATIO, kind=float | None)
+_Restitution: Any = q.read_as(RESTITUTION, kind=float | None)
+
+
 class TableParams(Params):
     """Beside a table in the body: options of its blocks, and groups that the table does not hold."""
 
@@ -64,9 +69,9 @@ class TableParams(Params):
     alpha_deg: q.AlphaDeg = None
     method: q.Method = "auto"
     absolute_tolerance: q.AbsoluteTolerance = 1e-4
-    slenderness: q.Slenderness | None = None
-    frequency_ratio: q.FrequencyRatio | None = None
-    restitution: q.Restitution | None = None
+    slenderness: _Slenderness = None
+    frequency_ratio: _FrequencyRatio = None
+    restitution: _Restitution = None
     format: q.BodyFormat = None
 
 

@@ -12,7 +12,7 @@ from rocking._assessment.site import Site
 from rocking._assessment.tables import ObjectTable, objects_of_text
 from rocking._base.errors import InvalidArgumentError
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.encoding import JsonOrFile, body_form, stated, text_content, text_response
+from rocking_api.http.encoding import JsonOrFile, body_form, body_of, stated, text_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models.answer import Url
 from rocking_api.models.assess import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
@@ -24,6 +24,12 @@ router = APIRouter(prefix="/v1", tags=["response"])
 MAX_BODY = 8 * 1024 * 1024  # largest table with records [bytes]
 MAX_PAIRS = 500_000  # most objects times motions, a pair of components being twelve [-]
 
+_JSON = {
+    "objects": [{"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}],
+    "pga": 3.0,
+    "pgv": 0.3,
+    "shapes": "sine,ricker",
+}
 _CSV = "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n"
 
 
@@ -32,12 +38,7 @@ _CSV = "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n"
     summary="Many objects at a site",
     response_model=AssessResponse,
     responses={200: {"content": {"text/csv": {}}}},
-    openapi_extra={
-        "requestBody": {
-            "content": text_content("text/csv", _CSV),
-            "description": "table of objects; the columns are those of `Object`",
-        }
-    },
+    openapi_extra=body_of(_JSON, {"text/csv": _CSV}, "table of objects; the columns are those of `Object`"),
 )
 async def post_assess(
     body: JsonOrFile[AssessBody],

@@ -19,7 +19,7 @@ from rocking._dimensional.table import BlockTable, read_table, respond_table
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
-from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, stated, text_content
+from rocking_api.http.encoding import JsonOrFile, body_form, body_of, csv_response, stated
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models import blocks as m
 from rocking_api.models.answer import Url
@@ -33,6 +33,14 @@ router = APIRouter(prefix="/v1/blocks", tags=["response"])
 MAX_BODY = 4 * 1024 * 1024  # largest table of blocks [bytes]
 
 _CSV = "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n"
+
+_JSON = {
+    "pulse": "sine",
+    "blocks": [
+        {"name": "vase", "width": 0.2, "height": 0.8, "peak_acceleration": 4.0, "period": 0.5},
+        {"name": "column", "width": 1.0, "height": 6.0, "peak_acceleration": 4.0, "period": 0.5},
+    ],
+}
 
 BY_SOLVER = "no data set covers this block within the tolerance; the solver was used, with its own error bound"
 
@@ -53,7 +61,7 @@ async def get_block(
     summary="Many blocks in SI units",
     response_model=m.BlocksResponse,
     responses={200: {"content": {"text/csv": {}}}},
-    openapi_extra={"requestBody": {"content": text_content("text/csv", _CSV)}},
+    openapi_extra=body_of(_JSON, {"text/csv": _CSV}),
 )
 async def post_blocks(
     body: JsonOrFile[m.BlockRows],

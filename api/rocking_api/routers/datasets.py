@@ -36,6 +36,7 @@ STORES = "zarr"  # folder of the zarr stores below the results folder
 DatasetName = Annotated[
     str, Path(description="name of a data set, see /v1/datasets", examples=["spectra/sine/eta-0.85"])
 ]
+StoreName = Annotated[str, Path(description="name of a pulse, see /v1/datasets", examples=["sine"])]
 ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".zmetadata"])]
 
 
@@ -178,7 +179,7 @@ async def get_netcdf(name: DatasetName, request: Request, service: ServiceDep) -
     response_class=Response,
     dependencies=[Depends(only_byte_ranges)],
 )
-async def get_zarr(pulse: str, key: ZarrKey, request: Request, service: ServiceDep) -> Response:
+async def get_zarr(pulse: StoreName, key: ZarrKey, request: Request, service: ServiceDep) -> Response:
     """The files of the zarr store (format 2, consolidated) with the cubes of a pulse over the restitution.
 
     `xarray.open_zarr(".../spectra/{pulse}.zarr")` reads it.

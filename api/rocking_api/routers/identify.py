@@ -14,7 +14,7 @@ from rocking._base.errors import InvalidArgumentError, finite
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile
 from rocking._numba.cancellation import StopFlag
-from rocking_api.http.encoding import JsonOrFile, body_form, csv_response, stated, text_content
+from rocking_api.http.encoding import JsonOrFile, body_form, body_of, csv_response, stated
 from rocking_api.models.answer import InGroups, Url
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import TableFormat, TimeStep, between, said
@@ -112,12 +112,9 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
     summary="The block from a measured free rocking",
     response_model=IdentifyResponse,
     responses={200: {"content": {"text/csv": {}}}},
-    openapi_extra={
-        "requestBody": {
-            "content": text_content("text/csv", _CSV),
-            "description": "times and rotations of a sensor or a video, with noise and an offset",
-        }
-    },
+    openapi_extra=body_of(
+        EXAMPLE, {"text/csv": _CSV}, "times and rotations of a sensor or a video, with noise and an offset"
+    ),
 )
 async def post_identify(
     body: JsonOrFile[Trace],

@@ -41,17 +41,12 @@ _EXAMPLE = "time [s],acceleration [g]\n" + "".join(
 )
 """One full sine of 1 s and 0.6 g."""
 
-_FILES: dict[str, Any] = {}
-for _media_type in ("text/plain", "text/csv", "application/octet-stream"):
-    _FILES |= encoding.text_content(_media_type, _EXAMPLE)
-
-FILE = {
-    "requestBody": {
-        "content": _FILES,
-        "description": "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC or columns, with the "
-        "parameters in the query; or JSON that holds them all",
-    }
-}
+FILE = encoding.body_of(
+    {"record": _EXAMPLE, "width": 0.4, "height": 1.6},
+    dict.fromkeys(("text/plain", "text/csv", "application/octet-stream"), _EXAMPLE),
+    "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SMC or columns, with the parameters in the query; or "
+    "JSON that holds them all",
+)
 """The OpenAPI description of the body of all these routes."""
 
 

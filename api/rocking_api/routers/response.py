@@ -48,7 +48,9 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
 
 
 _GROUPS_CSV = "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"
-_NETCDF = {"schema": {"type": "string", "format": "binary"}}
+_JSON = {"pulse": "sine", "slenderness": [0.4, 0.2, 1.2], "frequency_ratio": 5, "restitution": 0.85}
+_BODY = encoding.body_of(_JSON, {"text/csv": _GROUPS_CSV})
+_BODY["requestBody"]["content"]["application/x-netcdf"] = {"schema": {"type": "string", "format": "binary"}}
 
 
 @router.post(
@@ -56,9 +58,7 @@ _NETCDF = {"schema": {"type": "string", "format": "binary"}}
     summary="Many blocks",
     response_model=BatchResponse,
     responses=encoding.CONTENT,
-    openapi_extra={
-        "requestBody": {"content": {**encoding.text_content("text/csv", _GROUPS_CSV), "application/x-netcdf": _NETCDF}}
-    },
+    openapi_extra=_BODY,
 )
 async def post_response(
     body: encoding.JsonOrFile[BatchBody],
