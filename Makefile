@@ -126,13 +126,13 @@ wheel: $(UV) ## build dist/, check its metadata, install the wheel into an empty
 	    rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
 
 # Extras `seismic` and `slurm` are optional: they are not locked.
-LOCKED := service plot mesh sheets dask workflow docs dev
+LOCKED := service assessment plot sheets dask workflow docs dev
 
 RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
 
 lock: $(UV) ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, deploy/service.lock
 	$(RESOLVE) $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
-	$(RESOLVE) --extra service --constraint environment.lock --output-file deploy/service.lock
+	$(RESOLVE) --extra service --extra assessment --constraint environment.lock --output-file deploy/service.lock
 
 environment: .venv/project ## make the environment .venv and compile the kernels
 	@:

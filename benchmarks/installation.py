@@ -11,7 +11,11 @@ from pathlib import Path
 
 from rocking._base.source_tree import PROJECT
 
-PACKAGES = {"rocking": "rocking", "rocking_api": "api/rocking_api"}
+PACKAGES = {
+    "rocking": "rocking",
+    "rocking_api": "api/rocking_api",
+    "rocking_assessment": "assessment/rocking_assessment",
+}
 """Packages of the wheel and their folders."""
 
 PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet")

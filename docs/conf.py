@@ -8,7 +8,7 @@ import warnings
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-sys.path[:0] = [str(ROOT / "docs" / "_extensions"), str(ROOT), str(ROOT / "api")]
+sys.path[:0] = [str(ROOT / "docs" / "_extensions"), str(ROOT), str(ROOT / "api"), str(ROOT / "assessment")]
 os.environ.setdefault("ROCKING_RESULTS", str(ROOT / "results"))  # read by the examples
 os.environ.setdefault("ROCKING_MOTIONS", str(ROOT / "workflow" / "motions"))
 

@@ -8,8 +8,7 @@ hand, release it, and film it at 60 frames a second. The trace gives all three, 
 
 import matplotlib.pyplot as plt
 import numpy as np
-
-import rocking
+import rocking_assessment
 
 # %%
 # The trace, here made with the slender block: between impacts theta = alpha - (alpha - theta_n) cosh(p t).
@@ -31,10 +30,10 @@ rotation += np.radians(0.05) * np.random.default_rng(1).normal(size=time.size)
 # %%
 # The fit is for the rigid block, whose restoring moment is a sine.
 
-found = rocking.identify_free_rocking(time, rotation)
+found = rocking_assessment.identify_free_rocking(time, rotation)
 for name in ("restitution", "alpha", "frequency_parameter"):
     print(
         f"{name} {found[name].item():.4f}, {found[name + '_lower'].item():.4f} to {found[name + '_upper'].item():.4f}"
     )
-rocking.plot.free_rocking(found)
+rocking_assessment.plot_free_rocking(found)
 plt.show()

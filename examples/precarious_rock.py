@@ -15,6 +15,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import rocking_assessment
 import trimesh
 
 import rocking
@@ -30,11 +31,11 @@ table = "".join(f"{x:g},{2e-3 * (0.1 / x) ** 2.5:.6g}\n" for x in np.geomspace(0
 
 # %%
 # The answer:
-rock = rocking.Object.from_mesh(files / "boulder.stl")
+rock = rocking_assessment.Object.from_mesh(files / "boulder.stl")
 folder = Path(os.environ.get("ROCKING_MOTIONS", "workflow/motions"))
 motions = [rocking.read_record(path) for path in sorted(folder.glob("*.csv"))]
 fragility = rocking.fragility(motions, rock, intensity=np.geomspace(0.1, 3.0, 16) * 9.81)
-luck = rocking.survival(fragility, files / "hazard.csv", years=10_000).survival.sel(model="lognormal")
+luck = rocking_assessment.survival(fragility, files / "hazard.csv", years=10_000).survival.sel(model="lognormal")
 weakest = luck.to_series().idxmin()
 print(luck.to_series())
 

@@ -5,12 +5,10 @@ Bodies, one or arrays of them: `Block`, `RigidBody`, `EquivalentBlock`, each wit
 Motions: a name of `PULSE_NAMES`, or `pulse` of it; `SampledPulse`, `SinusoidalPulse`, `WaveletPulse`, `SmoothPulse` of
     your own; `Record` and `read_record`; `floor_motion` and `isolated_motion` of a structure under a record;
     `elastic_spectrum`.
-Objects at a site: `Object`, `read_objects`, `Site`, `assess`, `overturning_probability`.
 Suites of records: `fragility`, and the package `rocking.suites`.
-Measurements and old rocks: `identify_free_rocking`, `calibrate`, `survival`, `unexceeded`.
 Blocks in the groups of the paper: `peak_response`, `time_history`, `thresholds`, `overturning_boundary`, `open_cube`,
     and the formulas of `rocking.paper`.
-Checks by standards: `rocking.standards`. Pictures: `rocking.plot`.
+Pictures: `rocking.plot`. Names for packages that extend this one, such as `rocking_assessment`: `rocking.extension`.
 
 >>> import rocking
 >>> block = rocking.Block(width="40 cm", height="160 cm")

@@ -1,12 +1,6 @@
 from . import paper as paper
 from . import plot as plot
-from . import standards as standards
 from . import suites as suites
-from ._assessment.assess import assess as assess
-from ._assessment.objects import Object as Object
-from ._assessment.site import Site as Site
-from ._assessment.tables import read_objects as read_objects
-from ._assessment.uncertainty import overturning_probability as overturning_probability
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RockingError as RockingError
 from ._base.errors import StoppedError as StoppedError
@@ -18,10 +12,6 @@ from ._dimensional.body_kinds import body as body
 from ._dimensional.equivalent_block import EquivalentBlock as EquivalentBlock
 from ._dimensional.response import BodyResponse as BodyResponse
 from ._dimensional.rigid_body import RigidBody as RigidBody
-from ._evidence.calibration import calibrate as calibrate
-from ._evidence.free_rocking import identify_free_rocking as identify_free_rocking
-from ._evidence.old_rocks import survival as survival
-from ._evidence.old_rocks import unexceeded as unexceeded
 from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES
 from ._excitation.pulses import SinusoidalPulse as SinusoidalPulse
 from ._excitation.pulses import SmoothPulse as SmoothPulse

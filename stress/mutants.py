@@ -85,7 +85,7 @@ class ImportGraph:
         """The file of a dotted name: a module, or the module that defines it."""
         while name.partition(".")[0] in self._packages:
             name = self._public.get(name, name)
-            for folder in (self.root, self.root / "api"):
+            for folder in (self.root, self.root / "api", self.root / "assessment"):
                 place = folder.joinpath(*name.split("."))
                 for file in (place.with_suffix(".py"), place / "__init__.py"):
                     if file.is_file():
@@ -140,7 +140,7 @@ def run_tests(tree: Path) -> int:
 
 def main() -> None:
     """Command line."""
-    options = arguments(__doc__, session=Path(), count=150, seed=1, folders=["rocking", "api"])
+    options = arguments(__doc__, session=Path(), count=150, seed=1, folders=["rocking", "api", "assessment"])
     if options.session == Path():
         sys.exit(run_tests(TREE))
     sample(options.session, options.count, options.seed, options.folders)

@@ -36,7 +36,7 @@ FIRST = (
     "tests/api/test_uploads.py",
     "tests/boundary/test_boundary.py",
     "tests/base/test_kernel_cache.py",
-    "tests/evidence/test_free_rocking.py",
+    "tests/assessment/evidence/test_free_rocking.py",
     "tests/base/test_compilation.py",
     "tests/repository/test_types.py",
     "tests/solver/test_stages.py",

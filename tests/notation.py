@@ -10,14 +10,15 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import rocking_assessment
 import typer
 from rocking_api.app import create_app
 from rocking_api.models.answer import Answer
 from rocking_api.settings import Settings
+from rocking_assessment._objects.columns import INPUTS, OUTPUTS, SHAPES
 
 import rocking
 import rocking._base.quantities as quantities
-from rocking._assessment.columns import INPUTS, OUTPUTS, SHAPES
 from rocking._base.quantity import Quantity
 from rocking._cli.app import app
 from rocking._dimensional.body_kinds import BODIES
@@ -35,11 +36,14 @@ interfaces: those of Python, of the command line, of HTTP and of columns."""
 RETURNED = {"BodyResponse", "InvalidArgumentError", "Outcome", "PulseFit", "Response", "RockingError", "StoppedError"}
 """Classes that functions return or raise."""
 
+PICTURES = {"plot_free_rocking"}
+"""Functions whose arguments are those of matplotlib."""
+
 
 def python_arguments() -> Iterator[str]:
     """Arguments of the public functions, and of the other classes and their methods."""
-    for module in (rocking, rocking.suites):
-        for name in set(module.__all__) - RETURNED:
+    for module in (rocking, rocking.suites, rocking_assessment):
+        for name in set(module.__all__) - RETURNED - PICTURES:
             value = getattr(module, name)
             called = [value] if callable(value) else []
             if inspect.isclass(value):
@@ -52,7 +56,8 @@ def python_arguments() -> Iterator[str]:
 def options() -> Iterator[str]:
     commands = [typer.main.get_command(app)]
     for command in commands:  # grows by those of each group
-        commands += getattr(command, "commands", {}).values()
+        names = command.list_commands(None) if hasattr(command, "list_commands") else []
+        commands += [command.get_command(None, name) for name in names]
         yield from (max(parameter.opts, key=len) for parameter in command.params)
 
 

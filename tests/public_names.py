@@ -15,18 +15,22 @@ from pkgutil import resolve_name
 from types import ModuleType
 from typing import Any
 
+import rocking_assessment
 import typer
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
 import rocking
+from rocking import extension
 from rocking._cli.app import app as command_line
 from rocking._datasets.cube import AXES, OPTIONAL_VARIABLES, SAMPLES, VARIABLES
 from rocking._model.fields import COLUMN_FIELDS, RESPONSE_FIELDS
 from workflow.scripts.overturning import curves_of, described
 
 STORED = Path(__file__).parent / "data" / "public_names.txt"
-REFERENCE = Path(__file__).parents[1] / "docs/reference/python.md"
+DOCS = Path(__file__).parents[1] / "docs"
+REFERENCES = {rocking: DOCS / "reference/python.md", rocking_assessment: DOCS / "assessment/reference.md"}
+"""The pages that document the names of each package."""
 
 NOT_DOCUMENTED = {"rocking.Cube": {"level", "slice_at", "promised", "interpolate", "used"}}
 """Members without a leading underscore that the documentation does not name."""
@@ -38,10 +42,13 @@ def entry(name: str, words: Iterable[str]) -> str:
 
 
 def python_names() -> Iterator[str]:
-    """Names at the top of `rocking`, their members, and what the reference documents besides them."""
-    yield from names_of("rocking", rocking)
-    for name in re.findall(r"^ +(_\w+\.[\w.]+)$", REFERENCE.read_text(encoding="utf-8"), flags=re.MULTILINE):
-        yield from names_of(f"rocking.{name}", resolve_name(f"rocking.{name}"))
+    """Names at the top of each package, their members, and what the reference documents besides them."""
+    for package, page in REFERENCES.items():
+        yield from names_of(package.__name__, package)
+        for name in re.findall(r"^ +(_\w+\.[\w.]+)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE):
+            full_name = f"{package.__name__}.{name}"
+            yield from names_of(full_name, resolve_name(full_name))
+    yield entry("rocking.extension", sorted(extension.__all__))
 
 
 def names_of(name: str, value: Any) -> Iterator[str]:
@@ -83,9 +90,9 @@ def command_names() -> Iterator[str]:
     """Options of each command, those of a group under `rocking GROUP COMMAND`."""
 
     def options(name: str, command: Any) -> Iterator[str]:
-        if hasattr(command, "commands"):
-            for own, part in sorted(command.commands.items()):
-                yield from options(f"{name} {own}", part)
+        if hasattr(command, "list_commands"):
+            for own in sorted(command.list_commands(None)):
+                yield from options(f"{name} {own}", command.get_command(None, own))
         else:
             yield entry(name, sorted(option for parameter in command.params for option in parameter.opts))
 

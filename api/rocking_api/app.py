@@ -12,21 +12,17 @@ from prometheus_fastapi_instrumentator import Instrumentator
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 
-from rocking_api import mesh_reader
+from rocking_api.extension import extensions
 from rocking_api.http.errors import RESPONSES, add_handlers
 from rocking_api.http.limits import Limit, RequestLimits
 from rocking_api.models.answer import VERSION
 from rocking_api.models.pulses import MAX_BODY
 from rocking_api.routers import (
-    assess,
     blocks,
     curves,
     datasets,
     guide,
     health,
-    identify,
-    object_page,
-    objects_page,
     overturning,
     pages,
     pulses,
@@ -39,10 +35,7 @@ from rocking_api.settings import Settings
 
 LOG = logging.getLogger("rocking.service")
 
-ROUTES = (
-    *(response, blocks, records, curves, overturning, pulses, suites, datasets, health, pages),
-    *(assess, identify, objects_page, object_page),
-)
+ROUTES = (response, blocks, records, curves, overturning, pulses, suites, datasets, health, pages)
 
 MAX_JSON = 2 * 1024 * 1024
 """Largest JSON body with blocks [bytes], fifty thousand of them: it takes 0.05 s of the event loop."""
@@ -88,17 +81,18 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         "/v1/response": Limit(min(MAX_JSON, settings.max_body_bytes), settings.max_body_bytes),
         "/v1/blocks/response": Limit(MAX_JSON, blocks.MAX_BODY),
         "/v1/records/": Limit(settings.max_record_bytes, settings.max_record_bytes),
-        "/v1/assess": Limit(assess.MAX_BODY, assess.MAX_BODY),
-        "/v1/identify": Limit(identify.MAX_BODY, identify.MAX_BODY),
-        "/objects/text": Limit(assess.MAX_BODY, assess.MAX_BODY),
-        "/objects": Limit(3 * assess.MAX_BODY, 3 * assess.MAX_BODY),  # with signs that are escaped
-        "/object": Limit(mesh_reader.MAX_MESH, mesh_reader.MAX_MESH),
     }
     Instrumentator(excluded_handlers=["/metrics"]).instrument(app).expose(app, tags=["health"])
     add_handlers(app)
     pages.add_error_pages(app)
     for module in ROUTES:
         app.include_router(module.router)
+    for extension in extensions():
+        limits |= extension.body_limits
+        for router in extension.routers:
+            app.include_router(router)
+        if extension.static is not None:
+            app.mount(f"/static/{extension.name}", pages.PageFiles(directory=extension.static))
     app.mount("/static", pages.PageFiles(directory=pages.STATIC))
     app.mount("/guide", guide.GuideFiles(settings))
     app.add_middleware(

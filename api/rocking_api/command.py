@@ -6,7 +6,7 @@ import os
 import subprocess
 import tempfile
 from contextlib import ExitStack
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 import uvicorn
@@ -32,25 +32,21 @@ stays below `TimeoutStopSec` of `deploy/rocking.service`. A thread of the worker
 """
 
 
-def main(results: str | None, host: str, port: int, workers: int = 1) -> None:
-    """Serve a folder of results on an address until SIGINT or SIGTERM; then finish the requests that run.
-
-    Parameters
-    ----------
-    results : str or None
-        Folder; None takes it from the environment, as all other settings.
-    host : str
-        Address to listen on.
-    port : int
-        Port to listen on, 0 to 65535; 0 takes a free one.
-    workers : int
-        Number of processes that serve, >= 1; uvicorn replaces those that end.
-
-    Raises
-    ------
-    typer.Exit
-        With code 2 if a setting is not allowed; the message names it.
-    """
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on.", metavar="[ADDRESS]")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(help="Port to listen on; 0 takes a free one.", metavar="[NUMBER]", min=0, max=65535)
+    ] = 8000,
+    results: Annotated[
+        str | None,
+        typer.Option(
+            help="Folder with the data sets of the workflow; by default ROCKING_RESULTS, or results.",
+            metavar="[FOLDER]",
+        ),
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes that serve.", metavar="[NUMBER]", min=1, max=256)] = 1,
+) -> None:
+    """Run the HTTP service until interrupted; the routes are described under /docs."""
     for name in unknown_variables(os.environ):
         typer.echo(f"Error: {name} is not allowed; allowed: {', '.join(variables())}", err=True)
         raise typer.Exit(2)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import xarray as xr
 from pydantic import BaseModel
@@ -98,19 +97,12 @@ class SuiteReader:
             links=_links(name, self._catalogue.names()),
         )
 
-    def text(self, name: str, form: str, curves: Literal["discrete", "lognormal"]) -> str:
-        """The fragility of a suite as CSV or NRML."""
-        # the fits take longer to import than the service to start
-        from rocking.suites.nrml import write_nrml  # noqa: PLC0415
-        from rocking.suites.table import fragility_table  # noqa: PLC0415
+    def csv(self, name: str) -> str:
+        """Return the fragility of a suite as CSV."""
+        from rocking.suites.table import fragility_table  # noqa: PLC0415  (the fits take long to import)
 
-        file = "fragility" if form == "csv" else "outcomes"
-        _, found = self._catalogue.dataset(f"{_FOLDER}{name}/{file}")
-        if form == "csv":
-            return csv_text(fragility_table(found))
-        written = io.BytesIO()
-        write_nrml(found, written, format=curves, description=name)
-        return written.getvalue().decode()
+        _, dataset = self._catalogue.dataset(f"{_FOLDER}{name}/fragility")
+        return csv_text(fragility_table(dataset))
 
     def _part(
         self, cache: VersionCache[str, T | DatasetError], suite: str, file: str, read: Callable[[xr.Dataset], T]

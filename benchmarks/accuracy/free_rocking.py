@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
 from benchmarks.measure import arguments
 from rocking._base.errors import InvalidArgumentError
-from rocking._evidence.free_rocking import identify_free_rocking
 
 Array = NDArray[np.float64]
 

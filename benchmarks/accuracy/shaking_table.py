@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import rocking_assessment
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
@@ -85,7 +86,7 @@ def main(command_line: list[str] | None = None) -> None:
     rows = []
     for specimen in SPECIMENS:
         fell = outcomes[specimen, "measured"].to_numpy()
-        found = rocking.calibrate(motions, fell, **RANGES, points=given.points)
+        found = rocking_assessment.calibrate(motions, fell, **RANGES, points=given.points)
         model = predicted(found, motions)
         measures = ([getattr(one, f"peak_{name}") for one in motions] for name in ("acceleration", "velocity"))
         columns: list[Any] = [*measures, fell, model]

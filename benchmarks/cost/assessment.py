@@ -14,13 +14,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import rocking_assessment
+from rocking_assessment._objects.objects import Bodies
+from rocking_assessment._objects.search import HIGHEST_FACTOR, factors_of, overturned_by
 from scipy.signal import butter, sosfiltfilt
 
 import rocking
 from benchmarks.cost.made_up_records import made_up_record
 from benchmarks.measure import arguments
-from rocking._assessment.objects import Bodies
-from rocking._assessment.search import HIGHEST_FACTOR, factors_of, overturned_by
 from rocking._boundary.scan import RESOLUTION
 
 SAMPLES, STEP = 3_000, 0.01
@@ -29,12 +30,12 @@ SAMPLES, STEP = 3_000, 0.01
 MOTIONS = Path(__file__).parents[2] / "workflow/motions"
 
 
-def made_up_objects(count: int, seed: int = 17) -> list[rocking.Object]:
+def made_up_objects(count: int, seed: int = 17) -> list[rocking_assessment.Object]:
     """Return objects of 0.3 to 2.5 m whose bases are 0.12 to 0.5 times as wide and as deep."""
     random = np.random.default_rng(seed)
     heights, shares = np.exp(random.uniform(np.log(0.3), np.log(2.5), count)), random.uniform(0.12, 0.5, (count, 2))
     return [
-        rocking.Object(f"object {k}", width=h * w, depth=h * d, height=h)
+        rocking_assessment.Object(f"object {k}", width=h * w, depth=h * d, height=h)
         for k, (h, (w, d)) in enumerate(zip(heights.tolist(), shares.tolist(), strict=True))
     ]
 
@@ -52,7 +53,7 @@ def noise_record(seed: int, samples: int = 2000) -> rocking.Record:
 
 def compare(name: str, suite: Sequence[rocking.Record], objects: int, count: int, resolution: float, seed: int) -> None:
     """Print in how many pairs a scan of `count` factors finds a lower one, and how much lower at most."""
-    site = rocking.Site(pga="0.3 g", records=suite)
+    site = rocking_assessment.Site(pga="0.3 g", records=suite)
     body = Bodies.of(made_up_objects(objects, seed)).scaled()
     processor = time.process_time()
     found = factors_of(body, site.motions, resolution=resolution)
@@ -91,7 +92,10 @@ def main() -> None:
         return
     suite = [made_up_record(seed, SAMPLES, STEP) for seed in range(options.records)]
     body = Bodies.of(made_up_objects(options.objects)).scaled()
-    for site in (rocking.Site(pga="0.3 g", pgv="0.3 m/s"), rocking.Site(pga="0.3 g", records=suite)):
+    for site in (
+        rocking_assessment.Site(pga="0.3 g", pgv="0.3 m/s"),
+        rocking_assessment.Site(pga="0.3 g", records=suite),
+    ):
         factors_of(Bodies.of(made_up_objects(1)).scaled(), site.motions[-1:])
         wall, processor = time.perf_counter(), time.process_time()
         found = factors_of(body, site.motions)

@@ -29,7 +29,6 @@ class Kind(Generic[Made]):
 
     # makes one from numbers in SI units and texts; each parameter is annotated `Annotated[float, QUANTITY]`
     make: Callable[..., Made]
-    reads_files: bool = False  # whether a parameter is a path, which the service does not take
 
     @property
     def name(self) -> str:

@@ -1,7 +1,8 @@
 """The `rocking` command: parameters as groups or with units, output as text, JSON or CSV, and the service.
 
 This module holds the signatures only. The commands import what they need, so that `rocking --help` does not load the
-solver, the data sets and the unit registry.
+solver, the data sets and the unit registry. Other packages add commands by entry points of the group
+`rocking.commands`: the name of the command, and a function that typer reads.
 """
 
 from __future__ import annotations
@@ -12,16 +13,15 @@ import gc
 import os
 import sys
 import warnings
+from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from rocking._cli import options
-from rocking._cli.assess import assess
 from rocking._cli.floor import floor
 from rocking._cli.fragility import fragility
-from rocking._cli.identify import identify
 from rocking._cli.plot import plot
 from rocking._cli.record import record
 
@@ -33,8 +33,47 @@ FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
 """Errors of the system where standard output or a temporary folder can hold no more."""
 
 
+def _added_commands() -> dict[str, EntryPoint]:
+    """Return the commands that other packages add, by name."""
+    return {entry_point.name: entry_point for entry_point in entry_points(group="rocking.commands")}
+
+
+def _load_command(entry_point: EntryPoint) -> Any:
+    """Return the command of an entry point; where a package of its extra is missing, one that says so."""
+    single = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    try:
+        function = entry_point.load()
+    except ModuleNotFoundError as error:
+        reason = str(error)
+
+        def function() -> None:
+            typer.echo(f"rocking {entry_point.name}: {reason}", err=True)
+            raise typer.Exit(1)
+
+        single.command(
+            entry_point.name,
+            help=reason,
+            context_settings={"ignore_unknown_options": True, "allow_extra_args": True},
+        )(function)
+    else:
+        single.command(entry_point.name)(function)
+    return typer.main.get_command(single)
+
+
 class Commands(TyperGroup):
-    """The commands; what is wrong with an argument is printed in a line of its own."""
+    """The commands, and those of other packages; what is wrong with an argument is printed in a line of its own."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of the commands, those of other packages last."""
+        return [*super().list_commands(ctx), *_added_commands()]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a command; that of another package is loaded here."""
+        command = super().get_command(ctx, cmd_name)
+        if command is not None:
+            return command
+        entry_point = _added_commands().get(cmd_name)
+        return None if entry_point is None else _load_command(entry_point)
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run the command of the arguments."""
@@ -209,33 +248,6 @@ def units(output: options.OutputOptions) -> None:
 
 
 app.command()(record)
-app.command()(assess)
 app.command()(fragility)
-app.command()(identify)
 app.command()(floor)
 app.add_typer(plot, name="plot")
-
-
-@app.command()
-@options.with_options
-def serve(
-    host: Annotated[str, options.said("Address to listen on.", "ADDRESS")] = "127.0.0.1",
-    port: Annotated[int, options.said("Port to listen on.", "NUMBER", min=0, max=65535)] = 8000,
-    results: Annotated[
-        str | None,
-        options.said("Folder with the data sets of the workflow; by default ROCKING_RESULTS, or results.", "FOLDER"),
-    ] = None,
-    workers: Annotated[int, options.said("Processes that serve.", "NUMBER", min=1, max=256)] = 1,
-) -> None:
-    """Run the HTTP service until interrupted; the routes are described under /docs."""
-    from importlib.metadata import entry_points
-
-    (entry,) = entry_points(group="rocking.commands", name="serve")
-    try:
-        listen = entry.load()
-    except ModuleNotFoundError as error:
-        typer.echo(
-            f"no module {error.name}: rocking serve needs the extra `service`, pip install 'rocking[service]'", err=True
-        )
-        raise typer.Exit(1) from error
-    listen(results, host, port, workers)

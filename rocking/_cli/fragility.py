@@ -49,16 +49,13 @@ def fragility(
             "for them.",
         ),
     ] = "levels",
-    hazard: Annotated[
-        str | None, said("Hazard curve of OpenQuake or the USGS, in place of that of the configuration.", "FILE")
-    ] = None,
     baseline_order: BaselineOrder = None,
     file: Annotated[
         str | None,
-        said("File to write: .csv, .json, .xml (NRML of OpenQuake), or .pelicun.csv.", "FILE", "--output", "-o"),
+        said("File to write: .csv or .json.", "FILE", "--output", "-o"),
     ] = None,
 ) -> None:
-    """Fragility of blocks under a suite of records: counts, intervals, fitted curves, annual rates.
+    """Fragility of blocks under a suite of records: counts, intervals, fitted curves.
 
     If the configuration asks for it, also the friction demand, and the effect of restitution and sampling.
     """
@@ -66,8 +63,6 @@ def fragility(
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking.suites.files import ENDINGS
-    from rocking.suites.hazard import annual_rate
-    from rocking.suites.hazard_files import read_hazard
     from rocking.suites.table import curve_table, distribution_table, finite, fragility_table
 
     with configuration_errors():
@@ -84,11 +79,8 @@ def fragility(
             raise InvalidArgumentError(
                 "output", file, f"a name that ends in {', '.join(ENDINGS)}, without --format csv or json"
             )
-        curve = suite.hazard if hazard is None else read_hazard(hazard)
     found = suite_fragility(suite)
     with option_errors({"fragility": "--output", "format": "--output"}):
-        if curve is not None:
-            found = found.assign(annual_rate(found, curve).data_vars)
         if file is not None:
             _write(found, file)
             return
@@ -248,8 +240,7 @@ def _with_intervals(curves: dict[str, list[Any]]) -> dict[str, list[Any]]:
         texts = [["-" if value is None else f"{value:.4g}" for value in row] for row in ends]
         return [f"{value} ({low} to {high})" for value, low, high in texts]
 
-    last = [name for name in ("annual_rate", "records_surviving_above_first") if name in curves]
-    return {name: column(name) for name in (*shown, *last)}
+    return {name: column(name) for name in (*shown, "records_surviving_above_first")}
 
 
 def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[Any]]:

@@ -112,7 +112,7 @@ def _worst_direction(
     body: RespondingBody, pair: tuple[Record, Record], given: dict[str, Any]
 ) -> tuple[float, Record, BodyResponse]:
     """The worst angle from the first towards the second component [degrees], the motion along it, the response."""
-    from rocking._assessment.site import PAIR_ANGLES, checked_pair, rotated
+    from rocking._excitation.records.pair import PAIR_ANGLES, checked_pair, rotated
 
     checked_pair(pair)
     motions = [one for _, one in rotated(*pair)]

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Self, final
 
 import numpy as np
@@ -15,7 +13,7 @@ from numpy.typing import ArrayLike
 import rocking._base.quantities as q
 from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
-from rocking._base.errors import InvalidArgumentError, in_range, number, positive
+from rocking._base.errors import InvalidArgumentError, in_range, positive
 from rocking._base.units import Scalar, Values
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rebound_of, rigid_edge
@@ -318,47 +316,4 @@ class RigidBody(RespondingBody):
         """
         g = positive("gravity", gravity, "m/s2")
         found = polygon_properties(vertices)
-        return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)
-
-    @classmethod
-    def from_mesh(
-        cls, path: str | Path, direction: Scalar = 0.0, *, unit: str = "m", gravity: Scalar = STANDARD_GRAVITY
-    ) -> Self:
-        """A body of uniform density from a surface mesh, which stands on its lowest points; z is upwards.
-
-        It rocks in the vertical plane of the direction, on the outermost points of its footprint there: the planar
-        model of a base of any shape, which leaves out that a round base also rolls.
-
-        Parameters
-        ----------
-        path : str or Path
-            A file that trimesh reads (STL, PLY, OBJ, GLB, ...); needs the extra `mesh`.
-        direction : float
-            Angle of the ground motion from the x axis towards the y axis [rad], or a text such as "30 deg".
-        unit : str
-            Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft".
-        gravity
-            As of `RigidBody`.
-
-        Raises
-        ------
-        InvalidArgumentError
-            If the file cannot be read, has a defect that cannot be repaired with certainty, encloses no volume, or does
-            not stand.
-        ImportError
-            If trimesh is not installed.
-
-        Warns
-        -----
-        UserWarning
-            If the mesh was repaired: flat holes filled, normals turned outwards, sheets beside the surface left out.
-            If it has separate solids, with gaps between them, which are treated as one body.
-        """
-        from rocking._dimensional.mesh import mesh_properties  # noqa: PLC0415  (trimesh is an extra)
-
-        g = positive("gravity", gravity, "m/s2")
-        angle = number("direction", direction, -2.0 * math.pi, 2.0 * math.pi, unit="rad")
-        found, remarks = mesh_properties(path, angle, unit)
-        for remark in remarks:
-            warnings.warn(f"{Path(path).name} {remark}", UserWarning, 2)
         return cls(found.left, found.right, found.height, found.gyration, gravity=g, top_height=found.top)

@@ -14,7 +14,7 @@ from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import HEIGHT, NAME, NUMBER, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
 from rocking._base.quantity import Quantity
 from rocking._dimensional.block import Block
-from rocking._dimensional.body_kinds import WITHOUT_FILES, columns_beside, described
+from rocking._dimensional.body_kinds import columns_beside, described
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import respond, shown
@@ -106,7 +106,7 @@ def _schema(
             limited(quantity).number(one[quantity.name])
         shape = {name: one[name] for name in one if name in parameters}
         depth = shape.pop("depth", None)  # of other kinds than a hollow box it says nothing in this plane
-        kind, stated = described(one.get("body"), shape, WITHOUT_FILES)
+        kind, stated = described(one.get("body"), shape)
         if depth is not None and "depth" in kind.fields:
             stated["depth"] = depth
         for name, value in kind.read(stated).items():

@@ -3,7 +3,6 @@ from .pictures.control_map import control_map as control_map
 from .pictures.control_map import cube as cube
 from .pictures.distribution import distribution as distribution
 from .pictures.fragility import fragility as fragility
-from .pictures.free_rocking import free_rocking as free_rocking
 from .pictures.history import ground_acceleration as ground_acceleration
 from .pictures.history import history as history
 from .pictures.response import response as response

@@ -1,4 +1,4 @@
-"""Suites of recorded motions: fragility, annual rates, sensitivity, and pulses fitted to records.
+"""Suites of recorded motions: fragility, sensitivity, and pulses fitted to records.
 
 The names are listed in `__init__.pyi` and loaded at first use.
 """

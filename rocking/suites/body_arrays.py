@@ -20,7 +20,7 @@ Analyse = Callable[[Sequence[AbstractBlock] | RigidBody], xr.Dataset]
 
 @runtime_checkable
 class HasBody(Protocol):
-    """Anything with a body for each direction, such as `rocking.Object`."""
+    """Anything with a body for each direction, such as an object with one for each side of its base."""
 
     restitution: Scalar
 

@@ -24,7 +24,7 @@ from rocking._excitation.records.readers.read_record import MAX_SKIP, parse_reco
 from rocking._excitation.records.record import TIME_STEP, UNITS, Record
 from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.body import AbstractBody
-from rocking.suites.checks import check_demands, check_hazard_curve
+from rocking.suites.checks import check_demands
 from rocking.suites.intensity import MEASURES
 
 if TYPE_CHECKING:  # it needs numba, which the rules of a workflow do not
@@ -35,7 +35,6 @@ DEFAULTS: dict[str, Any] = {
     "demand": ["overturning"],
     "confidence": 0.95,
     "map": None,
-    "hazard": None,
     "sensitivity": None,
 }
 
@@ -114,7 +113,6 @@ class SuiteConfiguration(EqualByValue):
     demand: tuple[str | float, ...]
     confidence: float
     map: BlockMap | None
-    hazard: tuple[Array, Array] | None
     sensitivity: Sensitivity | None
 
     def motions(self) -> list[Record]:
@@ -131,10 +129,6 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
     given = _with_defaults(given, DEFAULTS)
     _keys("suite", given, SuiteConfiguration.__annotations__)
     measure = one_of("measure", given["measure"], MEASURES)
-    hazard = None
-    if given["hazard"] is not None:
-        _keys("hazard", given["hazard"], ("intensity", "annual_rate"))
-        hazard = check_hazard_curve((given["hazard"]["intensity"], given["hazard"]["annual_rate"]))
     blocks = _blocks(given["blocks"])
     if given["sensitivity"] is not None and not isinstance(blocks, tuple):
         raise InvalidArgumentError("sensitivity", given["sensitivity"], "null beside a body with two different edges")
@@ -148,7 +142,6 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
         demand=tuple(check_demands(given["demand"])),
         confidence=number("confidence", given["confidence"], 0.0, 1.0, closed="neither"),
         map=None if given["map"] is None else _map(given["map"]),
-        hazard=hazard,
         sensitivity=None if given["sensitivity"] is None else _sensitivity(given["sensitivity"]),
     )
 

@@ -8,13 +8,9 @@ import xarray as xr
 
 from rocking._base.errors import one_of
 from rocking._datasets.csv_text import csv_text
-from rocking.suites.nrml import write_nrml
-from rocking.suites.pelicun import write_pelicun
 from rocking.suites.table import curve_table, finite, fragility_table
 
-ENDINGS = (".csv", ".json", ".xml")
-
-PELICUN = ".pelicun.csv"
+ENDINGS = (".csv", ".json")
 
 
 def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
@@ -23,25 +19,18 @@ def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     fragility : xarray.Dataset
-        Result of `rocking.fragility`, if wanted with the variables of `annual_rate`.
+        Result of `rocking.fragility`.
     path : path
         The file, written anew. `.csv`: a row for each limit state, block and level, with counts, intervals and the
-        fitted probabilities. `.json`: these and the fitted curves, null for what does not exist. `.xml`: `write_nrml`.
-        `.pelicun.csv`: `write_pelicun`.
+        fitted probabilities. `.json`: these and the fitted curves, null for what does not exist.
 
     Raises
     ------
     InvalidArgumentError
-        If the name has another ending, or for .xml as `write_nrml`, for .pelicun.csv as `write_pelicun`.
+        If the name has another ending.
     """
     file = Path(path)
-    if file.name.lower().endswith(PELICUN):
-        write_pelicun(fragility, file)
-        return
     ending = one_of("path", file.suffix.lower(), ENDINGS)
-    if ending == ".xml":
-        write_nrml(fragility, file)
-        return
     levels = fragility_table(fragility)
     if ending == ".csv":
         file.write_text(csv_text(levels), encoding="utf-8")

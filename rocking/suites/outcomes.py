@@ -84,8 +84,8 @@ def check_suite(
         raise InvalidArgumentError(
             "blocks",
             blocks,
-            "one or more objects of rocking.Block or rocking.EquivalentBlock, or one of rocking.RigidBody or "
-            "rocking.Object",
+            "one or more objects of rocking.Block or rocking.EquivalentBlock, or one of rocking.RigidBody, "
+            "or an object that has one for each of its directions",
         )
     levels = checked_levels(intensity, chosen)
     for motion in motions:

@@ -1,7 +1,7 @@
 """Fragility as columns, for CSV, JSON and text."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -35,17 +35,16 @@ def fragility_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     return _rows(found, {"intensity": found["intensity"].values, **columns})
 
 
-def curve_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
+def curve_table(fragility: xr.Dataset, more: Sequence[str] = ()) -> dict[str, list[Any]]:
     """One row for each limit state, block and model: the fitted curve, its intervals, and the records named.
 
-    Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, if there are annual
-    rates `annual_rate` [1/year], and records_surviving_above_first, separated by semicolons.
+    Columns demand, width [m], height [m], model, fit_status (name of `FitStatus`), `CURVE_COLUMNS`, further variables
+    over demand, block and model that `more` names, and records_surviving_above_first, separated by semicolons.
     """
     found = _with_dimensions(fragility)
     order = ("demand", "block", "model")
     status = np.vectorize(lambda code: FitStatus(code).name, otypes=[str])(found["fit_status"].transpose(*order).values)
-    numbers = [*CURVE_COLUMNS, *(["annual_rate"] if "annual_rate" in found else [])]
-    columns = {name: found[name].transpose(*order).values for name in numbers}
+    columns = {name: found[name].transpose(*order).values for name in (*CURVE_COLUMNS, *more)}
     named = found["records_surviving_above_first"].transpose("demand", "block").values[:, :, None]
     models = {"model": found["model"].values, "fit_status": status}
     return _rows(found, {**models, **columns, "records_surviving_above_first": named})

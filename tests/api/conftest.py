@@ -13,13 +13,13 @@ from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.app import create_app
 from rocking_api.settings import EXAMPLE, Settings
+from rocking_assessment._hazard.rates import annual_rate
 
 import rocking
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import describe, scalar_coordinates, write_dataset
 from rocking._spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
-from rocking.suites.hazard import annual_rate
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.sensitivity import suite_sensitivity

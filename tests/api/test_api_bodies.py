@@ -3,7 +3,7 @@
 import pytest
 
 import rocking
-from rocking._dimensional.body_kinds import WITHOUT_FILES as KINDS
+from rocking._dimensional.body_kinds import BODIES as KINDS
 from tests.api.conftest import assert_problem, texts
 from tests.sampling import but_long, number, sample
 

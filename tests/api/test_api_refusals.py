@@ -382,7 +382,7 @@ def test_large_bodies_are_limited_by_route(client, monkeypatch):
     assert_problem(post(client, ASSESS, " " * (assess.MAX_BODY + 1), CSV), 413, "body")
     assert_problem(post(client, IDENTIFY, " " * (identify.MAX_BODY + 1)), 413, "body")
     assert_problem(post(client, "/v1/map", "0" * (MAX_BODY + 1)), 413, "body")
-    monkeypatch.setattr("rocking._assessment.site.MOST_SAMPLES", 3000)
+    monkeypatch.setattr("rocking_assessment._objects.site.MOST_SAMPLES", 3000)
     assert_problem(client.post(ASSESS + "&floor_periods=1", json=OBJECTS), 422, "floor_periods")
     monkeypatch.setattr(assess, "MAX_PAIRS", 0)
     assert_problem(client.post(ASSESS, json=OBJECTS), 413, "objects")

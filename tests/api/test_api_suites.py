@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from rocking_api import suite_reader
+from rocking_assessment._hazard.nrml import write_nrml
 
 import rocking
 from rocking._datasets.cube import read_dataset, write_dataset
-from rocking.suites.nrml import write_nrml
 from tests.api.conftest import assert_problem, client_of
 from tests.suites.motions import noise
 

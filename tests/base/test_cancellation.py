@@ -6,9 +6,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+import rocking_assessment
+from rocking_assessment._objects.tables import objects_of_csv
 
 import rocking
-from rocking._assessment.tables import objects_of_csv
 from rocking._base.errors import StoppedError
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._history.motion import build_motion
@@ -100,7 +101,7 @@ AT_ONCE = {
     "sensitivity": lambda stop: rocking.suites.suite_sensitivity(MOTION, BLOCK, **LEVELS, stop=stop),
     "table": lambda stop: objects_of_csv("width [m],height [m]\n0.3,1.2\n" + "\n" * 9, stop=stop),
     "floor": lambda stop: rocking.floor_motion(MOTION, periods=0.5, stop=stop),
-    "site": lambda stop: rocking.Site(pga=3.0, pgv=0.3, floor_periods=0.5).find_motions(stop),
+    "site": lambda stop: rocking_assessment.Site(pga=3.0, pgv=0.3, floor_periods=0.5).find_motions(stop),
 }
 
 

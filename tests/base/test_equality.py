@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rocking_assessment
 from scipy import stats
 
 import rocking
@@ -53,9 +54,11 @@ EXAMPLES = {
     "VelocityPulse": lambda: rocking.suites.fit_pulse(record(), family="ricker", blocks=[]).velocity,
     "BodyResponse": lambda: rocking.RigidBody(0.1, 0.2, 0.5).response("sine", peak_acceleration=[3.0, 9.0], period=1.0),
     "BodyThresholds": lambda: rocking.RigidBody(0.1, 0.2, 0.5).thresholds("sine", period=1.0),
-    "Assessment": lambda: rocking.assess(rocking.Object("vase", width=0.2, height=1.0), rocking.Site(pga=3.0, pgv=0.4)),
-    "OverturningProbability": lambda: rocking.overturning_probability(
-        rocking.Site(pga=3.0, pgv=0.4), width=stats.norm(0.3, 0.01), height=1.2, samples=64
+    "Assessment": lambda: rocking_assessment.assess(
+        rocking_assessment.Object("vase", width=0.2, height=1.0), rocking_assessment.Site(pga=3.0, pgv=0.4)
+    ),
+    "OverturningProbability": lambda: rocking_assessment.overturning_probability(
+        rocking_assessment.Site(pga=3.0, pgv=0.4), width=stats.norm(0.3, 0.01), height=1.2, samples=64
     ),
     "Problem": lambda: paper.Problem(0.2, [2.0, 3.0], 4.0, 8.0),
     "Groups": lambda: paper.Groups([2.0, 3.0], 0.5),

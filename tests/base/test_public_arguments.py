@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rocking_assessment
 from scipy import stats
 
 import rocking
@@ -47,15 +48,15 @@ OBJECT = {
 }  # fmt: skip
 ROUND = {"name": "amphora", "diameter": 0.4, "height": 1.6}
 GIVEN: dict[str, dict[str, Any]] = {
-    "overturning_probability": {"site": rocking.Site(pga=3.0, pgv=0.4), "width": stats.norm(0.4, 0.01), "height": 1.6,
-                                "samples": 64, "seed": 1},
+    "overturning_probability": {"site": rocking_assessment.Site(pga=3.0, pgv=0.4), "width": stats.norm(0.4, 0.01),
+                                "height": 1.6, "samples": 64, "seed": 1},
     "paper.largest_deviation": {"peak_rotation": [1.0, 2.0], "restitution": [0.8, 0.9], "reference": 0.9, "axis": 0},
     "paper.restitution_exponent": {"peak_rotation": [1.0, 2.0], "restitution": [0.8, 0.9], "axis": 0},
     "paper.scale_law_deviation": {"peak_rotation": [1.0, 2.0], "restitution": [0.8, 0.9], "reference": 0.9, "axis": 0},
     "pulse": {"name": "mavroeidis_papageorgiou", "cycles": 2.0, "phase": 0.5},
     "read_record": {"path": __file__, "time_step": 0.01, "skip": 0},
     "RigidBody": {"left": 0.1, "right": 0.2, "height": 0.6, "gyration": 0.3, "gravity": 9.81, "top_height": 1.0},
-    "RigidBody.from_mesh": {"path": __file__, "direction": 0.5, "gravity": 9.81},
+    "rocking_assessment.body_from_mesh": {"path": __file__, "direction": 0.5, "gravity": 9.81},
     "RigidBody.from_polygon": {"vertices": [(0, 0), (0.3, 0), (0.2, 1)], "gravity": 9.81},
     "RigidBody.from_size": {"width": 0.4, "height": 1.6, "gyration": 0.3, "mass_height": 0.7, "gravity": 9.81},
     "SampledPulse.from_file": {"path": __file__, "period": 2.0},

@@ -4,12 +4,12 @@ import re
 from pathlib import Path
 
 import numpy as np
+from rocking_assessment._objects.columns import CLAUSES
 
 from benchmarks.accuracy.record_sampling import FILES
 from benchmarks.accuracy.standards import counts, main, measured
-from rocking._assessment.columns import CLAUSES
 
-PAGE = (Path(__file__).parents[2] / "docs/checks.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs/assessment/checks.md").read_text()
 
 
 def test_each_case_is_counted_once_and_drawn(tmp_path, capsys):

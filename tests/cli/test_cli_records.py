@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rocking_assessment
 import yaml
 from typer.testing import CliRunner
 
@@ -265,8 +266,10 @@ def test_the_worst_direction_of_two_components(tmp_path):
     first, second = (rocking.read_record(path, vertical=up) for path in (east, north))
     options = [*SIZES, "--second", north, "--vertical", up, "--format=json"]
     found = json.loads(run("record", east, *options))
-    site = rocking.Site(records=[(first, second)])
-    assessed = rocking.assess(rocking.Object("block", 0.5, 2.0), site, sensitivity=False).to_pandas()
+    site = rocking_assessment.Site(records=[(first, second)])
+    assessed = rocking_assessment.assess(
+        rocking_assessment.Object("block", 0.5, 2.0), site, sensitivity=False
+    ).to_pandas()
     assert found["overturning_scale"] == pytest.approx(float(assessed.factor[0]), rel=2e-6)
     assert f"{found['direction_deg']:.0f} deg" in assessed.governing[0]
 

@@ -5,10 +5,11 @@ import math
 
 import numpy as np
 import pytest
+import rocking_assessment
+from rocking_assessment._objects.objects import Bodies
+from rocking_assessment._objects.tables import objects_of_csv, objects_of_json
 
 import rocking
-from rocking._assessment.objects import Bodies
-from rocking._assessment.tables import objects_of_csv, objects_of_json
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.body_kinds import body
 
@@ -87,7 +88,7 @@ def test_an_object_of_a_table_is_of_any_rigid_kind():
     table = objects_of_csv(text)
     found = {one.name: one for one in table.objects}
     assert [(bad.row, bad.column) for bad in table.bad_rows] == [(8, "body")]
-    assert type(found["box"]) is rocking.Object
+    assert type(found["box"]) is rocking_assessment.Object
     assert found["case"].planes == found["same case"].planes
     expected = {
         "case": "hollow(width=40cm, height=1.6m, wall=2cm)",
@@ -101,9 +102,9 @@ def test_an_object_of_a_table_is_of_any_rigid_kind():
             np.testing.assert_allclose(edge.frequency_parameter, other.frequency_parameter, rtol=1e-12)
     json = '[{"name": "a", "width": "40 cm", "height": 1.6, "wall": 0.02}]'
     assert objects_of_json(json).objects[0].planes == found["case"].planes
-    assert rocking.Object.from_body(expected["case"]).planes == found["case"].planes
+    assert rocking_assessment.Object.from_body(expected["case"]).planes == found["case"].planes
     with pytest.raises(InvalidArgumentError, match="one rigid body"):
-        rocking.Object.from_body("frame(width=1m, height=4m, mass_ratio=1)")
+        rocking_assessment.Object.from_body("frame(width=1m, height=4m, mass_ratio=1)")
 
 
 @pytest.mark.parametrize("kind", ["mesh(path=/etc/hostname)", "mesh"])

@@ -4,10 +4,11 @@ import json
 
 import numpy as np
 import pytest
+import rocking_assessment
+from rocking_assessment._objects.objects import Bodies
 from typer.testing import CliRunner
 
 import rocking
-from rocking._assessment.objects import Bodies
 from rocking._cli.app import app
 
 TEXT = "kalliontzis(k=0.7)"
@@ -38,7 +39,7 @@ def test_each_entry_takes_the_number_that_momentum_gives(width, height, k):
     groups = {"slenderness": 0.4, "frequency_ratio": 5.0, "alpha": block.alpha}
     named, stated = (rocking.peak_response("ricker", **groups, restitution=one) for one in (text, eta))
     assert named.peak_rotation == pytest.approx(stated.peak_rotation, rel=1e-9, nan_ok=True)
-    own = Bodies.of([rocking.Object("a", width=width, height=height, restitution=text)]).scaled()
+    own = Bodies.of([rocking_assessment.Object("a", width=width, height=height, restitution=text)]).scaled()
     assert own.right.restitution == own.left.restitution == pytest.approx(eta)
 
 
@@ -50,9 +51,11 @@ def test_thresholds_fragility_and_assessments_follow():
     record = rocking.Record(5 * np.sin(7 * 0.01 * np.arange(300)), 0.01, "m/s2")
     found = [rocking.fragility([record], block, intensity=[3.0, 6.0, 9.0], restitution=one) for one in texts]
     np.testing.assert_allclose(*(one["peak_rotation"] for one in found), rtol=1e-9)
-    site = rocking.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker"])
-    objects = [rocking.Object("a", 0.3, 1.2, restitution=one) for one in (*texts, "kalliontzis(k=1)", "momentum")]
-    rows = [rocking.assess(one, site, sensitivity=False).rows for one in objects]
+    site = rocking_assessment.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker"])
+    objects = [
+        rocking_assessment.Object("a", 0.3, 1.2, restitution=one) for one in (*texts, "kalliontzis(k=1)", "momentum")
+    ]
+    rows = [rocking_assessment.assess(one, site, sensitivity=False).rows for one in objects]
     assert rows[0][0]["factor"] == pytest.approx(rows[1][0]["factor"], rel=1e-9)
     assert rows[2] == rows[3]
 
@@ -66,7 +69,7 @@ def test_command_and_table_take_the_text(tmp_path):
     assert found["overturned"] == bool(expected.overturned)
     table = tmp_path / "table.csv"
     table.write_text(f"name,width [m],height [m],restitution\na,0.3,1.2,{TEXT}\n")
-    assert rocking.read_objects(table).objects[0].restitution == TEXT
+    assert rocking_assessment.read_objects(table).objects[0].restitution == TEXT
 
 
 @pytest.mark.parametrize("wrong", ["kalliontzis", "kalliontzis(0.8)", "kalliontzis(k=0)", "kalliontzis(k=1.1)", "x"])
@@ -74,7 +77,7 @@ def test_other_texts_are_refused(wrong):
     with pytest.raises(rocking.InvalidArgumentError, match="restitution"):
         rocking.Block(0.3, 1.2).response(**MOTION, restitution=wrong)
     with pytest.raises(rocking.InvalidArgumentError, match="restitution"):
-        rocking.Object("a", width=0.3, height=1.2, restitution=wrong)
+        rocking_assessment.Object("a", width=0.3, height=1.2, restitution=wrong)
 
 
 def test_bodies_with_two_different_edges_need_another():
@@ -82,4 +85,4 @@ def test_bodies_with_two_different_edges_need_another():
         with pytest.raises(rocking.InvalidArgumentError, match="different edges"):
             rocking.RigidBody(**edges, height=0.6).response(**MOTION, restitution=TEXT)
     with pytest.raises(rocking.InvalidArgumentError, match="not in the middle"):
-        rocking.Object("a", width=0.3, height=1.2, offset_width=0.01, restitution=TEXT)
+        rocking_assessment.Object("a", width=0.3, height=1.2, offset_width=0.01, restitution=TEXT)

@@ -57,7 +57,7 @@ def instructions(name):
 
 def test_container_copies_what_exists():
     sources = [part for line in instructions("COPY") if "--from" not in line for part in line.split()[:-1]]
-    assert {"environment.lock", "deploy/service.lock", "rocking", "api"} <= set(sources)
+    assert {"environment.lock", "deploy/service.lock", "rocking", "api", "assessment"} <= set(sources)
     assert [name for name in sources if not (ROOT / name).exists()] == []
 
 

@@ -116,7 +116,7 @@ def test_example(name, smoke_results, monkeypatch, capsys):
 def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
     (tmp_path / "results").symlink_to(smoke_results)
     (tmp_path / "workflow").symlink_to(ROOT / "workflow")
-    (tmp_path / "collection.csv").symlink_to(DOCS / "howto/collection.csv")
+    (tmp_path / "collection.csv").symlink_to(DOCS / "assessment/collection.csv")
     monkeypatch.chdir(tmp_path)
     text, names = page.read_text(), {}
     for block in re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
@@ -133,7 +133,7 @@ def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
 def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     """Each `rocking` command of start and how-to pages runs, apart from the server and long tables."""
     (tmp_path / "workflow").symlink_to(ROOT / "workflow")
-    (tmp_path / "collection.csv").symlink_to(DOCS / "howto/collection.csv")
+    (tmp_path / "collection.csv").symlink_to(DOCS / "assessment/collection.csv")
     monkeypatch.chdir(tmp_path)
     fleet = re.search(r"```text\n(name,.*?)```", (DOCS / "howto/fleet.md").read_text(), re.DOTALL)
     assert fleet
@@ -142,11 +142,11 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     assert hammer
     Path("hammer.csv").write_text(hammer[1])
     trace: dict[str, Any] = {}
-    exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/identify.md").read_text(), re.DOTALL)[0], trace)
+    exec(re.findall(r"```python\n(.*?)```", (DOCS / "assessment/identify.md").read_text(), re.DOTALL)[0], trace)
     rows = np.column_stack([1000.0 * trace["time"], np.degrees(trace["rotation"])])
     np.savetxt("trace.csv", rows, delimiter=",", header="time [ms],rotation [deg]", comments="")
     if ALL:
-        exec(re.findall(r"```python\n(.*?)```", (DOCS / "howto/statue.md").read_text(), re.DOTALL)[0], {})
+        exec(re.findall(r"```python\n(.*?)```", (DOCS / "assessment/statue.md").read_text(), re.DOTALL)[0], {})
     pages = [DOCS / "start.md", *sorted(DOCS.glob("howto/*.md"))]
     lines = [line.strip() for page in pages for line in page.read_text().splitlines()]
     commands = [line.split(" > ")[0] for line in lines if line.startswith("rocking ")]
@@ -210,7 +210,7 @@ def test_guide_builds_without_warning(tmp_path):
     (outside,) = re.findall(r'<link rel="canonical" href="([^"]*)"', (target / "concepts.html").read_text())
     assert outside == f"https://guide.example/{rocking.__version__.rpartition('.')[0]}/concepts.html"
     listed = re.findall(r"^- \[.+\]\((.+)\): \S", (target / "llms.txt").read_text(), re.MULTILINE)
-    assert {"start.html", "howto/assess.html", "performance.html", "reference/http.html"} <= set(listed)
+    assert {"start.html", "assessment/assess.html", "performance.html", "reference/http.html"} <= set(listed)
     assert [page for page in listed if not (target / page).is_file()] == []
     assert "/v1/response" in json.loads((target / "openapi.json").read_text())["paths"]
     assert json.loads((target / "searchindex.js").read_text()[len("Search.setIndex(") : -1])["titles"]

@@ -47,7 +47,7 @@ SAMPLE = (
 INSIDE = number(SAMPLE, ("tests/cli", "tests/api", "--ignore=tests/api/explorer"))
 """Tests of the command line and of the service that run in the installation."""
 
-NOT_INSIDE = {"api", "rocking", "build", "results", "atlas", "atlas-small", ".git", ".venv"}
+NOT_INSIDE = {"api", "assessment", "rocking", "build", "results", "atlas", "atlas-small", ".git", ".venv"}
 """What a copy of this checkout beside an installation lacks."""
 
 

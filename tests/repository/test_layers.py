@@ -18,9 +18,17 @@ LAYERS = [
 """Those of the page from the top down: folders below the root, or single modules of `rocking`. A folder may import
 itself and folders of later rows; folders in one row do not import each other."""
 
+ASSESSMENT_TABLE = PAGE.split("| layer of the assessment |")[1].split("\n\n")[0].splitlines()[2:]
+ASSESSMENT = ROOT / "assessment/rocking_assessment"
+ASSESSMENT_LAYERS = [re.findall(r"`([^`]+)/`", row.split("|")[2]) for row in ASSESSMENT_TABLE]
+"""Folders of the package of the assessment, from the top down; those of one row do not import each other."""
+
+PUBLIC = ("rocking/__init__.py", "rocking/suites/__init__.py", "rocking/paper/__init__.py", "rocking/plot/__init__.py")
+"""What the assessment may import of `rocking`, beside its module `extension`."""
+
 LAYER_OF = {folder: row for row, folders in enumerate(LAYERS) for folder in folders}
 SOURCES = SourceTree(ROOT)
-SEARCH_PATHS = (ROOT, ROOT / "api")  # where absolute imports are resolved, as in pyproject.toml
+SEARCH_PATHS = (ROOT, ROOT / "api", ROOT / "assessment")  # where absolute imports are resolved, as in pyproject.toml
 
 
 def folder_of(path: Path) -> str | None:
@@ -62,8 +70,12 @@ def may_import(path: Path, file: Path) -> bool:
     own, other = str(folder_of(path)), folder_of(file)
     if other is not None:
         return own == other or LAYER_OF[own] < LAYER_OF[other]
+    if file.is_relative_to(ASSESSMENT):  # its tests and benchmarks
+        return own in ("tests", "stress", "benchmarks")
     # the public names, and the independent integrator, which imports nothing of the package
-    public = file == ROOT / "rocking/__init__.py" or file.is_relative_to(ROOT / "reference")
+    public = file.relative_to(ROOT).as_posix() in (*PUBLIC, "rocking/extension.py") or file.is_relative_to(
+        ROOT / "reference"
+    )
     return public and LAYER_OF[own] < LAYER_OF["rocking/_lookup"]
 
 
@@ -71,6 +83,42 @@ def test_imports_point_to_own_folder_or_lower_layers() -> None:
     assert len(MODULES) > 500
     assert [
         f"{path} imports {file}" for path in MODULES for file in imported_files(path) if not may_import(path, file)
+    ] == []
+
+
+def assessment_layer(path: Path) -> int:
+    folder = path.relative_to(ASSESSMENT).parts[0]
+    return next(row for row, folders in enumerate(ASSESSMENT_LAYERS) if folder in folders)
+
+
+def may_import_in_the_assessment(path: Path, file: Path) -> bool:
+    if file.is_relative_to(ASSESSMENT):
+        if file.parent == ASSESSMENT or file.relative_to(ASSESSMENT).parts[0] == path.relative_to(ASSESSMENT).parts[0]:
+            return True
+        return assessment_layer(path) < assessment_layer(file)
+    if file.is_relative_to(ROOT / "api"):
+        return path.is_relative_to(ASSESSMENT / "service")
+    return file.relative_to(ROOT).as_posix() in (*PUBLIC, "rocking/extension.py")
+
+
+def test_the_assessment_imports_public_names_and_its_lower_layers() -> None:
+    modules = [path for path in ASSESSMENT.rglob("*.py") if path.parent != ASSESSMENT]
+    assert len(modules) > 30
+    assert [
+        f"{path} imports {file}"
+        for path in modules
+        for file in imported_files(path)
+        if not may_import_in_the_assessment(path, file)
+    ] == []
+
+
+def test_nothing_below_imports_the_assessment() -> None:
+    folders = ("rocking", "api", "workflow", "reference")
+    assert [
+        path
+        for folder in folders
+        for path in (ROOT / folder).rglob("*.py")
+        if any(file.is_relative_to(ASSESSMENT) for file in imported_files(path))
     ] == []
 
 

@@ -19,7 +19,9 @@ ASCII = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONSAFEPATH": "1"}
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("copy") / "pâté"
     shutil.copytree(ROOT / "rocking", folder / "rocking", ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(ROOT / "api" / "rocking_api", folder / "rocking_api", ignore=shutil.ignore_patterns("__pycache__"))
+    for package in ("api/rocking_api", "assessment/rocking_assessment"):
+        target = folder / Path(package).name
+        shutil.copytree(ROOT / package, target, ignore=shutil.ignore_patterns("__pycache__"))
     return folder
 
 

@@ -44,7 +44,7 @@ def test_recipe_of_conda_states_what_the_project_states() -> None:
     assert recipe["requirements"]["run"] == [python, *conda(PROJECT["dependencies"])]
     extras = PROJECT["optional-dependencies"]
     own = [line for line in extras["service"] if not line.startswith("rocking[")]
-    constraints = conda([*extras["plot"], *extras["report"], *extras["sheets"], *own])
+    constraints = conda([*extras["plot"], *extras["sheets"], *own])
     assert recipe["requirements"]["run_constraints"] == constraints
     commands = [f"{name} = {target}" for name, target in PROJECT["scripts"].items()]
     assert recipe["build"]["python"]["entry_points"] == commands

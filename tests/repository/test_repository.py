@@ -17,8 +17,8 @@ SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
 
 FOLDERS = (
-    ".ci", ".github", "api", "benchmarks", "docs", "examples", "profiles", "reference", "rocking", "stress", "tests",
-    "workflow",
+    ".ci", ".github", "api", "assessment", "benchmarks", "docs", "examples", "profiles", "reference", "rocking",
+    "stress", "tests", "workflow",
 )  # fmt: skip
 
 

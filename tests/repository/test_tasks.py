@@ -23,7 +23,7 @@ STEP = re.compile(
     r"```(?P<language>\w+)\n(?P<text>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
-COPIED = ("api", "profiles", "rocking", "workflow")
+COPIED = ("api", "assessment", "profiles", "rocking", "workflow")
 
 pytestmark = pytest.mark.slow
 

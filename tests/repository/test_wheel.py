@@ -1,4 +1,4 @@
-"""The wheel: it holds `rocking` and `rocking_api` and nothing else, requires no service or plotting package without an
+"""The wheel: it holds the three packages and nothing else, requires no service or plotting package without an
 extra. Its installation is the subject of `test_installation.py` and of `tests/api/test_api_kernels.py`.
 """
 
@@ -22,7 +22,11 @@ REQUIRED = {
 }  # fmt: skip
 """Distributions that an installation without extras requires."""
 
-OPTIONAL = {"service": {"fastapi", "prometheus-client", "uvicorn", "zarr"}, "plot": {"matplotlib"}}
+OPTIONAL = {
+    "service": {"fastapi", "prometheus-client", "uvicorn", "zarr"},
+    "plot": {"matplotlib"},
+    "assessment": {"trimesh"},
+}
 """Distributions that only an extra brings."""
 
 
@@ -33,7 +37,7 @@ def metadata(wheel: Path) -> Message:
         return Parser().parsestr(archive.read(name).decode())
 
 
-def test_wheel_holds_the_two_packages_and_no_tests(source: Path, wheel: Path) -> None:
+def test_wheel_holds_the_packages_and_no_tests(source: Path, wheel: Path) -> None:
     held = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     files = {
         f"{package}/{path.relative_to(source / folder).as_posix()}"
@@ -69,24 +73,27 @@ def test_description_is_the_readme_without_links_that_an_index_cannot_follow(met
     assert re.findall(r"^#.*", description, re.MULTILINE) == re.findall(r"^#.*", readme, re.MULTILINE)
 
 
-def test_serve_without_its_packages_names_the_extra(wheel: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("command", "extra", "modules"),
+    [("serve", "service", ("fastapi", "uvicorn", "zarr")), ("assess", "assessment", ("trimesh",))],
+)
+def test_command_without_its_packages_names_the_extra(
+    wheel: Path, tmp_path: Path, command: str, extra: str, modules: tuple[str, ...]
+) -> None:
     """The module search path of the process holds the wheel and what a plain installation requires."""
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path)
     program = (
-        "import importlib.abc, sys\n"
-        "class Absent(importlib.abc.MetaPathFinder):\n"
-        "    def find_spec(self, name, path, target=None):\n"
-        f"        if name.split('.')[0] in {sorted(OPTIONAL['service'])}:\n"
-        "            raise ModuleNotFoundError(f'No module named {name!r}', name=name)\n"
-        "sys.meta_path.insert(0, Absent())\n"
+        "import sys\n"
+        f"sys.modules.update(dict.fromkeys({[*modules]}))\n"
         "from rocking._cli.app import app\n"
-        "app(['serve'])"
+        f"app(['{command}'])"
     )
     done = subprocess.run(
         [sys.executable, "-c", program],
         cwd=tmp_path, env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert done.returncode == 1
-    assert "rocking serve needs the extra `service`, pip install 'rocking[service]'" in done.stderr
+    assert f"rocking {command}: no module {modules[0]}" in done.stderr
+    assert f"the extra `{extra}`, pip install 'rocking[{extra}]'" in done.stderr
     assert "Traceback" not in done.stderr

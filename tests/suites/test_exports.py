@@ -7,11 +7,12 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+import rocking_assessment
+from rocking_assessment._hazard.nrml import write_nrml
 from scipy.stats import lognorm, norm
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from rocking.suites.nrml import write_nrml
 from tests.suites.motions import noise
 
 BLOCKS = [rocking.Block(0.2, 1.0), rocking.Block(0.3, 1.0)]
@@ -125,7 +126,7 @@ def test_refusals(found, tmp_path):
     strong = rocking.fragility(noise(1), BLOCKS, intensity=[100.0, 200.0])
     with pytest.raises(InvalidArgumentError, match="below the lowest level"):
         write_nrml(strong, tmp_path / "model.xml", format="lognormal")
-    for write in (write_nrml, rocking.suites.write_pelicun):
+    for write in (write_nrml, rocking_assessment.write_pelicun):
         with pytest.raises(InvalidArgumentError, match="pga or pgv"):
             write(found.assign_attrs(measure="pga_ratio"), tmp_path / "model.xml")
     with pytest.raises(InvalidArgumentError, match=r"\.csv"):
@@ -147,7 +148,7 @@ def test_a_fitted_curve_that_is_not_small_at_its_lowest_level_warns(found):
 def test_pelicun_damages_the_shares_of_the_curves(found, tmp_path):
     """Under a floor whose acceleration has a median of 0.5 g and a dispersion of 0.4."""
     path, median, beta = tmp_path / "blocks.pelicun.csv", 0.5, 0.4
-    rocking.suites.write_pelicun(found, path)
+    rocking_assessment.write_pelicun(found, path)
     pd = pytest.importorskip("pandas")
     assessment = pytest.importorskip("pelicun.assessment")
     file_io = pytest.importorskip("pelicun.file_io")

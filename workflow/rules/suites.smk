@@ -13,7 +13,7 @@ SENSITIVITY_PRODUCTS = (
 )
 SUITE_FIGURES = {"curves": "fragility", "outcomes": "outcomes", **({"map": "outcomes"} if SUITE["map"] else {})}
 # what the response of a record does not depend on
-OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95, "hazard": None}
+OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95}
 # names of the jobs, of which `record_of` gives the paths of the records of their products
 SUITE_JOBS = f"suites/{SUITE['name']}"
 

@@ -10,7 +10,6 @@ from rocking._datasets.csv_text import csv_text
 from rocking._datasets.cube import describe, read_dataset, write_dataset
 from rocking.suites.configuration import suite_configuration
 from rocking.suites.fragility import fragility_of_outcomes
-from rocking.suites.hazard import annual_rate
 from rocking.suites.outcomes import join_outcomes
 from rocking.suites.sensitivity import sensitivity_of_outcomes
 from rocking.suites.table import fragility_table, sensitivity_table
@@ -38,8 +37,6 @@ def main(
     chosen = suite_configuration(suite, Path())
     joined = _joined(files, chosen.measure)
     found = fragility_of_outcomes(joined, chosen.demand, chosen.confidence)
-    if chosen.hazard is not None:
-        found = found.assign(annual_rate(found, chosen.hazard).data_vars)
     about = {
         "history": command_of(f"suites/{chosen.name}/fragility"),
         "suite": chosen.name,

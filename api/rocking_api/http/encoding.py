@@ -29,13 +29,12 @@ M = TypeVar("M")
 P = TypeVar("P", bound=BaseModel)
 Q = TypeVar("Q", bound=BaseModel)
 
-Form = Literal["json", "csv", "nc", "nrml"]
+Form = Literal["json", "csv", "nc"]
 
 MEDIA_TYPES: dict[Form, str] = {
     "json": "application/json",
     "csv": "text/csv",
     "nc": "application/x-netcdf",
-    "nrml": "application/xml",
 }
 
 CONTENT: dict[int | str, dict[str, Any]] = {200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}}}
@@ -86,9 +85,8 @@ def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
 
 
 def text_response(text: str, name: str, form: Form = "csv") -> Response:
-    """A text as a file: that of `csv_text`, or XML."""
-    suffix = "xml" if form == "nrml" else form
-    return Response(text, media_type=MEDIA_TYPES[form], headers=_file(f"{name}.{suffix}"))
+    """Return the text of `csv_text` as a file."""
+    return Response(text, media_type=MEDIA_TYPES[form], headers=_file(f"{name}.{form}"))
 
 
 def columns_as_they_are(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Column]:

@@ -11,7 +11,7 @@ from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantity import Quantity
 from rocking._dimensional.body import RespondingBody
-from rocking._dimensional.body_kinds import WITHOUT_FILES as KINDS
+from rocking._dimensional.body_kinds import BODIES as KINDS
 from rocking._dimensional.body_kinds import described, signatures
 from rocking_api.models import quantity as q
 from rocking_api.models.params import Params

@@ -23,10 +23,7 @@ _UNIT = said("unit of the measure, as CF writes it")
 class SuiteParams(Params):
     """The format of the fragility of a suite."""
 
-    format: Literal["json", "csv", "nrml"] | None = said(
-        "format of the response; absent: JSON (nrml: of OpenQuake)", None
-    )
-    curves: Literal["discrete", "lognormal"] = said("NRML holds fractions at the levels, or fitted curves", "discrete")
+    format: Literal["json", "csv"] | None = said("format of the response; absent: JSON", None)
 
 
 class SuiteSummary(BaseModel):
@@ -74,7 +71,6 @@ class FragilityCurve(BaseModel):
     model: str = said("lognormal or logistic (log-logistic)")
     fit_status: str = said("FITTED, or why the outcomes determine no curve")
     fit_meaning: str = said("the status in words")
-    annual_rate: float | None = said("annual rate of reaching it; null without a hazard curve", None, unit="1/year")
     fitted: list[float | None] = said("probability at each level", unit="-")
 
 

@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -15,18 +16,12 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+from rocking_api.extension import MenuEntry, extensions
 from rocking_api.http.errors import FULL, KINDS, OTHERS, PROBLEMS
 from rocking_api.settings import Settings, has_data
 
 STATIC = Path(__file__).parents[1] / "static"
 
-TEMPLATES = Environment(
-    loader=FileSystemLoader(STATIC.with_name("templates")),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-)
 
 PULSES = {
     "sine": "One full sine",
@@ -41,50 +36,75 @@ PULSES = {
 }
 """What pages and scripts call the pulses."""
 
-TEMPLATES.globals["pulses"] = PULSES
+
+@cache
+def templates() -> Environment:
+    """Return the templates of the service and of the packages that extend it."""
+    folders = [STATIC.with_name("templates")]
+    folders += [extension.templates for extension in extensions() if extension.templates is not None]
+    environment = Environment(
+        loader=FileSystemLoader(folders),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.globals["pulses"] = PULSES
+    return environment
+
 
 POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 # swagger-ui needs styles inside elements and data: images
 _SWAGGER_POLICY = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'none'"
-# the report of an assessment has its styles inside
-REPORT_POLICY = (
-    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-)
 NO_CACHE = {"Cache-Control": "no-cache"}  # revalidated by ETag: no page mixes two versions
 
 
 @dataclass(frozen=True)
-class Page:
-    """A page: its address, its word in the navigation, its title, its template and its policy."""
+class Page(MenuEntry):
+    """A page of the service: also its title, its template and its policy."""
 
-    path: str
-    label: str
-    title: str
-    template: str
+    title: str = ""
+    template: str = ""
     policy: str = POLICY
-    exists: Callable[[Settings], bool] = lambda _: True  # whether it has something to show
 
 
 PAGES = (
-    Page("/", "Explorer", "Does the block overturn?", "explorer.html"),
-    Page("/objects", "Objects", "Which objects overturn?", ""),  # objects_page.py
-    Page("/object", "One object", "In which direction does it overturn?", ""),  # object_page.py
-    Page("/records", "Records", "A block under a record", "records.html"),
-    Page("/suites", "Suites", "Suites of records", "suites.html", exists=lambda own: (own.results / "suites").is_dir()),
-    Page("/datasets", "Data sets", "Data sets", "datasets.html", exists=lambda own: has_data(own.results)),
-    Page("/guide/", "Guide", "Guide", ""),  # guide.py
-    Page("/docs", "API", "Routes of the API", "docs.html", _SWAGGER_POLICY),
-    Page("/state", "Status", "Service status", "state.html"),
+    Page("/", "Explorer", title="Does the block overturn?", template="explorer.html"),
+    Page("/records", "Records", title="A block under a record", template="records.html"),
+    Page(
+        "/suites",
+        "Suites",
+        title="Suites of records",
+        template="suites.html",
+        exists=lambda settings: (settings.results / "suites").is_dir(),
+    ),
+    Page(
+        "/datasets",
+        "Data sets",
+        title="Data sets",
+        template="datasets.html",
+        exists=lambda settings: has_data(settings.results),
+    ),
+    Page("/guide/", "Guide", title="Guide"),  # guide.py
+    Page("/docs", "API", title="Routes of the API", template="docs.html", policy=_SWAGGER_POLICY),
+    Page("/state", "Status", title="Service status", template="state.html"),
 )
 """In the order of the navigation."""
+
+
+def menu() -> list[MenuEntry]:
+    """Return the pages of the navigation; those of packages that extend the service follow the first one."""
+    added = [entry for extension in extensions() for entry in extension.menu]
+    return [PAGES[0], *added, *PAGES[1:]]
+
 
 router = APIRouter(include_in_schema=False)
 
 
 def html(template: str, title: str, path: str = "", settings: Settings | None = None, **values: Any) -> str:
     """A page as text; `path` is its address, where the navigation has it, which leads only where something is."""
-    pages = [one for one in PAGES if settings is None or one.path == path or one.exists(settings)]
-    return TEMPLATES.get_template(template).render(title=title, path=path, pages=pages, **values)
+    pages = [entry for entry in menu() if settings is None or entry.path == path or entry.exists(settings)]
+    return templates().get_template(template).render(title=title, path=path, pages=pages, **values)
 
 
 def settings_of(request: Request) -> Settings:

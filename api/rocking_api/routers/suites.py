@@ -29,16 +29,14 @@ async def get_suites(params: Annotated[ListParams, Query()], service: ServiceDep
     "/{name}",
     summary="Fragility of the blocks",
     response_model=SuiteResponse,
-    responses={200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nrml"]: {}}}},
+    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
 )
 async def get_suite(name: SuiteName, params: Annotated[SuiteParams, Query()], service: ServiceDep, url: Url) -> Any:
     """Counts with intervals and fitted curves of each block and limit state, margins of each record, rotations.
 
     If the suite asks for it, also friction demand, and the effect of restitution and sampling. The data sets of the
-    suite are under `links`. CSV has a row for each limit state, block and level. NRML is the fragility model of
-    OpenQuake with the limit states rocks and overturns, for suites with the measure PGA or PGV.
+    suite are under `links`. CSV has a row for each limit state, block and level.
     """
-    form = params.format or "json"
-    if form == "json":
-        return await service.read(lambda _: service.suites.suite(name, params, url))
-    return text_response(await service.read(lambda _: service.suites.text(name, form, params.curves)), name, form)
+    if params.format == "csv":
+        return text_response(await service.read(lambda _: service.suites.csv(name)), name)
+    return await service.read(lambda _: service.suites.suite(name, params, url))

@@ -17,17 +17,6 @@ if TYPE_CHECKING:
 VERTICES = Quantity(
     "vertices", "", "corners x, y of the outline in order, in metres; y is upwards", example="0 0; 0.3 0; 0.3 1.0"
 )
-PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, ...), z upwards", example="vase.stl")
-UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft", default="m")
-DIRECTION = Quantity(
-    "direction",
-    "rad",
-    "angle of the ground motion from the x axis of the mesh towards its y axis",
-    lower=-2.0 * math.pi,
-    upper=2.0 * math.pi,
-    closed="both",
-    example="30 deg",
-)
 
 
 def rectangle(
@@ -105,18 +94,6 @@ def outline(vertices: Annotated[Any, VERTICES], gravity: Annotated[float, q.GRAV
                 "vertices", vertices, f"pairs x y in metres, such as {VERTICES.example}"
             ) from None
     return RigidBody.from_polygon(points, gravity=gravity)
-
-
-def mesh(
-    path: Annotated[str, PATH],
-    direction: Annotated[float, DIRECTION] = 0.0,
-    unit: Annotated[str, UNIT] = "m",
-    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
-) -> "RigidBody":
-    """A body of uniform density from a surface mesh, standing on its lowest points."""
-    from rocking._dimensional.rigid_body import RigidBody  # noqa: PLC0415
-
-    return RigidBody.from_mesh(path, direction, unit=unit, gravity=gravity)
 
 
 def with_wall(make: Callable[..., "Block | RigidBody"]) -> Callable[..., "Block | RigidBody"]:

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+import rocking_assessment
 from playwright.sync_api import expect
 
 import rocking
@@ -13,8 +14,8 @@ from rocking._base.constants import STANDARD_GRAVITY
 from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import BLOCK, pixels, query, set_time, settle, stated_rotation
 
-VASE = rocking.Object("vase", width=0.22, height=0.55)
-SITE = rocking.Site(pga="0.3 g", pgv="30 cm/s")
+VASE = rocking_assessment.Object("vase", width=0.22, height=0.55)
+SITE = rocking_assessment.Site(pga="0.3 g", pgv="30 cm/s")
 RESTS, OVERTURNS = "It rocks and comes to rest.", "It overturns."
 
 
@@ -49,7 +50,7 @@ def test_is_a_vase_stable_at_this_site_and_how_wide_must_its_base_be_on_a_phone(
     for name, value in {"width": "22", "height": "55", "acceleration": "0.3", "velocity": "30"}.items():
         hand.write(f"#{name}", value)
     assert page.evaluate("document.documentElement.scrollWidth") <= page.evaluate("innerWidth")
-    (row,) = rocking.assess(VASE, SITE).rows
+    (row,) = rocking_assessment.assess(VASE, SITE).rows
     expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.3 g and 30 cm/s.")
     expect(page.locator("#site-answer")).to_have_attribute("data-verdict", row["verdict"])
     percent = float(page.locator("#site-answer").inner_text().split("overturns with ")[1].split()[0])
@@ -63,9 +64,11 @@ def test_the_chart_is_the_assessment_at_every_ratio_and_the_period_that_of_the_s
     page = open_page("/?width=22+cm&height=55+cm&acceleration=0.4+g&velocity=30+cm/s&restitution=0.8")
     page.wait_for_function("() => document.getElementById('envelope').dataset.curve")
     curve = np.array(json.loads(page.locator("#envelope").get_attribute("data-curve")))
-    block = rocking.Object("vase", width=0.22, height=0.55, restitution=0.8)
+    block = rocking_assessment.Object("vase", width=0.22, height=0.55, restitution=0.8)
     for pgv, pga in curve[[3, 12, -3]]:
-        found = rocking.assess(block, rocking.Site(pga=f"{pga} g", pgv=f"{pgv} cm/s"), sensitivity=False)
+        found = rocking_assessment.assess(
+            block, rocking_assessment.Site(pga=f"{pga} g", pgv=f"{pgv} cm/s"), sensitivity=False
+        )
         assert found.rows[0]["factor"] == pytest.approx(1.0, rel=1e-6)
 
     relation, period = page.locator("#single-relation"), page.locator("#period")

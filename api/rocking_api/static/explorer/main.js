@@ -14,12 +14,15 @@ import { pane } from "./pane.js";
 import { showPreview } from "./pulse_preview.js";
 import { described, matchingPeriod } from "./pulses.js";
 import { blockParams, blockQuery, movedTo, scenarioOf, scenarioOfBlock, scenarioWithoutResponse } from "./scenario.js";
-import { showSite } from "./site.js";
 import { showSpectrum, spectrumUrl } from "./spectrum.js";
 import { change, isBlock, onChange, state, stepsBack } from "./state.js";
 import { whole, windowOf } from "./view.js";
 import { number, pulseName } from "./labels.js";
 import { toSI } from "./units.js";
+
+// A package that extends the service may show the block under all motions of a site.
+const siteModule = document.getElementById("site")?.dataset.module;
+const { showSite } = siteModule ? await import(siteModule) : { showSite() {} };
 
 const EDITED = "A number of the sentence cannot be read.";
 const GROUPS = "The map shows a block without a size, by the groups of the paper. Change a number of the sentence to ask about one in metres.";

@@ -134,7 +134,6 @@ function curves({ unit }, state) {
     const pairs = [[`${name}: median`, `${interval(median)} ${unit}`.trim()]];
     if (one.fit_status === "FITTED") pairs.push([`${name}: dispersion`, interval(spread)]);
     else pairs.push([`${name}: no curve`, one.fit_meaning]);
-    if (one.annual_rate !== null) pairs.push([`${name}: annual rate`, `${number(one.annual_rate)} a year`]);
     return pairs;
   });
 }

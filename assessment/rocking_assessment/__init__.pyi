@@ -1,0 +1,16 @@
+from . import standards as standards
+from ._evidence.calibration import calibrate as calibrate
+from ._evidence.free_rocking import identify_free_rocking as identify_free_rocking
+from ._evidence.old_rocks import survival as survival
+from ._evidence.old_rocks import unexceeded as unexceeded
+from ._evidence.picture import plot_free_rocking as plot_free_rocking
+from ._hazard.curve_files import read_hazard as read_hazard
+from ._hazard.nrml import write_nrml as write_nrml
+from ._hazard.pelicun import write_pelicun as write_pelicun
+from ._hazard.rates import annual_rate as annual_rate
+from ._meshes.mesh import body_from_mesh as body_from_mesh
+from ._objects.assess import assess as assess
+from ._objects.objects import Object as Object
+from ._objects.site import Site as Site
+from ._objects.tables import read_objects as read_objects
+from ._objects.uncertainty import overturning_probability as overturning_probability

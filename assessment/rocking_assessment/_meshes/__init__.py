@@ -1,0 +1,1 @@
+"""Bodies from surface meshes: `mesh` has their properties, `repair` what is mended of a mesh."""

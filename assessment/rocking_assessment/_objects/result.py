@@ -1,0 +1,218 @@
+"""The result of an assessment: a table with one row for each object and direction."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rocking.extension import RESOLUTION, Array, BadRow, EqualByValue, StopFlag, csv_text, integer, numbers_of
+from rocking_assessment._objects.columns import OUTPUTS, VERDICTS
+from rocking_assessment._objects.directions import factors_by_direction
+from rocking_assessment._objects.motions import frictions_of, history_of
+from rocking_assessment._objects.objects import Object
+from rocking_assessment._objects.site import Motion, Site
+from rocking_assessment._objects.xlsx import xlsx_bytes
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Assessment(EqualByValue):
+    """Objects at a site, one row for each direction in which one can rock, the worst first.
+
+    Attributes
+    ----------
+    columns : mapping of str to array (rows,)
+        The columns of `rocking_assessment._objects.columns.OUTPUTS`; a number that is not known is nan.
+    motions : tuple of str
+        The motions of the site.
+    highest_factor : float
+        Highest factor on these motions that was searched [-].
+    objects : tuple of Object
+        The object of each row.
+    factors : float array (rows, motions)
+        Lowest factor on each motion that overturns the object, nan where none up to `highest_factor` does [-].
+    rotations : float array (rows, motions)
+        Largest rotation under each motion at the strength of the site, nan where it overturns the object [rad].
+    site : Site
+        The site.
+    resolution : float
+        Largest relative distance of the factors on records that were tried [-]; 0 if all motions are pulses.
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+    motions: tuple[str, ...]
+    highest_factor: float
+    objects: tuple[Object, ...]
+    factors: Array
+    rotations: Array
+    site: Site
+    resolution: float = 0.0
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows, each by the names of the columns; a number or answer that is not known is None."""
+        columns = [[None if value != value else value for value in column.tolist()] for column in self.columns.values()]
+        return [dict(zip(self.columns, row, strict=True)) for row in zip(*columns, strict=True)]
+
+    @property
+    def details(self) -> dict[str, list[str]]:
+        """What the table of objects has of the object of each row, by its headers and in their order.
+
+        Of objects that were not read from a table their `details`.
+        """
+        rows = [one.cells or one.details for one in self.objects]
+        names, taken = [one.name for one in self.objects], {name for one in OUTPUTS for name in (one.name, one.header)}
+        found = {}
+        for label in dict.fromkeys(label for row in rows for label in row):
+            cells = [row.get(label, "") for row in rows]
+            same = label == "object" and cells == names
+            found[f"{label} (given)" if label in taken and not same else label] = cells
+        return found
+
+    def with_details(self, columns: Mapping[str, Any], added: Sequence[Mapping[str, str]] = ()) -> dict[str, Any]:
+        """Columns of the table behind the `details` of its rows, and of rows that are added at the end."""
+        (name, names), *others = columns.items()
+        given = self.details
+        in_place = name in given or any(one.cells for one in self.objects)
+        details = {label: [*texts, *(row.get(label, "") for row in added)] for label, texts in given.items()}
+        if name in details:
+            details[name] = names
+        return (details | {name: names} if in_place else {name: names} | details) | dict(others)
+
+    def worst_motion(self, row: int) -> Motion:
+        """The motion with the lowest factor that overturns a row, or else the one that rotates it most."""
+        row = integer("row", row, 0, len(self.objects) - 1)
+        factors, rotations = self.factors[row], np.nan_to_num(self.rotations[row])
+        worst = rotations.argmax() if np.isnan(factors).all() else np.nanargmin(factors)
+        return self.site.motions[int(worst)]
+
+    def strength(self, row: int) -> float:
+        """The factor on its worst motion from which a row overturns, 1 if that is above 1 [-]."""
+        return float(np.nanmin([1.0, *self.factors[row]]))
+
+    def history(self, row: int = 0) -> xr.Dataset:
+        """The motion of a row under its worst motion, as of `rocking.RigidBody.history`.
+
+        It has the strength of the site, or that from which the row overturns if that is less.
+        """
+        motion, factor = self.worst_motion(row), self.strength(row)
+        weaker = replace(motion, peak_acceleration=factor * motion.peak_acceleration)
+        return history_of(self.objects[row], str(self.columns["direction"][row]), weaker)
+
+    def friction(self, row: int = 0) -> xr.Dataset:
+        """Friction that a row needs under each motion at the strength of the site, if it does not slide.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `motion`: `friction_needed`, the largest one [-], infinite where it lifts off; `exceeded_at`, the time
+            at which the coefficient of the object is first exceeded [s], nan where it is not, or not given.
+        """
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
+        row = integer("row", row, 0, len(self.objects) - 1)
+        given = self.objects[row], str(self.columns["direction"][row])
+        (needed,), (exceeded,) = frictions_of([given], self.site.motions)
+        about = "largest coefficient of friction needed", "time at which that of the object is exceeded"
+        variables = {
+            "friction_needed": ("motion", needed, {"units": "1", "long_name": about[0]}),
+            "exceeded_at": ("motion", exceeded, {"units": "s", "long_name": about[1]}),
+        }
+        return xr.Dataset(variables, {"motion": [*self.motions]})
+
+    def directions(self, row: int = 0, *, stop: StopFlag | None = None) -> xr.Dataset:
+        """Factors on the motions that overturn the object of a row, over the horizontal direction of the motion.
+
+        The ground accelerates in a direction where a motion is positive: 0 degrees is along the width or the x axis, 90
+        along the depth or the y axis. Directions are every 15 degrees, and across the sides of the base; of an outline,
+        and of an object without a depth, 0 and 180 degrees. Each motion acts from one side, so that the opposite
+        direction is the motion reversed: it has another factor if the centre of mass is not in the middle.
+
+        An object turns about a side of its base, for which the component of the motion across that side suffices. A
+        planar base of its extent in an oblique direction, which turns about a corner, would overestimate it.
+
+        Parameters
+        ----------
+        row : int
+            Of the table; all rows of one object give the same.
+        stop : StopFlag, optional
+            Cancels the work.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `direction` [degrees]: `factor`, nan where none up to `highest_factor` overturns it; `along`, the
+            direction across a side along which the component of the motion does [degrees]; `governing`, the motion.
+        """
+        row = integer("row", row, 0, len(self.objects) - 1)
+        one = self.objects[row]
+        apart = self.resolution or RESOLUTION
+        return factors_by_direction(one.planes_around, one.restitution, self.site.motions, stop, apart)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The table as a data frame."""
+        import pandas as pd  # noqa: PLC0415  (takes longer to load than the package)
+
+        return pd.DataFrame(self.with_details(self.columns))
+
+    def to_xarray(self) -> xr.Dataset:
+        """The table as a labelled data set over `row`, with units and meanings."""
+        import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
+
+        about = {one.name: {"long_name": one.meaning} | ({"units": one.unit} if one.unit else {}) for one in OUTPUTS}
+        columns = {
+            name: column.astype(np.float64) if name == "slides_first" else column
+            for name, column in self.columns.items()
+        }
+        return xr.Dataset({name: ("row", column, about[name]) for name, column in columns.items()})
+
+    def to_csv(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> str:
+        """The table as CSV with units in its header, written to a file if a path is given.
+
+        The columns of the table of objects come first, as they stand. Rows of it that were not read follow at the end,
+        with the verdict "not read" and the reason among the warnings. Text that a spreadsheet would take for a formula
+        has a leading apostrophe.
+        """
+        text = csv_text(self._columns_with(bad_rows))
+        if path is not None:
+            Path(path).write_text(text, encoding="utf-8", newline="")
+        return text
+
+    def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
+        """The same table as an .xlsx workbook; columns of numbers in the table of objects are numbers."""
+        columns = self._columns_with(bad_rows)
+        raw = xlsx_bytes(columns | {label: numbers_of(columns[label]) for label in self.details if label in columns})
+        if path is not None:
+            Path(path).write_bytes(raw)
+        return raw
+
+    def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:
+        added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
+        rows: list[dict[str, Any]] = [*self.rows, *added]
+        columns = {one.header: [row.get(one.name) for row in rows] for one in OUTPUTS}
+        return self.with_details(columns, [one.cells for one in bad_rows])
+
+    def __repr__(self) -> str:
+        """The number of rows with each verdict, and the worst row."""
+        count = Counter(self.columns["verdict"].tolist())
+        counted = ", ".join(f"{count[verdict]} {verdict}" for verdict in reversed(VERDICTS) if count[verdict])
+        rows = sum(count.values())
+        head = f"<rocking_assessment.Assessment of {rows} objects and directions under {len(self.motions)} motions: "
+        worst = next(iter(self.rows), None)
+        if worst is None:
+            return f"{head}none>"
+        margin = f"up to {self.highest_factor:g}" if worst["factor"] is None else f"from {worst['factor']:.3g}"
+        how = "not overturned" if worst["factor"] is None else "overturned"
+        apart = f"; factors at most {100.0 * self.resolution:g} % apart were tried" if self.resolution else ""
+        named = f"{worst['object']}, {worst['direction']}"
+        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{apart}>"

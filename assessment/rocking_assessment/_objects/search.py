@@ -1,0 +1,124 @@
+"""Lowest factors on the motions of a site that overturn bodies, and responses at the strength of the site."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from rocking.extension import (
+    RESOLUTION,
+    Array,
+    Flags,
+    Outcome,
+    Problem,
+    Record,
+    StopFlag,
+    highest_vertical_scale,
+    lowest_thresholds,
+    respond,
+)
+from rocking_assessment._objects.objects import BodyArray
+from rocking_assessment._objects.site import Motion
+
+Progress = Callable[[float], None]  # called with the share of the work that is done [-]
+HIGHEST_FACTOR = 10.0  # highest factor on the motions of a site that is searched [-]
+
+
+def least(values: Array) -> Array:
+    """Smallest of each row, nan where all are."""
+    return np.asarray(
+        np.where(np.isnan(values).all(axis=1), np.nan, np.nanmin(np.nan_to_num(values, nan=np.inf), axis=1))
+    )
+
+
+def factors_of(
+    body: BodyArray,
+    motions: Sequence[Motion],
+    stop: StopFlag | None = None,
+    progress: Progress | None = None,
+    *,
+    resolution: float = RESOLUTION,
+    highest: float = HIGHEST_FACTOR,
+    enough: float = 0.0,
+) -> Array:
+    """Lowest factor on each motion that overturns each body, nan where none up to the highest; (bodies, motions).
+
+    `enough`: one up to it suffices under a record, see `rocking._boundary.scan.lowest_overturning`.
+    """
+    columns = []
+    for k, motion in enumerate(motions):
+        if progress is not None:
+            progress(k / len(motions))
+        found = [
+            factor_from_one_side(one, motion, stop, resolution, highest, enough) for one in problems_of(body, motion)
+        ]
+        columns.append(least(np.stack(found, axis=1)))
+    return np.stack(columns, axis=1)
+
+
+def factor_from_one_side(
+    problem: Problem,
+    motion: Motion,
+    stop: StopFlag | None = None,
+    resolution: float = RESOLUTION,
+    highest: float = HIGHEST_FACTOR,
+    enough: float = 0.0,
+) -> Array:
+    """Lowest factor on the motion of a problem that overturns each body, nan where none does; (bodies,)."""
+    peak = motion.peak_acceleration
+    return lowest_thresholds(problem, highest * peak, stop, resolution=resolution, enough=enough * peak) / peak
+
+
+def lowest_factor(
+    body: BodyArray, motion: Motion, stop: StopFlag | None, resolution: float, highest: float = HIGHEST_FACTOR
+) -> Array:
+    """A factor up to 1 that overturns, or the lowest above; 1 where the search finds none but the motion does; inf."""
+    found = factors_of(body, [motion], stop, resolution=resolution, highest=highest, enough=1.0)[:, 0]
+    known = np.fmin(found, np.where(overturned_by(body, motion, stop), 1.0, np.nan))
+    return np.asarray(np.nan_to_num(known, nan=np.inf))
+
+
+def overturned_by(
+    body: BodyArray, motion: Motion, stop: StopFlag | None = None, acceleration: Array | float | None = None
+) -> Flags:
+    """Whether a motion overturns each body from either side, at the strength of the site or at another one."""
+    given = motion.peak_acceleration if acceleration is None else acceleration
+    given = np.minimum(given, motion.peak_acceleration * strongest_factor(motion))
+    problems = problems_of(body, motion, given)
+    codes = [problem.solve_edges(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
+    return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
+
+
+def responses_of(
+    body: BodyArray, motions: Sequence[Motion], stop: StopFlag | None = None
+) -> tuple[Flags, Array, Array]:
+    """Whether each motion overturns each body, and otherwise its largest rotation [rad] and movement of the top [m]."""
+    overturned, rotation, displacement = [], [], []
+    for motion in motions:
+        problems = problems_of(body, motion)
+        found = [respond(problem, stop=stop) for problem in problems]
+        overturned.append(np.logical_or.reduce([one.overturned for one in found]))
+        rotation.append(np.fmax.reduce([one.rotation for one in found]))
+        displacement.append(np.fmax.reduce([one.displacement for one in found]))
+    return np.stack(overturned, 1), np.stack(rotation, 1), np.stack(displacement, 1)
+
+
+def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> list[Problem]:
+    """The bodies under a motion, and its mirror image where that differs, at the strength of the site or another."""
+    return [problem_of(side, motion, acceleration) for side in body.sides]
+
+
+def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> Problem:
+    """The bodies under a motion from one side, at the strength of the site or another."""
+    peak = motion.peak_acceleration if acceleration is None else acceleration
+    return Problem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
+
+
+def strongest_factor(motion: Motion) -> float:
+    """Factor on a motion up to which a vertical component does not lift everything off the ground [-]."""
+    if not isinstance(motion.motion, Record):
+        return math.inf
+    unit = motion.peak_acceleration / motion.motion.peak_acceleration
+    return 0.999 * highest_vertical_scale(motion.motion) / unit

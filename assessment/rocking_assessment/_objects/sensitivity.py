@@ -1,0 +1,230 @@
+"""How an assessment changes with dimensions and restitution, and the sizes that a site does not overturn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from rocking.extension import Array, Flags, Index, Outcome, Record, StopFlag
+from rocking_assessment._objects.objects import Bodies, BodyArray, Object
+from rocking_assessment._objects.search import (
+    HIGHEST_FACTOR,
+    Progress,
+    factors_of,
+    least,
+    lowest_factor,
+    overturned_by,
+    problems_of,
+    strongest_factor,
+)
+from rocking_assessment._objects.site import Motion, static_acceleration
+
+ETA_CHANGE = 0.05  # change of the coefficient of restitution [-]
+
+LARGEST, COARSE, HALVINGS = 8.0, 32, 3
+"""Largest size that is tried over that which does not uplift [-]; parts of its logarithm, 6.7 % wide, and how often one
+is halved, to 0.8 %, if a factor at one of its ends is within `NEAR` times its width of overturning.
+"""
+
+NEAR = 2.0
+
+PROBES = np.append(np.geomspace(0.5, 0.9, 5), 1.0)
+"""Factors that are tried before a search, beside the highest of interest [-]."""
+
+QUIET = 0.5
+"""Peak |theta|/alpha under a pulse up to which, at these factors, a body is taken not to overturn between them [-]."""
+
+SIZES = np.geomspace(1.0, LARGEST, COARSE * 2**HALVINGS + 1)  # sizes that may be tried [-]
+
+ABOVE = 1.05
+"""Highest factor that is searched where only factors up to 1 count [-]: what lies just above guides the search."""
+
+SIZE_ERROR = 1e-3  # relative width of the bracket of the first change of outcome [-]
+
+CHANGED_RESOLUTION = 4.0
+"""Multiple of the resolution for changed objects and samples, and for sizes before the last is confirmed [-]."""
+
+SHARES = 1.0 + np.array([1e-5, 1e-3, 1e-2, 3e-2])
+"""Multiples of the factor of a body that are tried for its variants before a search [-]."""
+
+MAX_SAMPLES = 100_000  # most samples of an object in one direction [-]
+
+
+def changed_objects(
+    objects: Sequence[Object],
+    bodies: Bodies,
+    factors: Array,
+    motions: Sequence[Motion],
+    resolution: float,
+    stop: StopFlag | None,
+    progress: Progress,
+) -> dict[str, Array]:
+    """Columns of changed objects: factors, and sizes that the motions do not overturn."""
+    wider, higher = _tolerances(objects, bodies)
+    changed = {
+        "factor_less_restitution": bodies.scaled(change=-ETA_CHANGE),
+        "factor_more_restitution": bodies.scaled(change=ETA_CHANGE),
+        "factor_slenderer": bodies.scaled(1.0 - wider, 1.0 + higher),
+        "factor_stockier": bodies.scaled(1.0 + wider, 1.0 - higher),
+    }
+    found = {}
+    coarser = CHANGED_RESOLUTION * resolution
+    for done, (name, body) in enumerate(changed.items()):
+        progress(float(done))
+        found[name] = least(factors_of(body, motions, stop, resolution=coarser))
+    progress(float(len(changed)))
+    return found | _limiting_sizes(bodies, factors, motions, resolution, stop)
+
+
+def sampled_share(
+    objects: Sequence[Object],
+    bodies: Bodies,
+    factors: Array,
+    motions: Sequence[Motion],
+    samples: int,
+    seed: int,
+    resolution: float,
+    stop: StopFlag | None,
+) -> Array:
+    """Share of quasi-random variants of each body that one of the motions or more overturns [-].
+
+    Base and height are uniform within the tolerance, independently, and the restitution within `ETA_CHANGE`; `factors`
+    are those of the bodies (bodies, motions).
+    """
+    from scipy.stats import qmc  # noqa: PLC0415  (takes longer to load than the package)
+
+    b, h, eta = 2.0 * qmc.Halton(3, rng=np.random.default_rng(seed)).random(samples).T - 1.0
+    share = np.empty(bodies.base.size)
+    wider, higher = _tolerances(objects, bodies)
+    coarser = CHANGED_RESOLUTION * resolution
+    for k in range(share.size):
+        same = bodies.take(np.full(samples, k))
+        found = np.zeros(samples, dtype=np.bool_)
+        for m in np.argsort(np.nan_to_num(factors[k], nan=np.inf), kind="stable").tolist():
+            left = np.flatnonzero(~found)
+            if left.size:
+                changed = 1.0 + wider[k] * b[left], 1.0 + higher[k] * h[left], ETA_CHANGE * eta[left]
+                found[left] = _overturns_like(same.take(left), changed, motions[m], float(factors[k, m]), coarser, stop)
+        share[k] = found.mean()
+    return share
+
+
+def _overturns_like(
+    bodies: Bodies,
+    changed: tuple[Array, Array, Array],
+    motion: Motion,
+    factor: float,
+    resolution: float,
+    stop: StopFlag | None,
+) -> Flags:
+    """Whether a motion overturns changed bodies at its strength or below, of a body that it overturns at a factor.
+
+    The strength, and some just above that factor, are tried before the search, which then is for few.
+    """
+    found = np.zeros(bodies.base.size, dtype=np.bool_)
+    for share in (1.0, *(factor * SHARES)):
+        left = np.flatnonzero(~found)
+        if left.size and share <= 1.0:
+            body = bodies.take(left).scaled(*(one[left] for one in changed))
+            found[left] = overturned_by(body, motion, stop, share * motion.peak_acceleration)
+    left = np.flatnonzero(~found)
+    if left.size:
+        body = bodies.take(left).scaled(*(one[left] for one in changed))
+        found[left] = lowest_factor(body, motion, stop, resolution, 1.0) <= 1.0
+    return found
+
+
+def _tolerances(objects: Sequence[Object], bodies: Bodies) -> tuple[Array, Array]:
+    """Of base and height of each body, relative."""
+    tolerance = np.array([one.tolerance for one in objects for _ in one.planes], dtype=np.float64)
+    return tolerance / bodies.base, tolerance / bodies.height
+
+
+def _limiting_sizes(
+    bodies: Bodies, factors: Array, motions: Sequence[Motion], resolution: float, stop: StopFlag | None
+) -> dict[str, Array]:
+    """Smallest base and largest height at which no motion overturns a body at a factor up to 1 [m].
+
+    They are searched from where it does not uplift towards slenderer ones, up to the first of `SIZES` that overturns.
+    """
+    strongest = max(static_acceleration(motion) for motion in motions)
+    still = strongest / np.asarray(bodies.scaled().uplift_acceleration)  # on a base larger by this it does not uplift
+    worst = np.argsort(np.nan_to_num(factors, nan=2.0 * HIGHEST_FACTOR).mean(axis=0), kind="stable")
+    found = {}
+    for name, narrower in (("smallest_width", True), ("largest_height", False)):
+
+        def lowest(
+            rows: Index, size: Array, motion: Motion, highest: float, share: float = 1.0, narrower: bool = narrower
+        ) -> Array:
+            one = np.ones(rows.size)
+            base, height = (still[rows] / size, one) if narrower else (one, size / still[rows])
+            found, searched = _probed(bodies.take(rows).scaled(base, height), motion, highest, stop)
+            if searched.size:
+                body = bodies.take(rows[searched]).scaled(base[searched], height[searched])
+                found[searched] = lowest_factor(body, motion, stop, share * resolution, highest)
+            return found
+
+        size = _outermost(lowest, still.size, [motions[k] for k in worst.tolist()])
+        found[name] = bodies.base * still / size if narrower else bodies.height * size / still
+    return found
+
+
+def _probed(body: BodyArray, motion: Motion, highest: float, stop: StopFlag | None) -> tuple[Array, Index]:
+    """A factor up to 1 at which each body overturns, inf where none was met; and which bodies are to be searched."""
+    factors = np.minimum(np.append(PROBES, highest), strongest_factor(motion))
+    over, peak = np.zeros((body.shape[0], factors.size), dtype=np.bool_), np.zeros((body.shape[0], factors.size))
+    for problem in problems_of(body.column, motion, motion.peak_acceleration * factors):
+        records = problem.solve_edges(stop=stop)[0].reshape(over.shape)
+        over |= records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
+        peak = np.fmax(peak, records["peak_rotation"])
+    met = over[:, : PROBES.size]
+    known = met.any(axis=1)
+    moves = isinstance(motion.motion, Record) | over.any(axis=1) | (peak > QUIET).any(axis=1)
+    found = np.where(known, factors[met.argmax(axis=1)], np.inf)
+    return found, np.flatnonzero(~known & moves)
+
+
+def _outermost(lowest: Callable[..., Array], count: int, motions: Sequence[Motion]) -> Array:
+    """The largest size of each body (count,) up to which none that was tried is overturned at a factor up to 1."""
+    rows = np.arange(count)
+    first, by = np.full(count, SIZES.size), np.zeros(count, dtype=np.intp)  # the first that overturns, and its motion
+    starts = np.arange(SIZES.size)
+    for k, motion in enumerate(motions):
+        factor = np.full((count, SIZES.size), np.nan)  # nan: not tried
+        step = 2**HALVINGS
+        row, place = (each.ravel() for each in np.broadcast_arrays(rows[:, None], starts[None, ::step]))
+        while True:
+            tried = place < first[row]
+            row, place = row[tried], place[tried]
+            near = 1.0 + NEAR * step * math.log(SIZES[1])
+            factor[row, place] = lowest(row, SIZES[place], motion, near, CHANGED_RESOLUTION) if row.size else math.nan
+            hit = factor <= 1.0
+            own = np.where(hit.any(axis=1), hit.argmax(axis=1), SIZES.size)
+            by, first = np.where(own < first, k, by), np.minimum(own, first)
+            if step == 1:
+                break
+            refined = np.fmin(factor[:, :-1:step], factor[:, step::step]) <= near
+            row, place = np.nonzero(refined)
+            place, step = step * place + step // 2, step // 2
+    size: Array = SIZES[first - 1]
+    high = SIZES[np.minimum(first, SIZES.size - 1)]
+    left = np.flatnonzero(first < SIZES.size)
+    while left.size:
+        while (wide := left[high[left] / size[left] - 1.0 > SIZE_ERROR]).size:
+            middle = np.sqrt(size[wide] * high[wide])
+            for k in np.unique(by[wide]).tolist():
+                own = by[wide] == k
+                over = lowest(wide[own], middle[own], motions[k], ABOVE, CHANGED_RESOLUTION) <= 1.0
+                high[wide[own]] = np.where(over, middle[own], high[wide[own]])
+                size[wide[own]] = np.where(over, size[wide[own]], middle[own])
+        confirmed = np.ones(left.size, dtype=np.bool_)
+        for k, motion in enumerate(motions):
+            over = lowest(left, size[left], motion, ABOVE) <= 1.0
+            by[left[over & confirmed]] = k
+            confirmed &= ~over
+        left = left[~confirmed]  # those that another motion overturns there: the next wider ones
+        high[left] = size[left]
+        size[left] = SIZES[np.maximum(np.searchsorted(SIZES, size[left]) - 1, 0)]
+    return size

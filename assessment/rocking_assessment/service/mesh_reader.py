@@ -1,0 +1,50 @@
+"""Mesh files of clients, read by the helper process, which loads trimesh and little else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+
+from rocking_api.execution.helper import Helper, read_from_file
+from rocking_api.http.errors import UnsupportedBodyError
+
+from rocking.extension import UNITS, PolygonProperties, one_of
+from rocking_assessment._objects.objects import STEP, Plane
+
+MAX_MESH = 16 * 1024 * 1024
+"""Largest file [bytes]: 330,000 triangles of a binary STL file, which take 5 s of processor time."""
+
+ENDINGS = (".stl", ".ply", ".obj", ".glb")
+
+CORNERS = 200  # most corners of a footprint that are kept, for its drawing [-]
+
+
+@dataclass(frozen=True)
+class MeshShape:
+    """What an assessment needs of a mesh."""
+
+    planes: dict[float, Plane]
+    footprint: list[tuple[float, float]]
+    remarks: list[str]
+
+
+async def read_mesh(helper: Helper, raw: bytes, name: str, unit: str) -> MeshShape:
+    """The shape of a mesh from the bytes of its file."""
+    one_of("unit", unit, UNITS["m"])
+    ending = PurePath(name).suffix.lower()
+    if ending not in ENDINGS:
+        raise UnsupportedBodyError("mesh", ending or name, f"one of {', '.join(ENDINGS)}")
+    planes, footprint, remarks = await helper.read("mesh", name, read_from_file, _shape_of, raw, name, unit)
+    return MeshShape({angle: Plane.of(found) for angle, found in planes.items()}, footprint, remarks)
+
+
+def _shape_of(path: Path, unit: str) -> tuple[dict[float, PolygonProperties], list[tuple[float, float]], list[str]]:
+    """The properties of a mesh in the planes across the sides of its base, its footprint, and what was repaired."""
+    from rocking_assessment._meshes.mesh import directions_across, mesh_footprint, mesh_properties  # noqa: PLC0415
+
+    footprint = mesh_footprint(path, unit)
+    found = {angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_across(footprint, STEP)}
+    remarks = next(remarks for _, remarks in found.values())
+    corners = footprint[:: len(footprint) // CORNERS + 1].tolist()
+    return {angle: properties for angle, (properties, _) in found.items()}, [(x, y) for x, y in corners], remarks

@@ -1,0 +1,245 @@
+"""The page of objects: a table as text, which can be mended in place, and its assessment, rendered here."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import shlex
+import zipfile
+from datetime import UTC, datetime
+from importlib.util import find_spec
+from itertools import islice
+from pathlib import Path, PurePath
+from urllib.parse import unquote_to_bytes
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import HTMLResponse, PlainTextResponse
+from rocking_api.http.encoding import text_response
+from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.routers.pages import POLICY, html
+from rocking_api.service import Service, ServiceDep
+from rocking_api.settings import Settings
+
+from rocking.extension import (
+    MARK,
+    MAX_CHARACTERS,
+    SHEETS,
+    BadRow,
+    InvalidArgumentError,
+    StopFlag,
+    csv_of_sheet,
+    delimiter_of,
+    plain_numbers,
+    rows_of_csv,
+    text_of,
+)
+from rocking_assessment._objects.assess import assess
+from rocking_assessment._objects.columns import VERDICTS
+from rocking_assessment._objects.report import Project, report_html
+from rocking_assessment._objects.result import Assessment
+from rocking_assessment._objects.summary import lines_of, names_in_short, number_of, warnings_of
+from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_csv
+from rocking_assessment.service.assess import MAX_BODY, check_table
+from rocking_assessment.service.models import MAX_OBJECTS
+from rocking_assessment.service.object_page import SITE, address_of, quantity_of, site_of
+
+MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
+
+MAX_SENSITIVITY = 200
+"""Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
+
+MAX_FIELDS = 100  # most fields of the form [-]: those of the site, and of rows that are corrected
+MAX_CORRECTED = 50  # most rows that are corrected at a time [-]
+PART = 65536  # characters of a form whose escapes are replaced at a time [-]
+
+PATH = "/objects"
+
+WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+
+EXAMPLE = Path(__file__).parent / "static" / "collection.csv"
+
+# the report has its styles inside
+REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+DEFAULTS = SITE | {"table": "", "title": "Objects at a site"}
+
+router = APIRouter(prefix=PATH, include_in_schema=False)
+
+
+@router.get("")
+async def get_objects_page(service: ServiceDep) -> Response:
+    """The page with the table of the guide as an example."""
+    table = EXAMPLE.read_text("utf-8")
+    return _page(DEFAULTS | {"table": table}, service.settings)
+
+
+@router.post("")
+async def post_objects_page(request: Request, service: ServiceDep) -> Response:
+    """The page with the assessment of the table in its form, and fields for what was not read."""
+    raw = await request.body()
+
+    def work(stop: StopFlag) -> Response:
+        given = _fields(raw, stop)
+        table = objects_of_csv(given["table"], MAX_OBJECTS, stop)
+        found = _assessed(table, given, stop) if table.objects or not table.bad_rows else None
+        return _page(given, service.settings, table, found)
+
+    return await service.solve_one(work, request)
+
+
+@router.post("/report")
+async def post_report(request: Request, service: ServiceDep) -> Response:
+    """The report of the assessment, to print."""
+    given, table, found = await _answer(request, service)
+    words = ["rocking", "assess", "TABLE"]
+    for name in ("pga", "pgv"):
+        words += [f"--{name}", quantity_of(given, name).replace(" ", "")]
+    if given["floor_periods"].strip():
+        periods, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
+        words += ["--floor", ",".join(f"{one}s" for one in periods)]
+        words += ["--floor-participation", ",".join(map(str, participation))]
+    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(words))
+    text = await service.solve_one(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
+    return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
+
+
+@router.post("/assessment.csv")
+@router.post("/assessment.xlsx")
+async def post_file(request: Request, service: ServiceDep) -> Response:
+    """The assessment as CSV or as a workbook, as its address ends."""
+    _, table, found = await _answer(request, service)
+    if request.url.path.endswith(".csv"):
+        return text_response(await service.read(lambda _: found.to_csv(bad_rows=table.bad_rows)), "assessment")
+    headers = {"Content-Disposition": 'attachment; filename="assessment.xlsx"'}
+    raw = await service.read(lambda _: found.to_xlsx(bad_rows=table.bad_rows))
+    return Response(raw, headers=headers, media_type=WORKBOOK)
+
+
+async def _answer(request: Request, service: Service) -> tuple[dict[str, str], ObjectTable, Assessment]:
+    """The fields of the form, its table and its assessment."""
+    raw = await request.body()
+
+    def work(stop: StopFlag) -> tuple[dict[str, str], ObjectTable, Assessment]:
+        given = _fields(raw, stop)
+        table = objects_of_csv(given["table"], MAX_OBJECTS, stop)
+        return given, table, _assessed(table, given, stop)
+
+    return await service.solve_one(work, request)
+
+
+@router.post("/text")
+async def post_text(request: Request, service: ServiceDep, name: str = "") -> Response:
+    """The text of a file, of a sheet as CSV."""
+    raw = await request.body()
+    ending = PurePath(name).suffix.lower()
+    if ending not in SHEETS:
+        return PlainTextResponse(await service.read(lambda _: text_of(raw, "table")))
+    if find_spec("python_calamine") is None:
+        raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
+    try:
+        size = sum(member.file_size for member in zipfile.ZipFile(io.BytesIO(raw)).infolist())
+    except zipfile.BadZipFile:
+        raise InvalidArgumentError("table", name, "a sheet, which is a zip archive") from None
+    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the helper
+        raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
+    return PlainTextResponse(await service.helper.read("table", name, _sheet_text, raw))
+
+
+def _sheet_text(raw: bytes) -> str:
+    """The first sheet of a file as CSV."""
+    text = csv_of_sheet(raw, "table")
+    if len(text) > MAX_CHARACTERS:
+        raise InvalidArgumentError("table", len(text), f"a table of at most {MAX_CHARACTERS} characters")
+    return text
+
+
+def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
+    """The fields of the form; fields `line-N` and `cell-N-K` take the place of rows of the table and of their cells."""
+    count = body.count(b"&") + 1
+    if count > MAX_FIELDS:
+        raise TooLargeError("form", f"{count} fields", f"at most {MAX_FIELDS}")
+    parts = (part.partition(b"=") for part in body.split(b"&"))
+    fields = DEFAULTS | {_unescaped(name, stop): _unescaped(value, stop) for name, _, value in parts}
+    if len(fields["table"]) > MAX_BODY:
+        raise TooLargeError("table", f"{len(fields['table'])} characters", f"at most {MAX_BODY}")
+    corrected: dict[int, dict[int | None, str]] = {}  # by row and place of the cell, None for the line
+    for name, value in fields.items():
+        if found := re.fullmatch("(?:line|cell)-([0-9]{1,9})(?:-([0-9]{1,4}))?", name):
+            corrected.setdefault(int(found[1]), {})[int(found[2]) if found[2] else None] = value
+    if corrected:
+        rows = list(islice(rows_of_csv(fields["table"], SCHEMA, stop), max(corrected)))
+        rest = fields["table"].removeprefix(MARK)[sum(map(len, rows)) :]
+        delimiter = delimiter_of(fields["table"], SCHEMA)
+        for number in (one for one in corrected if 0 < one <= len(rows)):
+            rows[number - 1] = _with_cells(rows[number - 1], corrected[number], delimiter)
+        fields["table"] = "".join([*rows, rest])
+    return fields
+
+
+def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
+    """The text of a row with other cells, by their place; the whole line at the place None."""
+    line = row.rstrip("\r\n")
+    end, line = row[len(line) :], given.get(None, line)
+    cells = {place: cell for place, cell in given.items() if place is not None}
+    if cells:
+        found = next(csv.reader(io.StringIO(line, newline=""), delimiter=delimiter))
+        found += [""] * (max(cells) + 1 - len(found))
+        for place, cell in cells.items():
+            found[place] = cell
+        text = io.StringIO()
+        csv.writer(text, delimiter=delimiter).writerow(found)
+        line = text.getvalue().removesuffix("\r\n")
+    return line + end
+
+
+def _unescaped(raw: bytes, stop: StopFlag) -> str:
+    """A text of a form; by parts, because `unquote_to_bytes` keeps 80 bytes of memory for each byte of escapes."""
+    found, start = bytearray(), 0
+    while start < len(raw):
+        stop.check()
+        end = start + PART
+        cut = raw.rfind(b"%", end - 2, end)  # an escape that the end would divide
+        end = end if cut < 0 else cut
+        found += unquote_to_bytes(raw[start:end].replace(b"+", b" "))
+        start = end
+    return found.decode("utf-8", "replace")
+
+
+def _assessed(table: ObjectTable, given: dict[str, str], stop: StopFlag) -> Assessment:
+    check_table(table, "table")
+    return assess(table.objects, site_of(given), sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
+
+
+def _page(
+    given: dict[str, str], settings: Settings, table: ObjectTable | None = None, found: Assessment | None = None
+) -> HTMLResponse:
+    bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
+    shown = {one.row for one in bad_rows}
+    rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
+    text = html(
+        "objects.html",
+        "Which objects overturn?",
+        PATH,
+        settings,
+        given=given,
+        bad_rows=[(one, _wrong_places(one, table)) for one in bad_rows if table],
+        texts={number: row.rstrip("\r\n") for number, row in rows if number in shown},
+        table=table,
+        found=found,
+        lines=lines_of(found) if found else [],
+        warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
+        own_of=lambda one: ", ".join(filter(None, (one.cells[label] for label in table.skipped))) if table else "",
+        verdicts=VERDICTS,
+        number_of=number_of,
+        address=address_of,
+    )
+    return HTMLResponse(text, headers={"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"})
+
+
+def _wrong_places(bad: BadRow, table: ObjectTable) -> set[int]:
+    """The places of the cells that a row was not read for; none if it is the whole row."""
+    names = [(label.strip(), table.columns.get(label)) for label in bad.cells]
+    return {place for place, pair in enumerate(names) if bad.column and bad.column in pair}

@@ -1,0 +1,290 @@
+"""`rocking assess`: formats, files, bad rows, and a report that asks nobody for anything."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import rocking_assessment
+from typer.testing import CliRunner
+
+import rocking
+from rocking._cli.app import app
+from tests.api.explorer.chromium import HOW, find
+from tests.cli.test_cli import read_csv, refused, run
+from tests.sampling import ALL
+
+TABLE = """name,width [cm],depth [cm],height [cm],friction
+bust,40,30,160,0.5
+<script>alert(1)</script>,30,30,90,
+=1+1,15,,60,0.3
+"""
+SITE = ["--pga", "0.3g", "--pgv", "0.3 m/s", "--shapes", "sine,ricker", "--no-sensitivity"]
+
+
+@pytest.fixture
+def table(tmp_path):
+    path = tmp_path / "objects.csv"
+    path.write_text(TABLE)
+    return path
+
+
+def test_formats_and_file_hold_the_rows_of_python(table):
+    site = rocking_assessment.Site(pga="0.3 g", pgv="0.3 m/s", shapes=["sine", "ricker"])
+    expected = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site, sensitivity=False)
+    found = json.loads(run("assess", str(table), *SITE, "--format=json"))
+    for name in expected.columns:
+        assert found[name] == [row[name] for row in expected.rows], name
+    assert found["motions"] == ["sine", "ricker"]
+    rows = read_csv(run("assess", str(table), *SITE, "--format=csv"))
+    assert [float(row["factor"]) for row in rows] == expected.columns["factor"].tolist()
+    file = table.with_name("out.csv")
+    run("assess", str(table), *SITE, "--output", str(file))
+    assert file.read_text() == expected.to_csv()
+    assert "'=1+1" in [row["object"] for row in read_csv(file.read_text())]
+
+
+INVENTORY = """Inv. no.;Bezeichnung;material;location;room;remarks;width [mm];depth [mm];height (cm);made
+0012;Kore;marble;hall;3;"check; soon";340;260;121,5;-520
+0007;Stele;marble;stair;;loan;580;160;137,0;-400
+0030;Altar;limestone;garden;1;;900;800;60,0;
+0031;Herm;marble;hall;2;;270;220;wide;
+"""
+ASKED = [
+    *("Inv. no.", "object", "verdict", "overturns from factor", "PGA [g]", "governing motion", "moves by [cm]"),
+    *("base needed [cm]", "wider by [cm]", "what to do first"),
+]
+PULSES = ["--pga", "0.3g", "--pgv", "0.3 m/s", "--shapes", "sine,cosine"]
+
+
+def cells(text, lines):
+    """The cells of a printed table."""
+    return [re.split(r"\s{2,}", line.strip()) for line in text.splitlines()[:lines]]
+
+
+def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
+    table.write_text(INVENTORY.replace("wide", "152,0"))
+    header, *lines = cells(run("assess", str(table), *PULSES), 5)
+    assert header == ASKED
+    site = rocking_assessment.Site("0.3 g", "0.3 m/s", shapes=["sine", "cosine"])
+    found = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site)
+    worst = {row["object"]: row for row in reversed(found.rows)}
+    assert [line[1] for line in lines] == [*dict.fromkeys(row["object"] for row in found.rows)]
+    for line in lines[:-1]:
+        row, depth = worst[line[1]], {"Kore": 26.0, "Stele": 16.0, "Herm": 22.0}[line[1]]
+        expected = [row["factor"], 0.3 * row["factor"], 100 * row["displacement"], 100 * row["smallest_width"]]
+        assert [float(line[k]) for k in (3, 4, 6, 7)] == pytest.approx(expected, rel=5e-3)
+        assert all(len(line[k].replace(".", "").lstrip("0")) <= 3 for k in (3, 4, 6, 7))
+        assert float(line[8]) == pytest.approx(max(0.0, expected[3] - depth), rel=5e-3)
+        assert line[2:6:3] == [row["verdict"], row["governing"]]
+        assert ("fix it" in line[9]) == (row["share"] > 0.0)
+    assert lines[-1] == ["0030", "Altar", "stays", "> 10", "-", "-", "0", "14.1", "0", "nothing"]
+    both = cells(run("assess", str(table), *PULSES, "--directions"), 9)
+    assert both[0][2] == "direction"
+    assert [(row[1], row[2]) for row in both[1:3]] == [("Stele", "depth"), ("Stele", "width")]
+    full = cells(run("assess", str(table), *PULSES, "--all"), 2)
+    assert full[0][:4] == ["Inv. no.", "Bezeichnung", "material", "location"]
+
+
+def test_warnings_are_grouped_and_say_the_side(table):
+    header, rest = INVENTORY.split("\n", 1)
+    rest = rest.replace("\n", ";\n") + "0050;Vase;clay;;;;;;46,5;;12\n0051;Urn;clay;;;;;;46,5;;12,5\n"
+    table.write_text(f"{header};diameter [cm]\n{rest}")
+    text = CliRunner().invoke(app, ["assess", str(table), *PULSES, "--no-sensitivity"]).stdout
+    assert [line.removeprefix("warning: ") for line in text.splitlines() if line.startswith("warning")] == [
+        "5 objects: no coefficient of friction is given: sliding is not assessed: Stele; Vase; Urn; Kore; Altar",
+        "2 objects: within 20 %, on the safe side: Vase; Urn",
+        "2 objects: round base: the plane model leaves out wobbling and rolling: Vase; Urn",
+    ]
+    scaled = ["--pga", "0.33g", "--pgv", "0.33 m/s"]
+    text = CliRunner().invoke(app, ["assess", str(table), *PULSES, "--no-sensitivity", *scaled]).stdout
+    assert "warning: 2 objects: within 20 %, on the unsafe side: Vase; Urn" in text
+
+
+def test_the_table_goes_through_to_every_file_as_it_stands(table):
+    table.write_text(INVENTORY)
+    file, book = table.with_name("out.csv"), table.with_name("out.xlsx")
+    for output in (file, book):
+        assert CliRunner().invoke(app, ["assess", str(table), *PULSES, "--output", str(output)]).exit_code == 2
+    given = list(csv.DictReader(INVENTORY.splitlines(), delimiter=";"))
+    rows = list(csv.DictReader(file.read_text().splitlines()))
+    assert list(rows[0])[:11] == [*given[0], "object"]
+    by_name = {row["Bezeichnung"]: row for row in given}
+    for row in rows:
+        assert {name: row[name] for name in given[0]} == by_name[row["Bezeichnung"]]
+        assert row["object"] == (row["Bezeichnung"] if row["verdict"] != "not read" else "row 5")
+    assert rows[-1]["Inv. no."] == "0031"
+    sheet = pd.read_excel(book, engine="calamine", dtype=object)
+    assert list(sheet) == list(rows[0])
+    assert sheet["width [mm]"].tolist() == [float(row["width [mm]"]) for row in rows]
+    assert sheet["height (cm)"].tolist() == [row["height (cm)"] for row in rows]  # one is no number
+    assert sheet["Inv. no."].tolist()[-1] == "0031"
+    assert [f"{one}" for one in sheet["factor"]] == [row["factor"] or "nan" for row in rows]
+
+
+def test_bad_rows_are_named_and_the_others_assessed(table):
+    table.write_text(TABLE + "bad,tall,30,90,\n\x1b[2J,0,30,90,\n")
+    result = CliRunner().invoke(app, ["assess", str(table), *SITE])
+    assert result.exit_code == 2
+    assert "row 5, width: `width` = 'tall'" in result.stderr
+    assert "row 6, width" in result.stderr
+    assert "bust" in result.stdout
+    assert "\x1b" not in result.output
+
+
+def test_records_and_periods(table, tmp_path):
+    record = tmp_path / "record.csv"
+    record.write_text("".join(f"{0.05 * k:.2f},{(-1) ** (k // 5) * 2.0}\n" for k in range(40)))
+    periods = "--pga", "0.3g", "--period-min", "0.2s", "--period-max", "1s", "--shapes", "sine", "--no-sensitivity"
+    for options, count in ((("--record", str(record), "--unit", "m/s2"), 1), (periods, 12)):
+        assert len(json.loads(run("assess", str(table), *options, "--format=json"))["motions"]) == count
+
+
+def test_pairs_with_vertical_on_a_floor_with_a_hazard_curve(table, tmp_path):
+    times = 0.05 * np.arange(60)
+    x, y, z = np.round([np.sin(4 * times), np.cos(3 * times), 0.2 * np.sin(9 * times)], 6)
+    for name, values in (("x", x), ("y", y), ("z", z)):
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([times, values]), fmt="%.6f", delimiter=",")
+    files = {name: str(tmp_path / f"{name}.csv") for name in "xyz"}
+    curve = tmp_path / "PGA" / "curves.csv"
+    curve.parent.mkdir()
+    curve.write_text("lon,lat,0.05,0.2,1.0\n0,0,1e-2,1e-3,1e-5\n")
+    options = ["--pair", f"{files['x']},{files['y']}", "--vertical", files["z"], "--unit", "m/s2", "--pga", "2 m/s2"]
+    options += ["--hazard", str(curve), "--floor", "0.5s", "--floor-participation", "1.3"]
+    found = json.loads(run("assess", str(table), *options, "--no-sensitivity", "--format=json"))
+    pair = rocking.Record(x, 0.05, "m/s2", vertical=z), rocking.Record(y, 0.05, "m/s2")
+    hazard = rocking_assessment.read_hazard(curve)
+    site = rocking_assessment.Site(2.0, records=[pair], hazard=hazard, floor_periods=0.5, floor_participation=1.3)
+    expected = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site, sensitivity=False)
+    for name in ("factor", "share", "annual_rate"):
+        assert found[name] == [row[name] for row in expected.rows], name
+    assert len(found["motions"]) == 12
+    assert "--vertical" in refused("assess", str(table), *options, "--vertical", files["z"])
+    assert "--pair" in refused("assess", str(table), "--pair", files["x"], "--unit", "m/s2")
+
+
+def test_meshes_are_assessed_from_all_sides(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    path = tmp_path / "plinth.stl"
+    trimesh.creation.box((400, 300, 1600)).export(path)
+    options = ["--mesh", str(path), "--mesh-unit", "mm", "--friction", "0.5", *SITE]
+    found = json.loads(run("assess", *options, "--format=json"))
+    assert sorted(found["direction"]) == sorted(f"{angle} deg" for angle in range(0, 180, 15))
+    assert set(found["object"]) == {"plinth"}
+    site = rocking_assessment.Site(pga="0.3 g", pgv="0.3 m/s", shapes=["sine", "ricker"])
+    block = rocking_assessment.assess(
+        rocking_assessment.Object("block", width=0.4, depth=0.3, height=1.6), site, sensitivity=False
+    )
+    factors = dict(zip(block.columns["direction"], block.columns["factor"], strict=True))
+    by_angle = dict(zip(found["direction"], found["factor"], strict=True))
+    assert by_angle["0 deg"] == pytest.approx(factors["width"], rel=1e-6)
+    assert by_angle["90 deg"] == pytest.approx(factors["depth"], rel=1e-6)
+    assert "OBJECTS" in refused("assess", *SITE)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--pga", "0.3g"], "--pgv"),
+        (["--pga", "0.3", "--pgv", "0.3 m/s"], "missing unit"),
+        (["--pga", "0.3g", "--period-min", "0.2s"], "--period-max"),
+        (["--pga", "0.3g", "--pgv", "0.3 m/s", "--shapes", "square"], "--shapes"),
+        ([*SITE, "--output", "/none/table.csv"], "No such file"),
+        (
+            [*SITE, "--output", "table.doc"],
+            "--output: 'table.doc' is not allowed; allowed: a name that ends in .csv or .xlsx",
+        ),
+        (["--record", "none.at2"], "none.at2"),
+        ([*SITE, "--friction", "0.5"], "--friction"),
+        ([*SITE, "--report", "report.pdf"], "'report.pdf' is not allowed; allowed: a name that ends in .html"),
+        ([*SITE, "--floor", "x"], "--floor-periods"),
+    ],
+)
+def test_errors_name_the_option(table, options, text):
+    assert text in refused("assess", str(table), *options)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"a,b\n1,2\n", "OBJECTS"),
+        (b"name,width [m],height [m]\nbad,tall,1\n", "row 2, width"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "OBJECTS: 'binary content' is not allowed; allowed: text"),
+    ],
+)
+def test_an_error_of_the_table_names_the_argument(table, content, said):
+    table.write_bytes(content)
+    assert said in refused("assess", str(table), *SITE)
+
+
+class Page(HTMLParser):
+    """The tags, their attributes and the text of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.attributes, self.text = [], [], ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def test_report_is_self_contained_and_escapes_names(table, monkeypatch):
+    file = table.with_name("report.html")
+    argv = ["assess", str(table), *SITE, "--report", str(file), "--title", "Room <7>", "--author", "A & B"]
+    argv += ["--site", "Athens & Rome"]
+    monkeypatch.setattr("sys.argv", ["rocking", *argv])
+    table.write_text(TABLE + '"<img src=http://example.org/x>",x,1,1,\n')
+    assert CliRunner().invoke(app, [*argv, "--date", "2026-11-24"]).exit_code == 2
+    page = Page(file.read_text())
+    assert {"script", "img", "link", "iframe", "object"}.isdisjoint(page.tags)
+    assert {"src", "onload", "onclick"}.isdisjoint(name for name, _ in page.attributes)
+    assert all(value.startswith("#") for name, value in page.attributes if name == "href")
+    assert not re.search(r"https?://(?!example)|@import|url\(", file.read_text())
+    for text in ("Room <7>", "Athens & Rome", "A & B", "2026-11-24", "<script>alert(1)</script>", "row 5", "--title"):
+        assert text in page.text, text
+    # three drawings on the first page; two objects that rock, one in both directions, with rotation and thresholds
+    assert page.tags.count("svg") == 3 + (2 + 2) + (1 + 2)
+    assert page.tags.count("math") == 4
+    assert page.text.index("What it means") < page.text.index("All objects") < page.text.index("Model and assumptions")
+    assert f"rocking {rocking.__version__}" in page.text
+    assert CliRunner().invoke(app, [*argv, "--detail", "all"]).exit_code == 2
+    assert file.read_text().count('<section class="block page"') == 5  # each direction of each object
+
+
+COLLECTION = Path(__file__).parents[3] / "docs" / "assessment" / "collection.csv"
+
+
+def test_the_report_of_thirty_objects_is_short_and_its_page_numbers_are_true(tmp_path):
+    file, paper = tmp_path / "report.html", tmp_path / "report.pdf"
+    shown = run("assess", str(COLLECTION), "--pga", "0.3g", "--pgv", "0.3m/s", "--report", str(file))
+    guide = COLLECTION.with_name("assess.md").read_text()
+    assert shown.startswith(re.search(r"```text\n(inventory number  .*?)```", guide, re.DOTALL)[1])
+    text = file.read_text()
+    assert len(text) < 300_000
+    browser = find()
+    if browser is None:
+        pytest.skip(HOW)
+    flags = [str(browser.path), *browser.flags, "--headless", "--no-pdf-header-footer"]
+    surroundings = os.environ | browser.environment
+    subprocess.run(
+        [*flags, f"--print-to-pdf={paper}", file.as_uri()], env=surroundings, check=True, capture_output=True
+    )
+    pages = len(re.findall(rb"/Type /Page\b(?!s)", paper.read_bytes()))
+    assert pages == int(re.findall(r"<i></i>([0-9]+)", text)[-1])
+    if ALL:  # nothing is cut off
+        cut = "[...document.querySelectorAll('.half, td, dd')].filter(e => e.scrollHeight > e.clientHeight + 1)"
+        script = f"<script>document.title = {cut}.map(e => e.textContent)</script></body>"
+        file.write_text(text.replace("</body>", script))
+        found = subprocess.run([*flags, "--dump-dom", file.as_uri()], env=surroundings, check=True, capture_output=True)
+        assert b"<title></title>" in found.stdout

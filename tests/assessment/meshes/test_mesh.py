@@ -1,0 +1,204 @@
+"""Meshes: defects of scans are repaired with a warning or refused by name; their parts are counted first."""
+
+from __future__ import annotations
+
+import json
+import struct
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rocking_assessment
+from rocking_assessment._meshes.parts import MAX_PARTS, with_few_parts
+
+from rocking._base.errors import InvalidArgumentError
+from rocking._dimensional.table_reader import rows_of_sheet
+from tests.sheets import xlsx_bytes
+
+trimesh = pytest.importorskip("trimesh")
+
+Mesh = trimesh.Trimesh
+
+
+def box() -> Mesh:
+    return trimesh.creation.box((0.4, 0.3, 1.2)).subdivide().subdivide()
+
+
+def with_faces(mesh: Mesh, faces: object, vertices: object = ()) -> Mesh:
+    points = np.vstack([mesh.vertices, np.reshape(vertices, (-1, 3))])
+    return trimesh.Trimesh(points, faces, process=False)
+
+
+def flipped(mesh: Mesh, which: slice) -> Mesh:
+    faces = mesh.faces.copy()
+    faces[which] = faces[which, ::-1]
+    return with_faces(mesh, faces)
+
+
+def without(mesh: Mesh, low: float, high: float = np.inf) -> Mesh:
+    height = mesh.triangles_center[:, 2]
+    return with_faces(mesh, mesh.faces[(height > low) & (height < high)])
+
+
+def last(*rows: tuple[int, int, int]) -> np.ndarray:
+    return len(box().vertices) + np.array(rows)
+
+
+FAR = [(3.0, 3.0, 3.0), (4.0, 3.0, 3.0), (4.0, 4.0, -3.0)]
+REPAIRED = {
+    "hole": (with_faces(box(), box().faces[4:]), "is not closed: its flat holes, 1 with 6 open edges"),
+    "no bottom": (without(box(), -0.59), "is not closed"),
+    "tube": (without(box(), -0.59, 0.59), "is not closed: its flat holes, 2 with 32 open edges"),
+    "one face flipped": (flipped(box(), slice(1)), "inconsistent normals: 1 of 192 faces"),
+    "many faces flipped": (flipped(box(), slice(None, None, 3)), "inconsistent normals: 64 of 192 faces"),
+    "inside out": (flipped(box(), slice(None)), "negative volume"),
+    "open and flipped": (without(flipped(box(), slice(None, None, 3)), -0.59), "inconsistent normals"),
+    "faces twice": (with_faces(box(), [*box().faces, *box().faces[:2]]), "2 of 194 were left out"),
+    "stray face": (with_faces(box(), [*box().faces, *last((0, 1, 2))], FAR), "1 of 193 were left out"),
+    "face on an edge": (
+        with_faces(box(), [*box().faces, [*box().faces[5, :2], len(box().vertices)]], FAR[:1]),
+        "1 of 193",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REPAIRED)
+def test_what_is_certain_is_repaired_with_a_warning(name: str, tmp_path: Path) -> None:
+    mesh, remark = REPAIRED[name]
+    mesh.export(tmp_path / "scan.ply")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = rocking_assessment.body_from_mesh(tmp_path / "scan.ply")
+    assert any(remark in str(one.message) and "scan.ply" in str(one.message) for one in caught)
+    for attribute in ("left", "right", "height", "gyration", "top_height"):
+        assert float(found.parameters[attribute]) == pytest.approx(BOX[attribute], rel=1e-6)
+
+
+BOX = {"left": 0.2, "right": 0.2, "height": 0.6, "gyration": float(np.sqrt(1.6 / 12.0)), "top_height": 1.2}
+
+
+def test_bodies_side_by_side_and_cavities_have_their_volumes(tmp_path: Path) -> None:
+    other = box()
+    other.apply_translation((1.0, 0.0, 0.0))
+    other.invert()
+    trimesh.util.concatenate([box(), other]).export(tmp_path / "pair.ply")
+    with (
+        pytest.warns(UserWarning, match="inconsistent normals: 192 of 384 faces were turned"),
+        pytest.warns(UserWarning, match="2 separate solids, which are treated as one body"),
+    ):
+        pair = rocking_assessment.body_from_mesh(tmp_path / "pair.ply")
+    assert float(pair.width) == pytest.approx(1.4)
+    assert float(pair.gyration) == pytest.approx(np.sqrt(1.6 / 12.0 + 0.25), rel=1e-6)
+    cavity = trimesh.creation.box((0.2, 0.1, 0.6))
+    cavity.invert()
+    trimesh.util.concatenate([box(), cavity]).export(tmp_path / "hollow.ply")
+    stacked(2).export(tmp_path / "halves.ply")  # walls between them count for nothing
+    halves, hollow = (rocking_assessment.body_from_mesh(tmp_path / f"{name}.ply") for name in ("halves", "hollow"))
+    assert float(halves.gyration) == pytest.approx(BOX["gyration"], rel=1e-6)
+    mass, hole = 0.4 * 0.3 * 1.2, 0.2 * 0.1 * 0.6
+    inertia = (mass * 1.6 - hole * 0.4) / (mass - hole) / 12.0
+    assert float(hollow.gyration) == pytest.approx(np.sqrt(inertia), rel=1e-6)
+
+
+def test_map_coordinates_keep_the_digits(tmp_path: Path) -> None:
+    mesh = box()
+    corners = np.add(mesh.vertices, (500_000.0, 4_600_000.0, 120.0))
+    lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in corners]
+    lines += [f"f {a} {b} {c}" for a, b, c in mesh.faces + 1]
+    (tmp_path / "rock.obj").write_text("\n".join(lines))
+    found = rocking_assessment.body_from_mesh(tmp_path / "rock.obj")
+    for attribute, value in BOX.items():
+        assert float(found.parameters[attribute]) == pytest.approx(value, rel=1e-6)
+
+
+def strip(turns: int) -> Mesh:
+    """A closed strip with half turns."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
+    half = 0.5 * turns * angle
+    across = 0.2 * np.stack([np.cos(half) * np.cos(angle), np.cos(half) * np.sin(angle), np.sin(half)], axis=1)
+    centre = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+    points = np.concatenate([centre - across, centre + across])
+    k = np.arange(39)
+    faces = [*np.column_stack([k, k + 1, k + 40]), *np.column_stack([k + 1, k + 41, k + 40])]
+    faces += [(39, 40, 79), (40, 0, 79)] if turns % 2 else [(39, 0, 79), (0, 40, 79)]
+    return trimesh.Trimesh(points, faces, process=False)
+
+
+def stacked(walls: int) -> Mesh:
+    """A box in two halves with one or two walls between them."""
+    halves = [trimesh.creation.box((0.4, 0.3, 0.6)) for _ in range(2)]
+    halves[1].apply_translation((0.0, 0.0, 0.6))
+    mesh = trimesh.util.concatenate(halves)
+    mesh.merge_vertices()
+    between = np.flatnonzero(np.ptp(mesh.triangles[..., 2], axis=1) + np.abs(mesh.triangles_center[:, 2] - 0.3) < 1e-9)
+    return with_faces(mesh, np.delete(mesh.faces, between[2 * walls :], axis=0))
+
+
+def ragged() -> Mesh:
+    ball = trimesh.creation.icosphere(3, 0.5)
+    centre = ball.triangles_center
+    return with_faces(ball, ball.faces[centre[:, 0] + 0.5 * np.sin(9.0 * centre[:, 2]) > -0.2])
+
+
+@pytest.mark.parametrize(
+    ("mesh", "defect"),
+    [
+        (ragged(), "open edges around 2 holes that are not flat"),
+        (strip(1), "inconsistent normals"),
+        (trimesh.Trimesh(np.eye(3), [(0, 1, 2)], process=False), "encloses no volume"),
+        (stacked(1), "three faces"),
+    ],
+)
+def test_other_defects_are_named(mesh: Mesh, defect: str, tmp_path: Path) -> None:
+    mesh.export(tmp_path / "scan.ply")
+    for read in (rocking_assessment.body_from_mesh, rocking_assessment.Object.from_mesh):
+        with pytest.raises(InvalidArgumentError, match=defect):
+            read(tmp_path / "scan.ply")
+
+
+@pytest.mark.parametrize("size", [0.8e-6, 0.8e-4, 1.2e3, 0.8e6])
+def test_meshes_and_outlines_have_the_size_of_objects(size: float, tmp_path: Path) -> None:
+    trimesh.creation.box((size, size, size)).export(tmp_path / "cube.ply")
+    with pytest.raises(InvalidArgumentError, match=r"`base` = .* allowed: \[0.0001, 1000\] \[m\]"):
+        rocking_assessment.Object.from_mesh(tmp_path / "cube.ply")
+    with pytest.raises(InvalidArgumentError, match="`base`"):
+        rocking_assessment.Object.from_outline([(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)])
+    assert rocking_assessment.Object.from_outline([(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)]).planes
+
+
+def glb(**tree):
+    text = json.dumps(tree).encode()
+    return struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text), len(text), 0x4E4F534A) + text
+
+
+def ply(elements):
+    return b"ply\nformat ascii 1.0\n" + b"element e 0\n" * elements + b"end_header\n"
+
+
+@pytest.mark.parametrize(
+    ("ending", "made"),
+    [
+        ("ply", ply),
+        ("stl", lambda count: b" solid a\nendsolid a\n" * count),
+        ("glb", lambda count: glb(nodes=[{}] * count)),
+        ("glb", lambda count: glb(nodes=[{"children": [0] * count}])),
+        ("glb", lambda count: glb(meshes=[{"primitives": [{}] * count}])),
+    ],
+)
+def test_files_of_many_parts_are_refused(ending, made):
+    few = made(MAX_PARTS)
+    assert with_few_parts(few, ending) == few
+    with pytest.raises(ValueError, match=f"{MAX_PARTS + 1} .*at most {MAX_PARTS}"):
+        with_few_parts(made(MAX_PARTS + 1), ending)
+
+
+def test_materials_are_left_out_of_an_obj_file():
+    given = b"mtllib a.mtl\nv 0 0 0\nusemtl m1\nf 1 2 3\r\n  usemtl m2\r\nf 1 2 4\ng usemtl\n"
+    assert with_few_parts(given, "obj") == b"\nv 0 0 0\n\nf 1 2 3\r\n\r\nf 1 2 4\ng usemtl\n"
+
+
+@pytest.mark.parametrize("last", ["ZZZZ9", "C999999"])
+def test_a_sheet_with_a_cell_far_out_is_refused(last):
+    with pytest.raises(InvalidArgumentError, match="1000000 cells"):
+        rows_of_sheet(xlsx_bytes([["object"]], last=last), "table")

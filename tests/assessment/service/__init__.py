@@ -1,0 +1,1 @@
+"""Tests of `rocking_assessment`."""

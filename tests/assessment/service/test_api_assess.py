@@ -1,0 +1,114 @@
+"""POST /v1/assess: the rows of a direct call, bad rows beside them, and bodies that are no tables."""
+
+import csv
+import io
+import random
+
+import numpy as np
+import rocking_assessment
+from rocking_assessment._objects.columns import OUTPUTS
+from rocking_assessment._objects.tables import objects_of_text
+from rocking_assessment.service.assess import check_table
+from rocking_assessment.service.models import AssessedRow
+
+import rocking
+from rocking._base.errors import InvalidArgumentError
+from tests.api.conftest import CSV, post
+from tests.assessment.objects.dialects import Writer, errors_of
+from tests.sampling import SEED
+from tests.sheets import xlsx_bytes
+
+URL = "/v1/assess?pga=3&pgv=0.3&shapes=sine,ricker&sensitivity=false"
+TABLE = (
+    "name,width [cm],depth [cm],height [m],friction,colour\nbust,40,30,1.6,0.5,red\nbad,tall,30,1.6,,\nvase,16,,0.9,,\n"
+)
+ROWS = [
+    {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5},
+    {"name": "vase", "width": 0.16, "height": 0.9},
+]
+
+
+def test_rows_are_those_of_a_direct_call(client):
+    site = rocking_assessment.Site(pga=3.0, pgv=0.3, shapes=["sine", "ricker"])
+    for sensitivity, rows in (("false", ROWS), ("true", ROWS[1:])):
+        answer = client.post(f"{URL.replace('false', sensitivity)}&standards=static,asce43", json=rows).json()
+        objects = [rocking_assessment.Object(**row) for row in rows]
+        expected = rocking_assessment.assess(
+            objects, site, sensitivity=sensitivity == "true", standards=["static", "asce43"]
+        )
+        assert answer["rows"] == expected.rows
+        assert answer["motions"] == ["sine", "ricker"]
+        assert answer["bad_rows"] == []
+    assert list(AssessedRow.model_fields) == [one.name for one in OUTPUTS]
+
+
+def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
+    times = 0.05 * np.arange(60)
+    x, y, z = np.sin(4 * times), np.cos(3 * times), 0.2 * np.sin(9 * times)
+    about = {"time_step": 0.05, "unit": "m/s2"}
+    pair = {"acceleration": x.tolist(), "second": y.tolist(), "vertical": z.tolist(), "name": "A", **about}
+    curve = {"intensity": [0.5, 3.0, 9.0], "annual_rate": [1e-2, 1e-3, 1e-5]}
+    body = {"objects": ROWS[1:], "records": [pair, {"acceleration": y.tolist(), **about}], "hazard": curve}
+    query = "pga=2&sensitivity=false&samples=8&seed=3&shapes=sine&floor_periods=0.5,0.1&floor_participation=1.2,-0.2"
+    answer = client.post(f"/v1/assess?{query}", json=body)
+    assert answer.status_code == 200, answer.text
+    first = rocking.Record(x, 0.05, "m/s2", "A", vertical=z)
+    second, other = (rocking.Record(y, 0.05, "m/s2", name) for name in ("A", "record 2"))
+    site = rocking_assessment.Site(
+        2.0,
+        shapes=["sine"],
+        records=[(first, second), other],
+        hazard=(curve["intensity"], curve["annual_rate"]),
+        floor_periods=[0.5, 0.1],
+        floor_participation=[1.2, -0.2],
+    )
+    expected = rocking_assessment.assess(
+        rocking_assessment.Object(**ROWS[1]), site, sensitivity=False, samples=8, seed=3
+    )
+    assert answer.json()["rows"] == expected.rows
+    assert len(answer.json()["motions"]) == 13
+    without = client.post("/v1/assess?sensitivity=false", json=body | {"hazard": None})
+    assert without.json()["rows"][0]["annual_rate"] is None
+
+
+def test_tables_are_read_as_by_the_package(client):
+    """Random layouts, as text and as a workbook that the page turns into text."""
+    for seed in random.Random(SEED).sample(range(10**9), 4):
+        dialect = Writer(seed, typed=True).table()
+        text = client.post("/objects/text?name=a.xlsx", content=xlsx_bytes(dialect.rows)).content
+        response = post(client, URL, text, CSV, format="json")
+        try:
+            expected = objects_of_text(text, json=False)
+            check_table(expected, "objects")
+        except InvalidArgumentError:
+            assert response.status_code == 422, seed
+            continue
+        answer = response.json()
+        assert errors_of(expected, dialect) == [], seed
+        assert {row["object"] for row in answer["rows"]} == {one.name for one in expected.objects}, seed
+        assert [one["row"] for one in answer["bad_rows"]] == [one.row for one in expected.bad_rows], seed
+        for name in ("columns", "skipped", "totals"):
+            assert answer[name] == getattr(expected, name), seed
+
+
+def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
+    answer = post(client, URL, TABLE, CSV, format="json").json()
+    assert answer["rows"] == client.post(URL, json=ROWS).json()["rows"]
+    (bad,) = answer["bad_rows"]
+    assert (bad["row"], bad["column"]) == (3, "width")
+    assert "tall" in bad["reason"]
+    assert answer["warnings"] == ["rows that were not read: 1, see `bad_rows`"]
+    assert answer["skipped"] == ["colour"]
+    response = post(client, URL, TABLE, CSV)
+    assert response.headers["content-type"].startswith("text/csv")
+    rows = list(csv.DictReader(io.StringIO(response.text)))
+    assert [row["verdict"] for row in rows] == [row["verdict"] for row in answer["rows"]] + ["not read"]
+    assert float(rows[0]["factor"]) == answer["rows"][0]["factor"]
+    assert rows[-1]["object"] == "row 3"
+    given = list(csv.DictReader(io.StringIO(TABLE)))
+    assert list(rows[0])[: len(given[0])] == list(given[0])  # as they stand, also those that are not read
+    assert [{name: row.pop(name) for name in given[0]} for row in rows] == [given[2], given[0], given[0], given[1]]
+    assert answer["details"]["colour"] == ["", "red", "red"]
+    accepted = client.post(URL, json=ROWS, headers={"accept": "text/csv"})
+    assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]
+    assert {"name", "width", "height"} <= {*answer["columns"].values()}

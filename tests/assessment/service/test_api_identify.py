@@ -1,0 +1,68 @@
+"""POST /v1/identify: the block of a direct call, and bodies that are no traces."""
+
+import csv
+import io
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rocking_assessment
+from rocking_assessment.service.identify import EDGE_COLUMNS
+
+from benchmarks.accuracy.free_rocking import free_rocking
+from tests.api.conftest import CSV, assert_problem, post
+
+URL = "/v1/identify"
+ALPHA, P, ETA = 0.25, 2.5, 0.9
+
+
+@pytest.fixture(scope="module")
+def trace():
+    rotation = free_rocking(np.array([0.2]), ALPHA, P, ETA, 6.0, 60)[0]
+    noisy = rotation + 1e-3 * np.random.default_rng(3).normal(size=rotation.size)
+    return {"time": (np.arange(noisy.size) / 60).tolist(), "rotation": noisy.tolist()}
+
+
+def as_csv(trace, factor=1.0, header="time,rotation"):
+    rows = zip(trace["time"], trace["rotation"], strict=True)
+    return f"{header}\n" + "".join(f"{time!r},{factor * rotation!r}\n" for time, rotation in rows)
+
+
+def test_the_block_is_that_of_a_direct_call(client, trace):
+    expected = rocking_assessment.identify_free_rocking(trace["time"], trace["rotation"], confidence=0.9)
+    answer = client.post(URL, params={"confidence": 0.9}, json=trace).json()
+    for name in EDGE_COLUMNS:
+        assert answer[name] == expected[name].values.tolist()
+    assert answer["restitution"] == pytest.approx([ETA], abs=0.01)
+    assert answer["drift"] == expected["drift"].item()
+    assert answer["warnings"] == []
+    assert answer["impact_time"] == expected["impact_time"].values.tolist()
+    assert answer["rotation"] == trace["rotation"]
+    nan = np.isnan(expected["fitted"].values)
+    assert [value is None for value in answer["fitted"]] == nan.tolist()
+    degrees = post(client, URL, as_csv(trace, 180 / math.pi), CSV, degrees="true", confidence=0.9)
+    (row,) = csv.DictReader(io.StringIO(degrees.text))
+    assert float(row["alpha"]) == pytest.approx(answer["alpha"][0], rel=1e-6)  # of the fit
+
+
+def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
+    body = as_csv(trace, 180 / math.pi, "time [s],rotation [deg]")
+    expected = client.post(URL, json=trace).json()["alpha"]
+    for query in ("", "?degrees=true"):
+        (row,) = csv.DictReader(io.StringIO(post(client, URL + query, body, CSV).text))
+        assert float(row["alpha"]) == pytest.approx(expected[0], rel=1e-6)
+    assert_problem(post(client, URL, body, CSV, degrees="false"), 422)
+    radians = as_csv(trace, 1.0, "time [s],rotation [rad]")
+    assert_problem(post(client, URL, radians, CSV, degrees="true"), 422)
+
+
+def test_frames_are_no_times(client):
+    body = (Path(__file__).parents[2] / "data/field/frame_counter.csv").read_bytes()
+    headers = {"Content-Type": "text/csv", "Accept": "application/json"}
+    problem = assert_problem(client.post("/v1/identify", content=body, headers=headers), 422)
+    assert "the column frame, a counter" in problem["detail"]
+    found = client.post("/v1/identify", params={"time_step": 1.0 / 60.0}, content=body, headers=headers).json()
+    assert found["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]
+    json = client.post(URL, params={"time_step": 0.01}, json={"time": [*range(20)], "rotation": [0.1] * 20})
+    assert assert_problem(json, 422)["parameter"] == "time_step"
