@@ -214,7 +214,9 @@ class Catalogue:
 
     def open(self, name: str) -> DataFile:
         """Open the file of a data set; the caller closes it. Raises `UnknownDatasetError` or `DatasetError`."""
-        self.check_name(name)
+        parts = name.split("/")
+        if len(parts) < 2 or not all(_PART.fullmatch(part) for part in parts):
+            raise UnknownDatasetError(name)
         path = self.results / f"{name}.nc"
         try:
             return DataFile(name, path)
@@ -226,13 +228,6 @@ class Catalogue:
             if error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG):
                 raise UnknownDatasetError(name) from None
             raise _unreadable(name, error) from error
-
-    @staticmethod
-    def check_name(name: str) -> None:
-        """Raise `UnknownDatasetError` for a text that is no name of a data set, such as one with a hidden folder."""
-        parts = name.split("/")
-        if len(parts) < 2 or not all(_PART.fullmatch(part) for part in parts):
-            raise UnknownDatasetError(name)
 
     def product(self, name: str) -> DatasetFile:
         """Size and sha256 of a data set; raises as `open`."""
@@ -278,7 +273,7 @@ def _scan(
         unreadable["/".join(parts) or "results"] = f"cannot be read: {error.strerror}"
         return
     for entry in entries:
-        if not _PART.fullmatch(entry.name):
+        if not _PART.fullmatch(entry.name) or entry.name.endswith(".zarr"):  # a store has thousands of files
             continue
         inner = *parts, entry.name
         if parts and entry.name.endswith(".nc"):

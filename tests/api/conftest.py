@@ -18,6 +18,7 @@ from rocking_assessment._hazard.rates import annual_rate
 import rocking
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import describe, scalar_coordinates, write_dataset
+from rocking._datasets.zarr_store import write_pulse_store
 from rocking._spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.margins import with_margins
@@ -76,6 +77,8 @@ def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", titl
             frequency_ratio=np.geomspace(0.5, 12.0, nodes),
         )
         write_dataset(cube, folder / "spectra" / pulse / f"eta-{eta:.2f}.nc")
+    for pulse in {pulse for pulse, _ in cubes} - {"cosine"}:
+        write_pulse_store(sorted((folder / "spectra" / pulse).glob("*.nc")), folder / "zarr" / f"{pulse}.zarr")
     curves = overturning_boundary("sine", restitution=0.85, nodes=101)
     curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))

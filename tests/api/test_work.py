@@ -20,6 +20,7 @@ from starlette.requests import ClientDisconnect
 import rocking
 from rocking._base.errors import InvalidArgumentError
 from tests.api.conftest import CSV, POINT, QUERIES, assert_problem, client_of, of_point, post
+from tests.api.in_process import answer_in_process
 
 BATCH = POINT | {"slenderness": [0.6, 0.7]}
 
@@ -158,22 +159,6 @@ def test_a_file_that_exceeds_the_limits_of_the_helper_is_refused_and_the_next_on
 
 
 ROOTS = tuple(str(Path(one.__file__).parent) for one in (rocking, rocking_api))
-
-
-async def answer_in_process(app, path, query):
-    """Status of a GET without a server."""
-    messages = []
-    scope = {
-        "type": "http", "asgi": {"version": "3.0", "spec_version": "2.4"}, "http_version": "1.1", "method": "GET",
-        "scheme": "http", "path": path, "raw_path": path.encode(), "query_string": query.encode(), "root_path": "",
-        "headers": [(b"host", b"x")], "client": ("127.0.0.1", 1), "server": ("127.0.0.1", 80), "state": {},
-    }  # fmt: skip
-
-    async def send(message):
-        messages.append(message)
-
-    await app(scope, asyncio.Event().wait, send)
-    return messages[0]["status"]
 
 
 @pytest.mark.parametrize(("method", "most"), [("cube", 80), ("solver", 60)])

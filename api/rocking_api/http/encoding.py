@@ -54,8 +54,8 @@ ROWS = 5_000  # points of a batch that are written and sent at once [-]: up to h
 
 
 def body_form(request: Request, accepted: Sequence[Form]) -> Form:
-    """Format of the body by its Content-Type; JSON without one."""
-    declared = request.headers.get("content-type", MEDIA_TYPES["json"]).split(";")[0].strip().lower()
+    """Format of the body by its Content-Type, which has to be stated."""
+    declared = request.headers.get("content-type", "").split(";")[0].strip().lower()
     for form in accepted:
         if declared in (MEDIA_TYPES[form], "application/netcdf" if form == "nc" else MEDIA_TYPES[form]):
             return form

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
@@ -87,7 +87,7 @@ class BodyParameters(Params):
 class BodyDescription(BodyParameters):
     """A body in JSON: its kind, unless its parameters say it, and its parameters in SI units or as texts."""
 
-    kind: str | None = q.said(f"kind of body: {', '.join(KINDS)}", None)
+    kind: Literal[tuple(KINDS)] | None = q.said("kind of body", None)  # type: ignore[valid-type]
     restitution: float | None = q.said("eta of an arch or a structure", None, unit="-")
     gravity: float | None = q.said(quantities.GRAVITY.named, None, unit="m/s2")
 

@@ -169,7 +169,7 @@ async def get_netcdf(name: DatasetName, request: Request, service: ServiceDep) -
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
-    service.cubes.catalogue.check_name(name)
+    await service.read(lambda _: service.cubes.catalogue.open(name).close())  # names what cannot be read
     return await service.files.get_response(f"{name}.nc", request.scope)
 
 

@@ -146,7 +146,7 @@ def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[
 
 def _identified(params: IdentifyParams, time: Array, rotation: Array, form: str, url: str, stop: StopFlag) -> Response:
     # scipy.stats takes longer to import than the service to start
-    from rocking_assessment._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415  # noqa: PLC0415
+    from rocking_assessment._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
 
     found = identify_free_rocking(time, rotation, edges=params.edges, confidence=params.confidence, stop=stop)
     edges = {name: found[name].values.tolist() for name in EDGE_COLUMNS}
