@@ -155,7 +155,7 @@ def test_csv_and_netcdf_hold_every_digit(client, name):
     text = client.request(method, route, params=query | {"format": "csv"}, **body)
     assert text.headers["content-type"].startswith("text/csv")
     rows = list(csv.DictReader(io.StringIO(text.text)))
-    binary = client.request(method, route, params=query, headers={"accept": "application/x-netcdf"}, **body)
+    binary = client.request(method, route, params=query | {"format": "nc"}, **body)
     assert binary.headers["content-type"] == "application/x-netcdf"
     stored = xr.open_dataset(io.BytesIO(binary.content), engine="scipy").load()
     compared = [column for column in ("peak_rotation", "rotation", "impacts") if column in rows[0]]

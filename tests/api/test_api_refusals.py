@@ -14,7 +14,7 @@ import xarray as xr
 from rocking_api.app import MAX_JSON
 from rocking_api.models import blocks as block_models
 from rocking_api.models.pulses import MAX_BODY, MAX_SAMPLES
-from rocking_api.routers import assess, identify
+from rocking_assessment.service import assess, identify
 
 from tests.api.conftest import CSV, JSON, NAPA, NC, POINT, QUERIES, assert_problem, client_of, post
 from tests.excitation.record_files import at2

@@ -1,7 +1,7 @@
 """Every number that a public function takes: what is no number, and what is out of its range, is refused by its name.
 
-The calls are made from the signatures, with the ordinary values of `tests/base/extreme_numbers.py`; the ranges are those
-that `rocking._base.quantities` declares.
+The calls are made from the signatures, with the ordinary values of `tests/base/extreme_numbers.py`; the ranges are
+those that `rocking._base.quantities` declares.
 """
 
 import inspect
