@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import errno
-import math
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -94,6 +93,7 @@ OTHERS = (
 RETRY_AFTER: dict[type[Exception], str] = {BusyError: "2", NotReadyError: "30"}  # [s]
 
 MAX_TEXT = 400  # characters of a value that an error repeats
+MAX_NAME = 100  # characters of a name that an error repeats
 MAX_ERRORS = 20  # parameters that an error names at most
 
 
@@ -230,8 +230,11 @@ def _of_validation(error: Mapping[str, Any]) -> InvalidArgumentError:
     own = context.get("error")
     name = _joined(names) or str(source)
     if isinstance(own, InvalidArgumentError):  # of a validator of this package
-        within = own.parameter if own.parameter in name or own.parameter == "pulse" else f"{name}.{own.parameter}"
-        return InvalidArgumentError(name if names and own.parameter in name else within, own.value, own.allowed)
+        if "<samples>" in place:
+            name += f".{own.parameter}" + "".join(f"[{index}]" for index in own.index)
+        elif name == "pulse":  # or one of its parameters
+            name = own.parameter
+        return InvalidArgumentError(name, own.value, own.allowed)
     value = error.get("input")
     if kind == "missing":
         return refusal(f"`{name}` is missing in the {source}", name, None, f"required in the {source}")
@@ -259,7 +262,7 @@ def _joined(place: Sequence[str | int]) -> str:
             text += f"[{part}]"
         else:
             text += f".{part}" if text else part
-    return text
+    return text if len(text) <= MAX_NAME else f"{text[:MAX_NAME]} ..."
 
 
 def refusal(text: str, parameter: str, value: Any, allowed: str) -> InvalidArgumentError:
@@ -272,7 +275,7 @@ def refusal(text: str, parameter: str, value: Any, allowed: str) -> InvalidArgum
 def plain(value: Any) -> float | str | None:
     """A value that JSON can represent; nan, infinite and larger numbers as text, of long texts the start."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if value is None or (is_number and math.isfinite(value) and abs(value) <= sys.float_info.max):
+    if value is None or (is_number and abs(value) <= sys.float_info.max):  # neither nan nor infinite
         return value
     text = value[:MAX_TEXT].decode("utf-8", "backslashreplace") if isinstance(value, bytes) else str(value)
     return _encodable(text if len(text) <= MAX_TEXT else f"{text[:MAX_TEXT]} ...")

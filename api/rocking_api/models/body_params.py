@@ -32,7 +32,7 @@ Points = Annotated[
 ]
 _BODY = q.said(
     "a body of any kind, with its parameters in brackets, such as hollow(width=40cm, height=1.6m, wall=2cm), or the "
-    f"kind of the parameters beside it: {signatures(KINDS).replace('[', '(').replace(']', ')')}",
+    f"kind of the parameters beside it: {signatures().replace('[', '(').replace(']', ')')}",
     None,
 )
 
@@ -93,7 +93,7 @@ class BodyDescription(BodyParameters):
 
 
 def _as_text(body: BodyDescription) -> str:
-    kind, parameters = described(body.kind, body.model_dump(exclude_none=True, exclude={"kind"}), KINDS)
+    kind, parameters = described(body.kind, body.model_dump(exclude_none=True, exclude={"kind"}))
     stated = (f"{name}={value} {kind.fields[name].unit.strip('-')}" for name, value in kind.read(parameters).items())
     return f"{kind.name}({', '.join(text.strip() for text in stated)})"
 
@@ -118,7 +118,7 @@ class BodyShape(BodyParameters):
         if self.body is None and stated.keys() < {"width", "height"}:
             missing = next(name for name in ("width", "height") if name not in stated)
             raise InvalidArgumentError(missing, None, "required, or the parameters of another kind, or `body`")
-        kind, parameters = described(self.body, stated, KINDS)
+        kind, parameters = described(self.body, stated)
         if mass is not None and "mass" in kind.fields:
             parameters.setdefault("mass", mass)
         if "gravity" in kind.fields or gravity != STANDARD_GRAVITY:

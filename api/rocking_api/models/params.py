@@ -59,7 +59,7 @@ class ResponseParams(LookupOptions):
 
 _Slenderness: Any = q.read_as(q.SLENDERNESS, kind=float | None)
 _FrequencyRatio: Any = q.read_as(q.FREQUENCY_RATIO, kind=float | None)
-_Restitution: Any = q.read_as(RESTITUTION, kind=float | None)
+_Restitution: Any = q.read_as(q.RESTITUTION, kind=float | None)
 
 
 class TableParams(Params):

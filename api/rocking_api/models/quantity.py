@@ -7,6 +7,7 @@ shifted by rounding for the error bound, stay in the latter.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -150,7 +151,8 @@ Pulse = Field(
 PulseName = Annotated[str, AfterValidator(_known_pulse), Pulse]
 Slenderness: Any = read_as(SLENDERNESS, f"{SLENDERNESS.named}; from 1 on the block does not uplift", examples=[0.4])
 FrequencyRatio: Any = read_as(FREQUENCY_RATIO, examples=[5.0])
-Restitution: Any = read_as(q.RESTITUTION, examples=[0.85])
+RESTITUTION = replace(q.RESTITUTION, words=())  # a number: there is no shape
+Restitution: Any = read_as(RESTITUTION, examples=[0.85])
 AlphaDeg = Annotated[
     float | None,
     AfterValidator(lambda given: given and float(ALPHA_DEG.convert(given))),

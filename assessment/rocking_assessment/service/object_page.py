@@ -44,8 +44,23 @@ LENGTHS = {
 
 UNITS_SHOWN = ("cm", "m", "mm", "ft", "in")
 
-SITE = {"pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s", "floor_periods": "", "floor_participation": "1"}
+SITE = {
+    "pga": "0.3",
+    "pga_unit": "g",
+    "pgv": "30",
+    "pgv_unit": "cm/s",
+    "period_min": "",
+    "period_max": "",
+    "floor_periods": "",
+    "floor_participation": "1",
+}
 """Fields of a site, and what they hold at first."""
+
+USUAL_PGV = (
+    "a number, usually about 100 cm/s for each g of PGA on firm ground, 30 cm/s at 0.3 g; or in its place the shortest "
+    "and the longest period of the pulses"
+)
+"""What is asked for where the PGV is empty."""
 
 EXAMPLES = {
     "rectangle": {"width": "40", "depth": "30", "height": "160"},
@@ -102,7 +117,20 @@ def site_of(given: dict[str, str]) -> Site:
     if given["floor_periods"].strip():
         for name in ("floor_periods", "floor_participation"):
             modes[name] = modes_of(name, given[name])
-    return Site(quantity_of(given, "pga"), quantity_of(given, "pgv"), **modes)
+    periods = periods_of(given)
+    if periods is None and not given["pgv"].strip():
+        raise InvalidArgumentError("pgv", None, USUAL_PGV)
+    pgv = quantity_of(given, "pgv") if given["pgv"].strip() else None
+    return Site(quantity_of(given, "pga"), pgv, periods, **modes)
+
+
+def periods_of(given: dict[str, str]) -> tuple[str, str] | None:
+    """The shortest and the longest period of the pulses from the fields of a form; None if both are empty."""
+    texts = {name: given[name].strip().replace(",", ".") for name in ("period_min", "period_max")}
+    for name, text in texts.items():
+        if not text and any(texts.values()):
+            raise InvalidArgumentError(name, None, "a number of seconds: the shortest and the longest period")
+    return (f"{texts['period_min']} s", f"{texts['period_max']} s") if any(texts.values()) else None
 
 
 def address_of(one: Object, given: dict[str, str]) -> str:
@@ -210,5 +238,7 @@ def page_of(
 def _words(error: InvalidArgumentError) -> str:
     """What is wrong with a field, in the words that the other pages have."""
     name = error.parameter.replace("_", " ")
+    if error.value is None:
+        return f"{name} is missing; needed: {error.allowed}"
     value = str(error.value)
     return f"{name} is {value if len(value) <= 60 else 'wrong'}; allowed: {error.allowed}"

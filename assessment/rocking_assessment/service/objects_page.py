@@ -42,7 +42,7 @@ from rocking_assessment._objects.summary import lines_of, names_in_short, number
 from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking_assessment.service.assess import MAX_BODY, check_table
 from rocking_assessment.service.models import MAX_OBJECTS
-from rocking_assessment.service.object_page import SITE, address_of, quantity_of, site_of
+from rocking_assessment.service.object_page import SITE, address_of, periods_of, quantity_of, site_of
 
 MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
 
@@ -95,8 +95,12 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
     given, table, found = await _answer(request, service)
     words = ["rocking", "assess", "TABLE"]
-    for name in ("pga", "pgv"):
-        words += [f"--{name}", quantity_of(given, name).replace(" ", "")]
+    words += ["--pga", quantity_of(given, "pga").replace(" ", "")]
+    periods = periods_of(given)
+    if given["pgv"].strip():
+        words += ["--pgv", quantity_of(given, "pgv").replace(" ", "")]
+    elif periods is not None:
+        words += ["--period-min", periods[0].replace(" ", ""), "--period-max", periods[1].replace(" ", "")]
     if given["floor_periods"].strip():
         periods, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
         words += ["--floor", ",".join(f"{one}s" for one in periods)]

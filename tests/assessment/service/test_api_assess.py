@@ -13,7 +13,7 @@ from rocking_assessment.service.models import AssessedRow
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from tests.api.conftest import CSV, post
+from tests.api.conftest import CSV, assert_problem, post
 from tests.assessment.objects.dialects import Writer, errors_of
 from tests.sampling import SEED
 from tests.sheets import xlsx_bytes

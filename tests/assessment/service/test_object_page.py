@@ -184,3 +184,14 @@ def test_meshes_of_other_formats_units_and_sizes_are_refused(client, slab):
     assert_problem(posted(client, content, "slab.stl", pga="much"), 422, "pga")
     assert_problem(posted(client, content, "slab.stl", restitution="2"), 422, "restitution")
     assert_problem(posted(client, bytes(mesh_reader.MAX_MESH + 1), "slab.stl"), 413, "body")
+
+
+def test_a_pga_suffices_with_periods_and_an_empty_pgv_is_asked_for_with_a_usual_value(client):
+    given = {"shape": "rectangle", "width": "40", "height": "160", "pga": "0.3", "pga_unit": "g", "pgv": ""}
+    page = client.get("/object", params=given)
+    assert page.status_code == 422
+    assert "pgv is missing; needed: a number, usually about 100 cm/s for each g of PGA" in unescape(page.text)
+    assert client.get("/object", params=given | {"period_min": "0.2"}).status_code == 422
+    page = client.get("/object", params=given | {"period_min": "0.2", "period_max": "0,4"})
+    assert page.status_code == 200
+    assert "0.3 g and periods from 0.2 to 0,4 s" in page.text
