@@ -56,7 +56,7 @@ def test_parameters_in_the_body_and_in_the_query_have_the_same_answer_and_the_sa
 
 
 def test_what_is_missing_in_both_places_is_named(client):
-    assert_problem(client.post("/v1/records/response?width=0.4", json={"record": RECORD}), 422, "height")
+    assert_problem(client.post("/v1/records/response", json={"record": RECORD, "width": 0.4}), 422, "height")
     assert_problem(client.post("/v1/records/response?width=0.4", content=RECORD), 422, "height")
     assert_problem(client.post("/v1/records/response", json=BLOCK), 422, "record")
 
