@@ -47,8 +47,8 @@ def serve(
     workers: Annotated[int, typer.Option(help="Processes that serve.", metavar="[NUMBER]", min=1, max=256)] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
-    for name in unknown_variables(os.environ):
-        typer.echo(f"Error: {name} is not allowed; allowed: {', '.join(variables())}", err=True)
+    for variable in unknown_variables(os.environ):
+        typer.echo(f"Error: {variable} is not allowed; allowed: {', '.join(variables())}", err=True)
         raise typer.Exit(2)
     given: dict[str, Any] = {} if results is None else {"results": results}
     try:

@@ -216,7 +216,7 @@ def _of_arguments(
     if not detail:
         sentences = "; ".join(str(error) for error in list(by_name.values())[:MAX_ERRORS])
         detail = sentences if len(errors) == 1 else f"{len(by_name)} parameters are missing or wrong: {sentences}"
-    listed = errors if len(errors) > 1 or (isinstance(kind, Kind) and kind is KINDS[DatasetError]) else None
+    listed = errors if len(errors) > 1 or kind is KINDS[DatasetError] else None
     return problem_response(
         kind, detail, headers, parameter=first.name, value=first.value, allowed=first.allowed, errors=listed
     )
@@ -276,7 +276,8 @@ def plain(value: Any) -> float | str | None:
     """A value that JSON can represent; nan, infinite and larger numbers as text, of long texts the start."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if value is None or (is_number and abs(value) <= sys.float_info.max):  # neither nan nor infinite
-        return value
+        number: float | None = value
+        return number
     text = value[:MAX_TEXT].decode("utf-8", "backslashreplace") if isinstance(value, bytes) else str(value)
     return _encodable(text if len(text) <= MAX_TEXT else f"{text[:MAX_TEXT]} ...")
 

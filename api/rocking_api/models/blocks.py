@@ -38,7 +38,7 @@ class BlocksParams(Params):
 class BlockRow(BodyShape):
     """One of many bodies in JSON, in SI units."""
 
-    body: JsonBody  # type: ignore[assignment]  # a text once it is read
+    body: JsonBody  # a text once it is read
     name: str = q.said("label", "", max_length=200)
     peak_acceleration: q.PeakAcceleration
     period: q.Period
@@ -49,7 +49,7 @@ class BlockRows(BlocksParams):
     """Many blocks in a JSON body, and the values that they share."""
 
     blocks: list[BlockRow] = q.said("blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS})
-    pulse: GivenPulse = q.said("a pulse by its name, or by samples")  # type: ignore[assignment]
+    pulse: GivenPulse = q.said("a pulse by its name, or by samples")
 
 
 class BlocksResponse(InUnits[BlocksParams]):

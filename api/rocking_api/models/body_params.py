@@ -98,7 +98,7 @@ def _as_text(body: BodyDescription) -> str:
     return f"{kind.name}({', '.join(text.strip() for text in stated)})"
 
 
-JsonBody = Annotated[Text | Annotated[BodyDescription, AfterValidator(_as_text)] | None, _BODY]
+JsonBody: Any = Annotated[Text | Annotated[BodyDescription, AfterValidator(_as_text)] | None, _BODY]
 """A body in JSON; a text once it is read."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
@@ -52,7 +52,7 @@ def _name_of(pulse: str | SampledPulse) -> str:
     return pulse if isinstance(pulse, str) else pulse.name
 
 
-GivenPulse = Annotated[
+GivenPulse: Any = Annotated[
     Annotated[PulseName, Tag("<name>")] | Annotated[PulseSamples, AfterValidator(_made), Tag("<samples>")],
     Discriminator(lambda value: "<name>" if isinstance(value, str) else "<samples>"),
     PlainSerializer(_name_of, return_type=str),

@@ -40,7 +40,7 @@ SCALES = 1e-6, q.HIGHEST_SCALE  # smallest and largest factor of a record [-]
 def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:
     """What the declaration says of a field: meaning, unit and range in the schema; `more` are those of `Field`."""
     text = f"{text} [{unit or quantity.unit}]" if text else quantity.help
-    extra = {"unit": unit or quantity.unit, **quantity.limits}
+    extra: dict[str, Any] = {"unit": unit or quantity.unit, **quantity.limits}
     return Field(description=text, json_schema_extra=extra, **more)
 
 
@@ -106,7 +106,7 @@ def _keep_unit(value: Any, read: ValidatorFunctionWrapHandler) -> float:
 def between(low: float, high: float, text: str, *, unit: str, **more: Any) -> Any:
     """A field with a unit and a range that includes its finite ends."""
     highest = high if math.isfinite(high) else None
-    extra = {"unit": unit}
+    extra: dict[str, Any] = {"unit": unit}
     return Field(description=f"{text} [{unit}]", ge=low, le=highest, json_schema_extra=extra, **more)
 
 
@@ -148,7 +148,7 @@ Pulse = Field(
     examples=["sine", "mavroeidis_papageorgiou(cycles=3, phase=90deg)"],
     json_schema_extra=_list_pulses,
 )
-PulseName = Annotated[str, AfterValidator(_known_pulse), Pulse]
+PulseName: Any = Annotated[str, AfterValidator(_known_pulse), Pulse]
 Slenderness: Any = read_as(SLENDERNESS, f"{SLENDERNESS.named}; from 1 on the block does not uplift", examples=[0.4])
 FrequencyRatio: Any = read_as(FREQUENCY_RATIO, examples=[5.0])
 RESTITUTION = replace(q.RESTITUTION, words=())  # a number: there is no shape

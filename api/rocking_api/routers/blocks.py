@@ -146,10 +146,9 @@ def _point(
     groups = problem.groups
     for quantity in (SLENDERNESS, FREQUENCY_RATIO):
         quantity.convert(groups[quantity.name])
-    options = {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
-    angle = {"alpha_deg": math.degrees(groups["alpha"])}
-    three = {name: value for name, value in groups.items() if name != "alpha"}
-    dimensionless = ResponseParams.model_construct(**options, **angle, **three)
+    values: dict[str, Any] = {name: value for name, value in groups.items() if name != "alpha"}
+    values |= {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
+    dimensionless = ResponseParams.model_construct(**values, alpha_deg=math.degrees(groups["alpha"]))
     points = np.array([groups[quantity.name] for quantity in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:

@@ -40,7 +40,7 @@ class GuideFiles(PageFiles):
 
 def _first_steps(settings: Settings) -> str:
     """The page with the description of the package, which every installation has."""
-    text = str(metadata("rocking").get_payload())
+    text = str(metadata("rocking").json["description"])
     without_title = text.partition("\n")[2] if text.startswith("# ") else text
     body = MarkdownIt("commonmark", {"html": False}).enable("table").render(without_title)
     return html("guide.html", "First steps", "/guide/", settings, body=body, folder=settings.guide)
