@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, HTTPException, Path, Query, Request, Response
 from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError, InvalidArgumentError
@@ -184,6 +184,8 @@ async def get_zarr(pulse: StoreName, key: ZarrKey, request: Request, service: Se
 
     `xarray.open_zarr(".../spectra/{pulse}.zarr")` reads it.
     """
+    if ".." in key.split("/"):  # other files of the results folder
+        raise HTTPException(404)
     return await service.files.get_response(f"{STORES}/{pulse}.zarr/{key}", request.scope)
 
 

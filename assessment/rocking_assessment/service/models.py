@@ -97,7 +97,7 @@ class AssessParams(Params):
         return Site(
             self.pga,
             self.pgv,
-            None if ends == (None, None) else ends,  # type: ignore[arg-type]  # one of them alone is refused there
+            None if ends == (None, None) else ends,  # one of them alone is refused there
             [one.motion(k, self.baseline_order) for k, one in motions],
             None if hazard is None else (hazard.intensity, hazard.annual_rate),
             None if self.shapes is None else split_pulses(self.shapes),

@@ -102,8 +102,8 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
     elif periods is not None:
         words += ["--period-min", periods[0].replace(" ", ""), "--period-max", periods[1].replace(" ", "")]
     if given["floor_periods"].strip():
-        periods, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
-        words += ["--floor", ",".join(f"{one}s" for one in periods)]
+        modes, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
+        words += ["--floor", ",".join(f"{period}s" for period in modes)]
         words += ["--floor-participation", ",".join(map(str, participation))]
     project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(words))
     text = await service.solve_one(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
