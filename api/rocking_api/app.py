@@ -8,6 +8,7 @@ from contextlib import asynccontextmanager
 
 import anyio
 from fastapi import FastAPI
+from prometheus_client import CollectorRegistry, ProcessCollector
 from prometheus_fastapi_instrumentator import Instrumentator
 from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
@@ -82,7 +83,9 @@ def create_app(settings: Settings, when_ready: Callable[[], None] = lambda: None
         "/v1/blocks/response": Limit(MAX_JSON, blocks.MAX_BODY),
         "/v1/records/": Limit(settings.max_record_bytes, settings.max_record_bytes),
     }
-    Instrumentator(excluded_handlers=["/metrics"]).instrument(app).expose(app, tags=["health"])
+    registry = CollectorRegistry()  # of this application
+    ProcessCollector(registry=registry)  # memory, processor time, open files
+    Instrumentator(excluded_handlers=["/metrics"], registry=registry).instrument(app).expose(app, tags=["health"])
     add_handlers(app)
     pages.add_error_pages(app)
     for module in ROUTES:

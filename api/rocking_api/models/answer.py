@@ -10,6 +10,7 @@ from typing import Annotated, Any, Generic, TypeVar, get_args
 from fastapi import Depends, Request
 from pydantic import BaseModel, Field, SerializeAsAny, computed_field
 
+from rocking._base.errors import InvalidArgumentError
 from rocking_api.models.metadata import METADATA, Metadata
 from rocking_api.models.params import ListParams, Params
 from rocking_api.models.quantity import said, unit_of
@@ -30,6 +31,12 @@ async def url_of(request: Request) -> str:
     address = scope["raw_path"] + b"?" + scope["query_string"] if scope["query_string"] else scope["raw_path"]
     url: str = address.decode("latin-1")
     return url if scope["method"] == "GET" else f"{scope['method']} {url}"
+
+
+async def no_query(request: Request) -> None:
+    """Refuse a query beside a JSON body, which holds all parameters."""
+    for name, value in request.query_params.items():
+        raise InvalidArgumentError(name, value, "in the JSON body, which holds all parameters")
 
 
 Url = Annotated[str, Depends(url_of)]

@@ -35,6 +35,12 @@ class BlocksParams(Params):
     format: q.TableFormat = None
 
 
+class BlocksQuery(BlocksParams):
+    """What the answer repeats of the values that many blocks share."""
+
+    pulse_digest: str | None = q.said("sha256 of the samples of the pulse; null for a pulse by its name", None)
+
+
 class BlockRow(BodyShape):
     """One of many bodies in JSON, in SI units."""
 
@@ -52,7 +58,7 @@ class BlockRows(BlocksParams):
     pulse: GivenPulse = q.said("a pulse by its name, or by samples")
 
 
-class BlocksResponse(InUnits[BlocksParams]):
+class BlocksResponse(InUnits[BlocksQuery]):
     """Many bodies: one value for each, in the order of the body; SI units, degrees and groups."""
 
     name: list[str] | None = q.said("labels; null without any", None)

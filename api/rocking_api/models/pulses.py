@@ -48,16 +48,22 @@ def _made(samples: PulseSamples) -> SampledPulse:
     return SampledPulse(**dict(samples))
 
 
-def _name_of(pulse: str | SampledPulse) -> str:
+def name_of(pulse: str | SampledPulse) -> str:
+    """The name that an answer repeats of a pulse."""
     return pulse if isinstance(pulse, str) else pulse.name
 
 
 GivenPulse: Any = Annotated[
     Annotated[PulseName, Tag("<name>")] | Annotated[PulseSamples, AfterValidator(_made), Tag("<samples>")],
     Discriminator(lambda value: "<name>" if isinstance(value, str) else "<samples>"),
-    PlainSerializer(_name_of, return_type=str),
+    PlainSerializer(name_of, return_type=str),
     said("a pulse by its name, or by samples"),
 ]
+
+
+def digest_of(pulse: Any) -> str | None:
+    """The sha256 of the samples of a pulse; None for a pulse by its name."""
+    return pulse.digest if isinstance(pulse, SampledPulse) else None
 
 
 class PulseBody(Params):
@@ -68,7 +74,7 @@ class PulseBody(Params):
     @computed_field(description="sha256 of the samples; null for a pulse by its name")  # type: ignore[prop-decorator]
     @property
     def pulse_digest(self) -> str | None:
-        return self.pulse.digest if isinstance(self.pulse, SampledPulse) else None
+        return digest_of(self.pulse)
 
 
 class SpectrumBody(PulseBody, SpectrumParams):

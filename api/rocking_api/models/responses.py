@@ -47,6 +47,7 @@ class BatchQuery(LookupOptions):
     """What the answer repeats of a batch."""
 
     points: int = said("number of points", unit="-")
+    pulse_digest: str | None = said("sha256 of the samples of the pulse; null for a pulse by its name", None)
 
 
 class BatchResponse(ManyLookedUp, InGroups[BatchQuery]):

@@ -24,6 +24,7 @@ from rocking_api.http.errors import TooLargeError
 from rocking_api.models import blocks as m
 from rocking_api.models.answer import Url
 from rocking_api.models.params import ResponseParams
+from rocking_api.models.pulses import digest_of, name_of
 from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, WithUnit, served
 from rocking_api.models.responses import PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
@@ -84,7 +85,12 @@ async def post_blocks(
         if (shared.format or given) == "csv":
             return csv_response(columns, "blocks")
         columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
-        query = m.BlocksParams.model_construct(**{name: getattr(shared, name) for name in m.BlocksParams.model_fields})
+        query = m.BlocksQuery(
+            pulse=name_of(shared.pulse),
+            restitution=shared.restitution,
+            format=shared.format,
+            pulse_digest=digest_of(shared.pulse),
+        )
         answer = m.BlocksResponse.model_construct(query=query, url=url, **columns)
         return Response(answer.model_dump_json(), media_type="application/json")
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
@@ -29,7 +29,7 @@ from rocking._solver.peak_response import peak_response
 from rocking_api.execution.evaluation import evaluate_many
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError
-from rocking_api.models.answer import Solved, Url
+from rocking_api.models.answer import Solved, Url, no_query
 from rocking_api.models.fields import OUTCOMES
 from rocking_api.models.params import HistoryParams, MapParams, SpectrumParams, ThresholdsParams, alpha_of
 from rocking_api.models.pulses import HistoryBody, MapBody, SpectrumBody, ThresholdsBody
@@ -61,6 +61,7 @@ async def get_spectrum(
     summary=f"Peak rotation against frequency ratio{SAMPLED}",
     response_model=SpectrumResponse,
     responses=encoding.CONTENT,
+    dependencies=[Depends(no_query)],
 )
 async def post_spectrum(params: SpectrumBody, request: Request, service: ServiceDep, url: Url) -> Any:
     """The same with the parameters in a JSON body."""
@@ -126,6 +127,7 @@ async def get_history(
     summary=f"Motion of one block{SAMPLED}",
     response_model=HistoryResponse,
     responses=encoding.CONTENT,
+    dependencies=[Depends(no_query)],
 )
 async def post_history(params: HistoryBody, request: Request, service: ServiceDep, url: Url) -> Any:
     """The same with the parameters in a JSON body."""
@@ -212,7 +214,12 @@ async def get_thresholds(
     return await service.solve(lambda stop: _thresholds(params, url, stop), request)
 
 
-@router.post("/thresholds", summary=f"Amplitudes at which the outcome of a block changes{SAMPLED}", tags=["response"])
+@router.post(
+    "/thresholds",
+    summary=f"Amplitudes at which the outcome of a block changes{SAMPLED}",
+    tags=["response"],
+    dependencies=[Depends(no_query)],
+)
 async def post_thresholds(params: ThresholdsBody, request: Request, service: ServiceDep, url: Url) -> AmplitudeResponse:
     """The same with the parameters in a JSON body."""
     return await get_thresholds(params, request, service, url)
@@ -275,6 +282,7 @@ async def get_map(params: Annotated[MapParams, Query()], request: Request, servi
     summary=f"Outcome and peak rotation over a window of frequency ratio and slenderness{SAMPLED}",
     response_model=MapResponse,
     responses=encoding.CONTENT,
+    dependencies=[Depends(no_query)],
 )
 async def post_map(params: MapBody, request: Request, service: ServiceDep, url: Url) -> Any:
     """The same with the parameters in a JSON body."""

@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError
@@ -18,7 +18,7 @@ from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._numba.cancellation import StopFlag, run_with_timeout
 from rocking_api.execution.work import TimeLimitError
 from rocking_api.http.encoding import CONTENT, csv_response, netcdf_response
-from rocking_api.models.answer import Url
+from rocking_api.models.answer import Url, no_query
 from rocking_api.models.fields import OUTCOMES
 from rocking_api.models.params import OverturningParams, alpha_of
 from rocking_api.models.pulses import OverturningBody
@@ -59,6 +59,7 @@ async def get_overturning(
     summary="Boundary curves, under a pulse given by samples",
     response_model=OverturningResponse,
     responses=CONTENT,
+    dependencies=[Depends(no_query)],
 )
 async def post_overturning(params: OverturningBody, request: Request, service: ServiceDep, url: Url) -> Any:
     """The same with the parameters in a JSON body."""

@@ -17,7 +17,7 @@ from rocking_api.http.errors import TooLargeError
 from rocking_api.models.answer import Url
 from rocking_api.models.batch import Batch, Columns, batch_of, parse_csv, parse_netcdf
 from rocking_api.models.params import GROUPS, LookupOptions, ResponseParams, TableParams
-from rocking_api.models.pulses import BatchBody
+from rocking_api.models.pulses import BatchBody, digest_of, name_of
 from rocking_api.models.responses import BatchQuery, BatchResponse, PointResponse, columns_of, point_response
 from rocking_api.service import Service, ServiceDep
 
@@ -102,8 +102,8 @@ def _answered(
     columns = columns_of(result)
     if form == "csv":
         return encoding.csv_stream(encoding.columns_as_they_are(batch.groups) | columns, batch.points, "response")
-    pulse = options["pulse"] if isinstance(options["pulse"], str) else options["pulse"].name
-    options |= {"pulse": pulse, "points": batch.points}
+    pulse = batch.options.pulse
+    options |= {"pulse": name_of(pulse), "pulse_digest": digest_of(pulse), "points": batch.points}
     if form == "nc":
         attributes = {name: value for name, value in options.items() if value is not None}
         return encoding.netcdf_response(encoding.dataset_of(batch.groups, result, attributes), "response")
