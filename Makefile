@@ -99,7 +99,7 @@ mutants: build/mutants.sqlite ## mutation test of the last commit: change single
 	build/cosmic-ray/bin/cosmic-ray exec stress/mutants.toml $<
 	build/cosmic-ray/bin/cr-report --surviving-only --show-diff $<
 
-oldest: ## run the solver's tests with the lowest versions that pyproject.toml allows (PYTHON=3.12: another Python)
+oldest: ## run the solver's tests, and one question to each interface, with the lowest versions that pyproject.toml allows (PYTHON=3.12)
 newest: ## the same with the newest versions (PRERELEASE=allow: pre-releases, too)
 
 # The environments are made below build/; the tools of the tests are the newest. The last line says what failed.
@@ -107,32 +107,45 @@ oldest: RESOLUTION := lowest-direct
 # what our requirements require is the newest there, too, and may deprecate what their old versions call
 oldest: WARNINGS := -W default::DeprecationWarning
 newest: RESOLUTION := highest
+# the extras of those who use the package, not of those who work on it
+USED := service plot mesh sheets dask workflow
 oldest newest: $(UV)
 	$(UV) venv --quiet --clear --python $(PYTHON) build/$@
-	$(UV) pip compile pyproject.toml --extra service --python $(PYTHON) --resolution $(RESOLUTION) \
+	$(UV) pip compile pyproject.toml $(USED:%=--extra %) --python $(PYTHON) --resolution $(RESOLUTION) \
 	    --prerelease $(or $(PRERELEASE),if-necessary-or-explicit) --no-annotate --no-header --quiet --output-file build/$@.txt
 	$(UV) pip install --quiet --python build/$@ --requirement build/$@.txt pytest hypothesis mpmath python-flint
 	$(UV) pip install --quiet --python build/$@ --no-deps --editable .
 	@export VIRTUAL_ENV=build/$@ NUMBA_CACHE_DIR='$(CURDIR)/build/$@/kernels'; \
-	$(UV) run --no-project python -m pytest -q $(WARNINGS) tests/solver >build/$@.log 2>&1; status=$$?; \
+	$(UV) run --no-project python -m rocking.precompile && \
+	$(UV) run --no-project python -m pytest -q $(WARNINGS) tests/interfaces.py tests/solver >build/$@.log 2>&1; status=$$?; \
 	echo "$@: $$(tail -n 1 build/$@.log) $$(grep -E '^(FAILED|ERROR) ' build/$@.log | cut -d ' ' -f 2 | tr '\n' ' ')"; \
 	exit $$status
 
-wheel: $(UV) ## build dist/, check its metadata, install the wheel into an empty environment and ask one question
+# The tools of a release, the build tool of the wheel among them, have the hashes of deploy/release.lock.
+build/release/release.lock: deploy/release.lock | $(UV)
+	$(UV) venv --quiet --clear --python $(PYTHON) build/release
+	$(UV) pip install --quiet --python build/release --require-hashes --requirement $<
+	cp $< $@
+
+wheel: build/release/release.lock ## build dist/ with an SBOM of the locked service, check its metadata, install the wheel and ask one question
 	rm -rf dist
-	$(UV) build --quiet --out-dir dist
-	$(UV) tool run --quiet twine check --strict dist/*
-	$(UV) run --quiet --isolated --no-project --python $(PYTHON) --with dist/*.whl \
-	    rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
+	$(UV) build --quiet --python $(PYTHON) --build-constraints deploy/release.lock --require-hashes --out-dir dist
+	build/release/bin/twine check --strict dist/*
+	build/release/bin/cyclonedx-py requirements deploy/service.lock --pyproject pyproject.toml --mc-type library \
+	    --output-reproducible --output-file dist/rocking.cdx.json
+	$(UV) venv --quiet --clear --python $(PYTHON) build/wheel
+	$(UV) pip install --quiet --python build/wheel --constraint deploy/service.lock dist/*.whl # checks the hashes, too
+	build/wheel/bin/rocking response --pulse sine --width 0.4m --height 1.6m --peak-acceleration 0.6g --period 0.5s
 
 # Extras `seismic` and `slurm` are optional: they are not locked.
 LOCKED := service assessment plot sheets dask workflow docs dev
 
-RESOLVE = $(UV) pip compile pyproject.toml --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
+RESOLVE = $(UV) pip compile --python $(PYTHON) --generate-hashes --no-header --no-annotate --quiet
 
-lock: $(UV) ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, deploy/service.lock
-	$(RESOLVE) $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
-	$(RESOLVE) --extra service --extra assessment --constraint environment.lock --output-file deploy/service.lock
+lock: $(UV) ## resolve pyproject.toml into environment.lock (UPGRADE=--upgrade: newest versions) and, from it, the locks of deploy/
+	$(RESOLVE) pyproject.toml $(LOCKED:%=--extra %) $(UPGRADE) --output-file environment.lock
+	$(RESOLVE) pyproject.toml --extra service --extra assessment --constraint environment.lock --output-file deploy/service.lock
+	$(RESOLVE) --group release --constraint environment.lock $(UPGRADE) --output-file deploy/release.lock
 
 environment: .venv/project ## make the environment .venv and compile the kernels
 	@:
@@ -150,7 +163,8 @@ build/uv/bin/uv:
 	@test -n '$(PYTHON)' || { echo 'No Python 3.11 or newer found; use make PYTHON=/path/to/python3.11' >&2; exit 1; }
 	@$(PYTHON) -m venv --clear build/uv || { \
 	    echo 'python3 -m venv needs ensurepip: on Debian, apt-get install python3-venv, then make again' >&2; exit 1; }
-	@build/uv/bin/pip install --quiet uv
+	@sed -n '/^uv==/,/[^\\]$$/p' deploy/release.lock >build/uv/uv.lock
+	@build/uv/bin/pip install --quiet --require-hashes --requirement build/uv/uv.lock
 
 # No isolation: packages without a wheel are built with the pinned build tool, which is installed first; with isolation
 # an unpinned one would be fetched.

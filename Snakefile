@@ -3,7 +3,7 @@
 # `--configfile workflow/config/smoke.yaml`; another place: `--directory DIR`.
 from snakemake.utils import min_version
 
-min_version("9.10")
+min_version("9.11.4")
 
 if not workflow.overwrite_configfiles:  # a --configfile replaces the default, it is not merged into it
 

@@ -18,6 +18,8 @@ from ._base.errors import one_of as one_of
 from ._base.errors import plain_numbers as plain_numbers
 from ._base.errors import positive as positive
 from ._base.extras import require_extra as require_extra
+from ._base.output_file import output_errors as output_errors
+from ._base.output_file import write_output as write_output
 from ._base.quantities import DEPTH as DEPTH
 from ._base.quantities import DIAMETER as DIAMETER
 from ._base.quantities import FREQUENCY_PARAMETER as FREQUENCY_PARAMETER
@@ -78,8 +80,11 @@ from ._dimensional.body_kinds import body as body
 from ._dimensional.body_kinds import columns_beside as columns_beside
 from ._dimensional.body_kinds import described as described
 from ._dimensional.lowest_thresholds import lowest_thresholds as lowest_thresholds
+from ._dimensional.lowest_thresholds import record_lines as record_lines
 from ._dimensional.problem import Problem as Problem
 from ._dimensional.problem import checked_restitution as checked_restitution
+from ._dimensional.problem import restitution_of as restitution_of
+from ._dimensional.problem import search_range as search_range
 from ._dimensional.response import respond as respond
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._dimensional.table_header import Schema as Schema
@@ -97,6 +102,7 @@ from ._dimensional.table_reader import read_csv as read_csv
 from ._dimensional.table_reader import read_file as read_file
 from ._dimensional.table_reader import rows_of_csv as rows_of_csv
 from ._dimensional.table_reader import text_of as text_of
+from ._dimensional.thresholds import block_lines as block_lines
 from ._dimensional.thresholds import overturning_scale as overturning_scale
 from ._excitation.impulse import impulse_of as impulse_of
 from ._excitation.pulses import PULSE_NAMES as PULSE_NAMES

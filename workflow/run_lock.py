@@ -16,7 +16,7 @@ import uuid
 from pathlib import Path
 from typing import IO
 
-from rocking._datasets.checksum import PARTIAL
+from rocking._base.output_file import PARTIAL
 
 RUN_ID = "ROCKING_RUN"
 """Environment variable: id of the process with which a process ends, the run for a job and make for a run."""

@@ -8,11 +8,11 @@ solver, the data sets and the unit registry. Other packages add commands by entr
 from __future__ import annotations
 
 import atexit
-import errno
 import gc
 import os
 import sys
 import warnings
+from contextlib import suppress
 from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any
 
@@ -27,10 +27,6 @@ from rocking._cli.record import record
 
 UsageError: Any = typer.BadParameter.__mro__[1]
 """What typer raises for arguments that it does not understand; newer versions bring their own copy of click."""
-
-
-FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
-"""Errors of the system where standard output or a temporary folder can hold no more."""
 
 
 def _added_commands() -> dict[str, EntryPoint]:
@@ -82,7 +78,9 @@ class Commands(TyperGroup):
         extra["standalone_mode"] = False
         warnings.formatwarning = lambda message, *_: f"warning: {message}\n"  # without a line of the source
         try:
-            sys.exit(super().main(*args, **extra) or 0)
+            status = super().main(*args, **extra) or 0
+            sys.stdout.flush()
+            sys.exit(status)
         except UsageError as error:
             command = error.ctx.command_path if error.ctx else "rocking"
             message = error.format_message().replace("Value error, ", "")  # what newer versions of typer put before it
@@ -92,20 +90,26 @@ class Commands(TyperGroup):
         except ImportError as error:  # a package of an extra
             typer.echo(f"rocking: {error}", err=True)
             sys.exit(1)
-        except OSError as error:
-            if error.errno not in FULL:
-                raise
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to write fails again
-            typer.echo(f"rocking: the output cannot be written: {error.strerror}", err=True)
+        except OSError as error:  # commands convert the errors of the files that they read and write
+            _discard_output()
+            if not isinstance(error, BrokenPipeError):  # a reader that has enough needs no message
+                typer.echo(f"rocking: {error.filename or 'standard output'}: {error.strerror or error}", err=True)
             sys.exit(1)
+
+
+def _discard_output() -> None:
+    """Send what standard output still holds to nowhere; at the end Python would try to write it, and fail again."""
+    with suppress(OSError, ValueError):  # standard output without a file
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
 
 
 app = typer.Typer(
     cls=Commands,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    epilog="Exit codes: 0 done; 1 a package is missing, or the output was closed; 2 an argument, a file or a row of a "
-    "table is not allowed; 130 interrupted.",
+    epilog="Exit codes: 0 done; 1 a package is missing, or the output was closed or could not be written; 2 an "
+    "argument, a file or a row of a table is not allowed; 130 interrupted.",
 )
 
 

@@ -60,9 +60,10 @@ def fragility(
     If the configuration asks for it, also the friction demand, and the effect of restitution and sampling.
     """
     from rocking._base.errors import InvalidArgumentError
+    from rocking._base.output_file import output_errors
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
-    from rocking.suites.files import ENDINGS
+    from rocking.suites.files import ENDINGS, write_fragility
     from rocking.suites.table import curve_table, distribution_table, finite, fragility_table
 
     with configuration_errors():
@@ -82,7 +83,8 @@ def fragility(
     found = suite_fragility(suite)
     with option_errors({"fragility": "--output", "format": "--output"}):
         if file is not None:
-            _write(found, file)
+            with output_errors("output", file):
+                write_fragility(found, file)
             return
     tables = {"levels": fragility_table(found), "curves": curve_table(found)}
     if table == "distribution":
@@ -108,17 +110,6 @@ def fragility(
     if "sensitivity" in rows:
         typer.echo()
         printing.print_table(_of_sensitivity(rows["sensitivity"], len(about["records"])), units)
-
-
-def _write(found: xr.Dataset, file: str) -> None:
-    """Write a fragility to a file; an error names the path."""
-    from rocking._base.errors import InvalidArgumentError
-    from rocking.suites.files import write_fragility
-
-    try:
-        write_fragility(found, file)
-    except OSError as error:
-        raise InvalidArgumentError("output", file, f"a file that can be written ({error.strerror})") from None
 
 
 def read_suite(configuration: str) -> SuiteConfiguration:

@@ -156,7 +156,7 @@ def boundary(block: WindowOptions) -> Panels:
     from rocking._cli import arguments, printing
 
     given = arguments.read_boundary(block, (0.2, 15.0))
-    return lambda pictures, figure: pictures.boundary(printing.boundary_curves(*given), figure.add_subplot()).legend()
+    return lambda pictures, figure: pictures.boundary(printing.boundary_curves(*given), figure.add_subplot())
 
 
 @picture("map")
@@ -242,7 +242,8 @@ def fragility(configuration: Configuration) -> Panels:
             pictures.fragility(first.isel(block=k), ax)
             ax.label_outer()
             ax.get_legend().remove()
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
+        columns = 2 if blocks == 1 else 4  # all that one panel is wide enough for
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=columns)
 
     return panels
 

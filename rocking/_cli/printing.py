@@ -203,9 +203,9 @@ def _words(name: str, result: Mapping[str, Any]) -> Any:
         return _changes(value, result["overturns_above"])
     if name in _NEAREST:
         overturns_above = (value > result[_NEAREST[name]]) != result["overturned"]
-        return threshold_text(value, 6, overturns_above=overturns_above)
+        return threshold_text(value, overturns_above=overturns_above)
     if name in ("largest_surviving_acceleration", "overturning_scale"):
-        return threshold_text(value, 6)
+        return threshold_text(value)
     return value
 
 

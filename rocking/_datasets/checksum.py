@@ -18,8 +18,6 @@ def sha256_of_file(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-PARTIAL = ".partial"  # suffix of a file that is being written; a killed process leaves it behind
-
 _MARK = b"\nsha256 "
 _LENGTH = len(_MARK) + 64 + 1
 

@@ -10,8 +10,6 @@ content gives equal bytes, and a digest of their values.
 
 import hashlib
 import math
-import os
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,9 +20,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import DatasetError, RockingError
+from rocking._base.output_file import replacement_of
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
 from rocking._base.version import AUTHORS, __version__
-from rocking._datasets.checksum import PARTIAL, append_checksum, find_damage
+from rocking._datasets.checksum import append_checksum, find_damage
 from rocking._datasets.netcdf import open_netcdf, write_netcdf
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
 from rocking._excitation.sampled import SampledPulse
@@ -205,18 +204,9 @@ def write_dataset(dataset: xr.Dataset, path: Path | str, *, chunks: Mapping[str,
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     signed = dataset.assign_attrs(content_sha256=_content_digest(dataset))
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=PARTIAL, dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
+    with replacement_of(path) as temporary:
         write_netcdf(signed, temporary, _encoding(signed, chunks or {}))
         append_checksum(temporary)
-        with temporary.open("rb+") as written:
-            os.fsync(written.fileno())
-        temporary.chmod(0o644)  # mkstemp makes the file readable by its owner only
-        temporary.replace(path)  # atomic: os.replace
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def read_dataset(path: Path | str) -> xr.Dataset:

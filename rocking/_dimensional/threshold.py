@@ -14,6 +14,8 @@ from rocking._boundary.scan import RELATIVE_ERROR  # that of elastic blocks unde
 MARGIN = 0.05
 """Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
 
+DIGITS = 6  # significant digits of a threshold in texts [-]
+
 MAX_LISTED = 4  # changes of outcome that a warning lists; of more, it states the number and both ends
 
 
@@ -26,14 +28,14 @@ class Threshold:
 
     def __str__(self) -> str:
         """The outcome above the value in words, such as `overturns above 4.70006`."""
-        return f"{'overturns' if self.overturns_above else 'survives'} above {self.text(6)}"
+        return f"{'overturns' if self.overturns_above else 'survives'} above {self.text()}"
 
-    def text(self, digits: int = 4) -> str:
+    def text(self, digits: int = DIGITS) -> str:
         """The value with some significant digits, 1 to 15, on the safe side of itself and of its error."""
         return threshold_text(self.value, digits, overturns_above=self.overturns_above)
 
 
-def threshold_text(value: float, digits: int = 4, *, overturns_above: bool = True) -> str:
+def threshold_text(value: float, digits: int = DIGITS, *, overturns_above: bool = True) -> str:
     """A threshold > 0 as text: rounded down if the block overturns above it, rounded up if it survives there."""
     error, rounding = (-RELATIVE_ERROR, ROUND_FLOOR) if overturns_above else (RELATIVE_ERROR, ROUND_CEILING)
     rounded = Context(prec=digits, rounding=rounding).create_decimal_from_float(value * (1.0 + error))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rocking._interpolation.stencils import (
     NO_STENCIL,
     OVERTURNS,
+    PEAK,
     SQUARED,
     AngleAxis,
     Mesh,
@@ -117,8 +118,9 @@ def interpolate_many(
 ) -> int:
     """Fill `found` where some slices determine the response within the tolerance; the number of these points.
 
-    Given: points, and the nodes around them. Decided: whether all cells around a point are of one kind, and whether the
-    bound of the error meets the tolerance; all other points are left open, for the solver.
+    Given: points, and the nodes around them. Decided: whether all cells around a point are of one kind, whether the
+    errors of the formulas that are used were measured, and whether the bound of the error meets the tolerance; all
+    other points are left open, for the solver.
 
     `slenderness`, `frequency_ratio`, `restitution`, `alpha` (points,) [-, -, -, rad]; `groups` (points,): of `prepare`;
     `group`: whose points are interpolated here; `mesh`, `axis`: nodes and angles of the slices; `slices`: ascending,
@@ -195,10 +197,10 @@ def _judge(
     by_angle: Weights,
     by_level: Weights,
 ) -> tuple[int, float]:
-    """What is interpolated from some cells, and the sum of the errors that were measured in them [-].
+    """What is interpolated between the angles of some cells, and the sum of the errors that were measured in them [-].
 
-    `NO_STENCIL` if the cells differ or one has no stencil, `OVERTURNS` if all blocks overturn in the same way,
-    `SQUARED` if (1 - peak)^2 is interpolated in all, else `PEAK`.
+    `NO_STENCIL` if the cells differ, one has no stencil, or the error between the angles is not known; `OVERTURNS` if
+    all blocks overturn in the same way; `SQUARED` or `PEAK` as `_form_between_angles`, `PEAK` on one angle.
     """
     first, count, i, j = place
     error = 0.0
@@ -208,20 +210,45 @@ def _judge(
         if size > 1:  # between slices: the larger of the two measured on either side, nan if either is
             error = np.maximum(error, float(slices[lower + 1][first + below, i, j].alpha_error))
     corner = slices[0][first, i, j]
-    kind, outcome, impacts = int(corner.stencil), corner.outcome, corner.impacts
+    overturns, outcome, impacts = corner.stencil == OVERTURNS, corner.outcome, corner.impacts
     for a in range(count):
         if size > 1:
             error += abs(by_angle[a]) * slices[lower][first + a, i, j].restitution_error
         for e in range(size):
             node = slices[e][first + a, i, j]
-            form = int(node.stencil)
             # one cell without a stencil, one that overturns beside one that survives, or another way of overturning
             alike = node.outcome == outcome and node.impacts == impacts
-            if form == NO_STENCIL or (form == OVERTURNS) != (kind == OVERTURNS) or (form == OVERTURNS and not alike):
+            if node.stencil == NO_STENCIL or (node.stencil == OVERTURNS) != overturns or (overturns and not alike):
                 return NO_STENCIL, error
-            kind = min(kind, form)  # (1 - peak)^2 only if all cells have it
             error += abs(by_angle[a] * by_level[e]) * node.interpolation_error
-    return kind, error
+    if overturns:
+        return OVERTURNS, error
+    if count == 1:
+        return PEAK, error
+    return _form_between_angles(slices, size, lower, place), error
+
+
+@kernel
+def _form_between_angles(slices: FourSlices, size: int, lower: int, place: tuple[int, int, int, int]) -> int:
+    """`SQUARED` or `PEAK`: what was interpolated between the angles when the error between them was measured.
+
+    It was measured on the slice at or below the point and, between slices, on the one above. `NO_STENCIL` if these two
+    differ: no error is known of either formula.
+    """
+    form: int = _form_of_slice(slices[lower], place)
+    if size > 1 and _form_of_slice(slices[lower + 1], place) != form:
+        return NO_STENCIL
+    return form
+
+
+@kernel
+def _form_of_slice(nodes: Nodes, place: tuple[int, int, int, int]) -> int:
+    """`SQUARED` if a cell has it on all angles of a slice, else `PEAK`."""
+    first, count, i, j = place
+    for a in range(first, first + count):
+        if nodes[a, i, j].stencil != SQUARED:
+            return PEAK
+    return SQUARED
 
 
 @kernel
@@ -232,9 +259,10 @@ def _peak(
     squared: bool,
     weights: tuple[Weights, Weights, Weights, Weights],
 ) -> float:
-    """The interpolated peak [-]; `squared`: (1 - peak)^2 is interpolated in all cells.
+    """The interpolated peak [-]; `squared`: (1 - peak)^2 is interpolated between the angles.
 
-    Elsewhere (1 - peak)^2 is interpolated where all slices of an angle have it, as when the errors were measured.
+    Each step uses the formula with which its error was measured: between restitutions (1 - peak)^2 where all slices of
+    an angle have it, between angles that of `_form_between_angles`.
     """
     first, count, i, j = place
     by_angle, by_level, by_row, by_column = weights
@@ -246,9 +274,13 @@ def _peak(
         value = 0.0
         for e in range(size):
             form = slices[e][first + a, i, j].stencil == SQUARED
-            one = interpolate_in_cell(slices[e][first + a].peak_rotation, i, j, form, by_row, by_column)
-            value += by_level[e] * (_peak_of(one) if form and not all_squared else one)
-        total += by_angle[a] * (_peak_of(value) if all_squared and not squared else value)
+            in_cell = interpolate_in_cell(slices[e][first + a].peak_rotation, i, j, form, by_row, by_column)
+            value += by_level[e] * (_peak_of(in_cell) if form and not all_squared else in_cell)
+        if all_squared and not squared:
+            value = _peak_of(value)
+        if squared and not all_squared:
+            value = (1.0 - value) * (1.0 - value)
+        total += by_angle[a] * value
     return _peak_of(total) if squared else total
 
 

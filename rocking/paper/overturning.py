@@ -423,9 +423,9 @@ def overturning_amplitudes(frequency_ratio: ArrayLike, restitution: ArrayLike) -
     `case_1_2_margin` are negative there.
 
     These curves are not complete, contrary to the paper. Near the tip of the surviving region (1/a > 0.897, omega <
-    1.1) there are islands in which the block overturns after three, five or more impacts (always an odd number), all
-    within the pulse. Outside these islands the solver gave the outcome predicted by the curves for all of 900 000
-    random blocks with eta from 0.3 to 1.
+    1.1) there are islands in which the block overturns after two or more impacts, all within the pulse: an odd number
+    of them unless impacts accumulate to rest before, which was found for eta < 0.1 only. Outside these islands the
+    solver gave the outcome predicted by the curves for all of 900 000 random blocks with eta from 0.3 to 1.
 
     Examples
     --------

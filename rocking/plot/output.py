@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.output_file import output_errors, replacement_of
 from rocking.plot.style import STYLE
 
 FORMATS = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}
@@ -52,10 +53,8 @@ def save_figure(figure: Figure, path: str | Path) -> None:
     """
     metadata = _metadata(path)
     _lay_out(figure)
-    try:
-        figure.savefig(path, metadata=metadata)
-    except OSError as error:
-        raise InvalidArgumentError("output", str(path), f"a file that can be written: {error.strerror}") from None
+    with output_errors("output", path), replacement_of(path) as temporary:
+        figure.savefig(temporary, format=Path(path).suffix.lower().removeprefix("."), metadata=metadata)
 
 
 def _lay_out(figure: Figure) -> None:

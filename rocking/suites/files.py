@@ -7,6 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from rocking._base.errors import one_of
+from rocking._base.output_file import write_output
 from rocking._datasets.csv_text import csv_text
 from rocking.suites.table import curve_table, finite, fragility_table
 
@@ -21,8 +22,9 @@ def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
     fragility : xarray.Dataset
         Result of `rocking.fragility`.
     path : path
-        The file, written anew. `.csv`: a row for each limit state, block and level, with counts, intervals and the
-        fitted probabilities. `.json`: these and the fitted curves, null for what does not exist.
+        The file; an existing one is replaced as a whole, or stays if writing fails. `.csv`: a row for each limit state,
+        block and level, with counts, intervals and the fitted probabilities. `.json`: these and the fitted curves, null
+        for what does not exist.
 
     Raises
     ------
@@ -33,8 +35,8 @@ def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
     ending = one_of("path", file.suffix.lower(), ENDINGS)
     levels = fragility_table(fragility)
     if ending == ".csv":
-        file.write_text(csv_text(levels), encoding="utf-8")
+        write_output(file, csv_text(levels))
         return
     about = {"measure": fragility.attrs["measure"], "unit": fragility["intensity"].attrs["units"]}
     tables = {"levels": finite(levels), "curves": finite(curve_table(fragility))}
-    file.write_text(json.dumps({**about, **tables}, allow_nan=False), encoding="utf-8")
+    write_output(file, json.dumps({**about, **tables}, allow_nan=False))

@@ -213,7 +213,8 @@ def _described(
     if covariance is not None:
         quantile = float(stdtrit(records - 1, 0.5 + 0.5 * confidence))
         of_median = np.array([-1.0 / b, a / b**2])
-        half_width = quantile * math.sqrt(float(of_median @ covariance @ of_median))
+        variance_of_median = max(float(of_median @ covariance @ of_median), 0.0)  # below 0 by rounding only
+        half_width = quantile * math.sqrt(variance_of_median)
         median_interval = (median * _exp(-half_width), median * _exp(half_width))
         variance = max(float(covariance[1, 1]) / b**2, 0.5 / (records - 1))
         low, high = _spread_factors(variance, confidence)

@@ -101,7 +101,7 @@ def test_response_of_a_block_in_si_units():
     assert half_sine["pulse_duration"] == pytest.approx(0.25)
     near = run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:])
     assert near == run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:], "--restitution", "momentum")
-    assert "warning: the outcome changes within 5 % of this peak acceleration: at 4.7 m/s2" in near
+    assert "warning: the outcome changes within 5 % of this peak acceleration: at 4.70006 m/s2" in near
     few, many = text.splitlines(), run("response", *WHOLE, "--all").splitlines()
     assert many[: len(few)] == few
     assert any(line.startswith("half_diagonal") for line in many[len(few) :])

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -46,6 +47,26 @@ def test_a_picture_in_a_file(command, tmp_path):
         colours = picture.convert("RGB").resize((100, 100)).getcolors(10_000)
     assert len(colours) > 20
     assert max(count for count, _ in colours) < 9_500
+
+
+@pytest.mark.parametrize("blocks", [1, 2])
+def test_the_legend_of_a_fragility_is_not_cut(blocks, monkeypatch, tmp_path):
+    given = yaml.safe_load(SUITE.read_text())
+    suite = given["suite"]
+    suite["records"] |= {"folder": str(SUITE.parents[1] / "motions"), "pattern": "synthetic_3*.csv"}
+    suite |= {"blocks": suite["blocks"][:blocks], "demand": ["overturning"]}
+    suite["intensity"] = {"low": 2.0, "high": 20.0, "points": 6}
+    configuration = tmp_path / "suite.yaml"
+    configuration.write_text(yaml.safe_dump(given | {"suite": suite}))
+    figures = []
+    monkeypatch.setattr("rocking.plot.output.save_figure", lambda figure, _: figures.append(figure))
+    run("plot", "fragility", str(configuration), "--output", str(tmp_path / "picture.png"))
+    (figure,) = figures
+    figure.canvas.draw()
+    (legend,) = figure.legends
+    box = legend.get_window_extent()
+    assert figure.bbox.x0 <= box.x0
+    assert box.x1 <= figure.bbox.x1
 
 
 def test_a_picture_under_a_pulse_in_a_file(tmp_path):

@@ -45,24 +45,27 @@ def test_text_of_a_threshold_is_on_the_safe_side():
             assert up - down <= value * (2.0 * 10.0 ** (1 - digits) + 3e-6)
     assert str(Threshold(4.700067, True)) == "overturns above 4.70006"
     assert str(Threshold(13.1270943, False)) == "survives above 13.1272"
-    assert threshold_text(1.1338454) == "1.133"
+    assert threshold_text(1.1338454, 4) == "1.133"
     assert threshold_text(5e-7, 2) == "4.9e-07"  # within the error of the search
 
 
 def test_many_changes_nearby_are_counted():
     changes = [Threshold(0.96 + 0.01 * k, k % 2 == 0) for k in range(6)]
     about = "the outcome changes within 5 % of this scale: "
-    assert warnings_of_changes(1.0, changes, "scale") == [about + "6 times, from 0.9599 to 1.011"]
-    assert warnings_of_changes(1.0, changes[1::-1], "scale") == [about + "at 0.9599, 0.9701"]  # in order
+    assert warnings_of_changes(1.0, changes, "scale") == [about + "6 times, from 0.959999 to 1.01001"]
+    assert warnings_of_changes(1.0, changes[1::-1], "scale") == [about + "at 0.959999, 0.970001"]  # in order
     assert warnings_of_changes(2.0, changes, "scale") == []
+
+
+ONE_CHANGE = "it overturns from 1.13388 times the record"
 
 
 @pytest.mark.parametrize(
     ("count", "said"),
     [
-        (0, "no factor of the record up to 4.999 was found to overturn it"),
-        (1, "it overturns from 1.133 times the record"),
-        (3, "it overturns from 1.133 times the record; above that the outcome changes 2 more times up to 4.999 times"),
+        (0, "no factor of the record up to 4.99999 was found to overturn it"),
+        (1, ONE_CHANGE),
+        (3, f"{ONE_CHANGE}; above that the outcome changes 2 more times up to 4.99999 times"),
     ],
 )
 def test_changes_in_words(count, said):
@@ -124,7 +127,7 @@ def test_no_threshold_of_one_body_is_lower_and_each_is_confirmed_from_both_sides
     sizes = zip(*(bodies.parameters[name] for name in ("left", "right", "height")), strict=True)
     single = np.array([rocking.RigidBody(*size).thresholds(pulse, period=period).lowest for size in sizes])
     single = np.where(single <= highest, single, np.nan)
-    np.testing.assert_allclose(found, single, rtol=1e-3)  # several changes can lie between two nodes, 0.05 % apart
+    np.testing.assert_allclose(found, single, rtol=1e-3)  # several changes can lie between two strengths tried
     assert not (found > single * (1.0 + 1e-10)).any()
     known = np.isfinite(found)
     assert known.sum() >= 3

@@ -88,23 +88,31 @@ def overturning(cells):
     return outcome, impacts_of(cells), True, np.nan, np.nan
 
 
-def peak_from(values, cells, weights):
-    """Interpolated peak; (1 - peak)^2 is interpolated between those that all have it, first slices, then angles."""
+def form_between_angles(cells, measured):
+    """Whether (1 - peak)^2 is interpolated between angles, as where its error was measured; None if that differs."""
+    squared = {all(row[e].stencil == SQUARED for row in cells) for e in measured}
+    return squared.pop() if len(squared) == 1 else None
+
+
+def peak_from(values, cells, weights, squared_angles):
+    """Interpolated peak, first between slices, then between angles, each with the formula of its measured error."""
     squared = np.array([[cell.stencil == SQUARED for cell in row] for row in cells])
     by_angle, by_slice = weights
 
     def back(value):
         return 1.0 - np.sqrt(max(value, 0.0))
 
-    if squared.all():
-        return back(by_angle @ values @ by_slice)
-    layers = []
-    for own, one in zip(values, squared, strict=True):
-        singles = [
-            value if one.all() or not is_squared else back(value) for value, is_squared in zip(own, one, strict=True)
-        ]
-        layers.append(back(by_slice @ singles) if one.all() else by_slice @ singles)
-    return by_angle @ layers
+    between = []
+    for own, forms in zip(values, squared, strict=True):
+        alike = forms.all()
+        peaks = [back(value) if form and not alike else value for value, form in zip(own, forms, strict=True)]
+        on_angle = by_slice @ peaks
+        if alike and not squared_angles:
+            on_angle = back(on_angle)
+        elif squared_angles and not alike:
+            on_angle = (1.0 - on_angle) ** 2
+        between.append(on_angle)
+    return back(by_angle @ between) if squared_angles else by_angle @ between
 
 
 def expected(cubes, point, tolerance):
@@ -149,7 +157,11 @@ def expected(cubes, point, tolerance):
     values = [
         [x @ ((1.0 - cell.nodes) ** 2 if cell.stencil == SQUARED else cell.nodes) @ y for cell in row] for row in cells
     ]
-    peak = peak_from(np.array(values), cells, (by_angle, by_slice))
+    measured = [e_lower - e0] if size == 1 else [e_lower - e0, e_lower - e0 + 1]
+    squared_angles = form_between_angles(cells, measured) if count > 1 else False
+    if squared_angles is None:  # no error between the angles is known of either formula
+        return None
+    peak = peak_from(np.array(values), cells, (by_angle, by_slice), squared_angles)
     if bound > tolerance or abs(peak - 1.0) <= bound:
         return None
     return int(Outcome.RECOVERS), impacts_of(flat), peak > 1.0, max(peak, 0.0), bound

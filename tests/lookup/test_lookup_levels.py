@@ -7,7 +7,9 @@ import pytest
 
 from rocking._base.errors import DatasetError, InvalidArgumentError, OutsideCubeError
 from rocking._datasets.cube import read_spectrum, write_dataset
-from rocking._lookup.cube import open_cube
+from rocking._interpolation.stencils import PEAK, SQUARED
+from rocking._lookup.cube import Cube, open_cube
+from rocking._lookup.cube_slice import slice_of
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra, spectrum
 from tests.lookup_grid import GRID, assert_answers_are_right, crossed, random_points
@@ -71,6 +73,29 @@ def test_bounds_hold_at_a_crease_near_a_slice(tmp_path):
     case = {"slenderness": 0.8872271, "frequency_ratio": 14.640226, "restitution": 0.9779474}
     points = {name: np.append(values, case[name]) for name, values in points.items()}
     assert_answers_are_right(open_cube(tmp_path), points, 1e-3, 0.2)
+
+
+def test_bounds_hold_where_one_slice_of_a_cell_has_another_form():
+    """At eta = 0.90 and 15 degrees the peak is interpolated, on the other slices (1 - peak)^2."""
+    grid = {"slenderness": 0.0775 + 0.0025 * np.arange(4), "frequency_ratio": np.geomspace(0.2, 15.0, 241)[224:228]}
+    etas, angles = np.array([0.90, 0.92, 0.94, 0.96]), np.radians([15.0, 20.0, 25.0, 30.0])
+    slices = [slice_of(cube) for cube in spectra("sine", restitution=etas, alpha=angles, **grid)]
+    forms = np.array([one.layers.at(range(4))["stencil"][:, 1, 1] for one in slices])
+    assert forms.ravel().tolist() == [PEAK] + 15 * [SQUARED]
+    random, n = np.random.default_rng(7), 1000
+    points = {
+        "slenderness": random.uniform(0.08, 0.0825, n),
+        "frequency_ratio": random.uniform(11.4525, 11.6603, n),
+        "restitution": random.uniform(0.92, 0.96, n),
+        "alpha": random.uniform(angles[0], angles[-1], n),
+    }
+    cube = Cube("sine", etas, slices.__getitem__)
+    assert_answers_are_right(cube, points, 1e-4, 0.99)
+    # from 0.90 on the two slices beside the points differ in form between the angles: no error of either is known
+    points["restitution"] = random.uniform(0.9001, 0.9199, n)
+    assert set(cube.response(**points).source) == {"solver"}
+    points["alpha"] = angles[0]
+    assert_answers_are_right(cube, points, 1e-4, 0.99)
 
 
 def test_solver_is_used_only_where_a_missing_cube_is_needed(folder, tmp_path):

@@ -136,11 +136,26 @@ def test_boundary_in_groups_and_in_si_units(ax):
     curves = BLOCK.boundary("sine", restitution=0.85, period=tuple(window))
     x = np.concatenate([line.get_xdata() for line in plot.boundary(curves, ax).lines])
     assert (np.nanmin(x), np.nanmax(x)) == pytest.approx(tuple(window), rel=1e-9)
+    names = ["overturns after impacts", "overturns without impact"]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == names
     groups = plot.boundary(curves.drop_vars(["period", "peak_acceleration"]))
     direct = groups.lines[2]
     nearest = np.nanargmin(np.abs(direct.get_xdata() - 3.0))
     found = rocking.thresholds("sine", frequency_ratio=direct.get_xdata()[nearest], restitution=0.85, alpha=BLOCK.alpha)
     assert direct.get_ydata()[nearest] == pytest.approx(found.amplitude[-1], rel=1e-6)
+
+
+def test_the_key_of_a_map_lists_what_is_in_it():
+    grid = {"slenderness": np.linspace(0.5, 0.9, 5)[:, None], "frequency_ratio": np.linspace(6.0, 9.0, 6)}
+    found = rocking.peak_response("sine", restitution=0.85, alpha=0.2, **grid)
+    assert not found.overturned.any()
+    assert plot.control_map(found.to_xarray()).figure.legends == []
+    grid = {"slenderness": np.linspace(0.1, 1.2, 9)[:, None], "frequency_ratio": np.linspace(1.0, 6.0, 6)}
+    found = rocking.peak_response("sine", restitution=0.85, alpha=0.2, **grid)
+    (legend,) = plot.control_map(found.to_xarray()).figure.legends
+    outcomes = {"never uplifts": 0, "overturns after impacts": 2, "overturns without impact": 3}
+    present = [name for name, code in outcomes.items() if (found.outcome == code).any()]
+    assert [text.get_text() for text in legend.get_texts()] == present
 
 
 def test_cube_has_a_panel_for_each_angle(ax):

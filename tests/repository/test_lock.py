@@ -14,9 +14,11 @@ from packaging.version import Version
 
 ROOT = Path(__file__).parents[2]
 LOCK = (ROOT / "environment.lock").read_text()
+RELEASE = (ROOT / "deploy" / "release.lock").read_text()
 SERVICE = (ROOT / "deploy" / "service.lock").read_text()
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-PINS = {canonicalize_name(name): version for name, version in re.findall(r"^([\w.-]+)==(\S+)", LOCK, re.MULTILINE)}
+PIN = r"^([\w.-]+)==(\S+)"
+PINS = {canonicalize_name(name): version for name, version in re.findall(PIN, LOCK, re.MULTILINE)}
 EXTRAS = PROJECT["project"]["optional-dependencies"]
 UNLOCKED = ("seismic", "slurm")
 """Extras that are not in the lock: packages that few users need."""
@@ -36,6 +38,15 @@ DIRECT = [
 
 def test_every_line_is_a_pin_or_a_hash() -> None:
     assert re.fullmatch(r"([\w.-]+==[\w.+!-]+( \\\n    --hash=sha256:[0-9a-f]{64})+\n)+", LOCK)
+
+
+def test_tools_of_a_release_have_hashes_and_the_versions_of_the_lock() -> None:
+    assert re.fullmatch(r"([\w.-]+==[\w.+!-]+( \\\n    --hash=sha256:[0-9a-f]{64})+\n)+", RELEASE)
+    pins = {canonicalize_name(name): version for name, version in re.findall(PIN, RELEASE, re.MULTILINE)}
+    tools = [Requirement(line) for line in PROJECT["dependency-groups"]["release"]]
+    assert [tool for tool in tools if not tool.specifier.contains(pins[canonicalize_name(tool.name)])] == []
+    common = pins.keys() & PINS.keys()
+    assert {name: pins[name] for name in common} == {name: PINS[name] for name in common}
 
 
 def blocks(lock: str) -> dict[str, str]:

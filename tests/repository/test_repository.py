@@ -129,6 +129,18 @@ def test_hosted_runs_call_targets_of_make() -> None:
     assert TEXTS[".ci/run"].splitlines()[-1].endswith("exec make --no-print-directory test")
 
 
+def test_actions_of_hosted_runs_are_named_by_commits() -> None:
+    hosted = [text for name, text in TEXTS.items() if name.startswith(".github/workflows/")]
+    actions = [line for text in hosted for line in re.findall(r"^ +(?:- )?uses: (.*)$", text, re.MULTILINE)]
+    assert len(actions) > 10
+    commit_and_version = re.compile(r"[\w-]+/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+")
+    assert [action for action in actions if not commit_and_version.fullmatch(action)] == []
+    commits: dict[str, set[str]] = {}
+    for action in actions:
+        commits.setdefault(action.partition("@")[0], set()).add(action)
+    assert [names for names in commits.values() if len(names) > 1] == []
+
+
 def test_settings_are_for_files_that_exist() -> None:
     modules = [name for one in SETTINGS["mypy"]["overrides"] for name in one["module"]]
     assert [name for name in modules if importlib.util.find_spec(name.removesuffix(".*")) is None] == []

@@ -1,4 +1,4 @@
-"""The five tasks of docs/tasks.md, performed on a copy of the repository as they are written."""
+"""The six tasks of docs/tasks.md, performed on a copy of the repository as they are written."""
 
 import os
 import re
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the repository with all five changes; none is to a kernel, so those of this checkout serve it too."""
+    """A copy of the repository with all six changes; none is to a kernel, so those of this checkout serve it too."""
     folder = tmp_path_factory.mktemp("tasks") / "repository"
     for name in COPIED:
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
@@ -39,6 +39,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for step in STEP.finditer(text):
             if step["path"]:
                 perform(folder / step["path"], step)
+    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--no-build-isolation"]
+    subprocess.run([*install, "--target", folder / "build/packages", folder / "towers"], check=True)
     precompile.main()
     compiled = kernel_cache.cache_folder()
     assert compiled is not None
@@ -51,6 +53,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def perform(path: Path, step: re.Match[str]) -> None:
     if step["how"] == "New file":
         assert not path.exists(), path
+        path.parent.mkdir(exist_ok=True)
         path.write_text(step["text"])
         return
     before, line, after = path.read_text().partition(f"\n{step['line']}\n")
@@ -60,9 +63,10 @@ def perform(path: Path, step: re.Match[str]) -> None:
     path.write_text(f"{before}\n{parts[step['where']]}{after}")
 
 
-@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure", "field"))
+@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure", "field", "package"))
 def test_task(copy: Path, task: str) -> None:
-    environment = os.environ | {"PYTHONPATH": f"{copy}{os.pathsep}{copy / 'api'}", "PYTHONWARNINGS": "error"}
+    folders = [copy, copy / "api", copy / "assessment", *([copy / "build/packages"] if task == "package" else [])]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, folders)), "PYTHONWARNINGS": "error"}
     (step,) = [step for step in STEP.finditer(TASKS[task]) if not step["path"]]
     command = ["-c", step["text"]] if step["language"] == "python" else shlex.split(step["text"])[1:]
     if task == "figure":

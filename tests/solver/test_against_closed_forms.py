@@ -66,6 +66,13 @@ def test_outcomes_of_the_sine(sine_cells):
     np.testing.assert_array_equal(directly, a >= closed.direct)
 
 
+def test_a_block_that_rests_and_uplifts_again_may_overturn_after_two_impacts():
+    """At eta = 0.0055 the impacts accumulate to rest; the number of impacts need not be odd then."""
+    group = {"slenderness": 0.9466138403728683, "frequency_ratio": 0.343037995180433}
+    found = rocking.peak_response("sine", **group, restitution=0.005539619256187129)
+    assert (bool(found.overturned), int(found.impacts)) == (True, 2)
+
+
 @pytest.mark.parametrize("name", SIGNED)
 def test_overturning_without_a_further_impact_for_every_pulse(name):
     pulse = rocking.pulse(name)

@@ -57,6 +57,9 @@ def assess(
     friction: Annotated[
         float | None, said("Coefficient of friction of the meshes; without it sliding is not assessed.", "-")
     ] = None,
+    contact_tolerance: Annotated[
+        float, said("Height of the vertices of a mesh on which it stands, over its own height, 0 to 0.1.", "-")
+    ] = 1e-4,
     pga: Annotated[
         str | None,
         option(PGA, text="Peak ground acceleration of the site, from its hazard map; records are scaled to it"),
@@ -137,11 +140,13 @@ def assess(
         InvalidArgumentError,
         file_errors,
         option_errors,
+        output_errors,
         output_format,
         plain_numbers,
         printable,
         progress,
         split_pulses,
+        write_output,
     )
     from rocking_assessment._hazard.curve_files import read_hazard
     from rocking_assessment._objects.assess import assess as assess_objects
@@ -177,7 +182,8 @@ def assess(
         )
         table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
         bad = [f"{objects}, {printable(str(one))}" for one in table.bad_rows]
-        meshes = [Object.from_mesh(path, unit=mesh_unit, friction=friction) for path in mesh or ()]
+        of_meshes: dict[str, Any] = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
+        meshes = [Object.from_mesh(path, **of_meshes) for path in mesh or ()]
         given = [*table.objects, *meshes]
         if not given:
             raise InvalidArgumentError(
@@ -196,13 +202,16 @@ def assess(
             )
         if output is not None:
             is_xlsx = Path(output).suffix.lower() == ".xlsx"
-            _write("output", output, (found.to_xlsx if is_xlsx else found.to_csv)(bad_rows=table.bad_rows))
+            write_table = found.to_xlsx if is_xlsx else found.to_csv
+            with output_errors("output", output):
+                write_table(output, bad_rows=table.bad_rows)
         if report is not None:
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
             project = Project(title, author, place, day, command)
             text = report_html(found, project, table.bad_rows, table.reading, detailed=detail == "all")
-            _write("report", report, text)
+            with output_errors("report", report):
+                write_output(report, text)
     _print(found, kind, table, bad, directions)
     if kind.kind == "table" and table.reading:
         typer.echo(printable(table.reading))
@@ -244,21 +253,18 @@ def _read(
     return found
 
 
-def _write(option: str, path: str, content: str | bytes) -> None:
-    """Write a file."""
-    from rocking.extension import InvalidArgumentError
-
-    try:
-        Path(path).write_bytes(content.encode() if isinstance(content, str) else content)
-    except OSError as error:
-        raise InvalidArgumentError(option, path, f"a file that can be written ({error.strerror})") from None
-
-
 def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], directions: bool) -> None:
     """Print a line for each object, and below them each kind of warning with the objects to which it applies."""
     from rocking.extension import print_json, print_table, printable
     from rocking_assessment._objects.columns import OUTPUTS
-    from rocking_assessment._objects.summary import names_in_short, rows_in_units, table_of, warnings_of
+    from rocking_assessment._objects.summary import (
+        counts_of,
+        lines_of,
+        names_in_short,
+        rows_in_units,
+        table_of,
+        warnings_of,
+    )
 
     columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
     if form.kind == "json":
@@ -269,6 +275,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
         typer.echo(found.to_csv(), nl=False)
         return
     print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
+    typer.echo(counts_of(lines_of(found)))
     if found.resolution:
         typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart")
     for text, names in warnings_of(found):

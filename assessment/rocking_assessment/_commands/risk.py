@@ -37,6 +37,7 @@ def risk(
         curve_table,
         finite,
         option_errors,
+        output_errors,
         output_format,
         print_csv,
         print_json,
@@ -62,10 +63,8 @@ def risk(
     with option_errors({"fragility": "--output", "format": "--output"}):
         if file is not None:
             write = write_nrml if file.lower().endswith(".xml") else write_pelicun
-            try:
+            with output_errors("output", file):
                 write(fragility, file)
-            except OSError as error:
-                raise InvalidArgumentError("output", file, f"a file that can be written ({error.strerror})") from None
         if curve is None:
             return
         rates = annual_rate(fragility, curve)

@@ -7,13 +7,19 @@ pendulum near its upper equilibrium. With the peak at time t_c,
 
 dn the elliptic function of Jacobi. An impact multiplies the velocity by eta, so that the peaks obey
 cos(alpha - theta_n) - cos(alpha) = eta^2 (cos(alpha - theta_(n-1)) - cos(alpha)) (Housner 1963), with the factor
-(p/p')^2 where the edges differ. The whole trace therefore follows from the time of the first impact, the peak before
-it, and eta, alpha, p; these are fitted to all samples by least squares, with an offset and a drift of the sensor. The
-start is from peaks and impacts, which are located by a parabola in each flight.
+(p/p')^2 where the edges differ. The whole trace therefore follows from the time of the first impact, the energy before
+it, which that of a push at the release may be a part of, and eta, alpha, p. These are fitted to all samples by least
+squares, with an offset and a drift of the sensor. The start is from peaks and impacts, which are located by a parabola
+in each flight.
 
-The residual is tested: errors of one sample do not tell those of the next. Where they do, the samples count as fewer
-independent ones, which widens the intervals (for N/tau independent samples, with tau the sum of the correlations of the
-residual over the lags), and where that leaves too few, or the residual is too large, the trace is refused.
+The residual is tested. Where flights differ by more than errors explain, because the ground moves, restitution varies
+or the body is not quite rigid, ln alpha of each flight and ln eta of each impact are fitted with a random change, and
+the intervals count the unknown sizes of the changes (`rocking_assessment._evidence.variance_components`). Where
+errors of one
+sample tell those of the next, as after a filter, the samples count as fewer independent ones (N/tau, with tau the sum
+of the correlations of the residual over the lags), and the rotation is fitted as averaged over an unknown duration, the
+effect of any filter without delay in lowest order. Where too few independent samples are left, or flights differ by
+too much, or the residual is too large, the trace is refused.
 
 References
 ----------
@@ -26,7 +32,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -35,6 +41,7 @@ from scipy.optimize import OptimizeResult, least_squares
 from scipy.special import ellipj, ellipkinc, fdtri, stdtrit
 
 from rocking.extension import Array, Flags, Index, InvalidArgumentError, Scalar, in_range, integer, number, variable
+from rocking_assessment._evidence.variance_components import Mixture, mixture
 
 if TYPE_CHECKING:
     from rocking.extension import StopFlag  # numba takes longer to load than the fit
@@ -49,7 +56,7 @@ LOWEST_FREQUENCY = 0.1
 
 SHORTEST_STEP = 1e-7  # shortest step between samples [s]
 MIN_IMPACTS = 3  # fewest impacts from which eta, alpha and p are told apart [-]
-MAX_FLIGHTS = 200  # most flights that are fitted [-]
+MAX_FLIGHTS = 80  # most flights that are fitted [-]: a fit with a change in each takes some times longer than without
 
 LEVEL = 10.0
 """Peak of the smallest flight that is used, over the noise [-]; at 6, one trace in 100 had a flight too few."""
@@ -60,7 +67,13 @@ START_SHARES = 0.3, 0.5, 0.7, 0.85, 0.95
 """Shares of alpha that the first peak is tried at [-]: of 200 traces one start in alpha left three at wrong minima."""
 
 FIRST_EDGE = 4  # unknowns before those of the edges [-]
-HIGHEST_SHARE = 0.9999  # highest peak over alpha [-]: at alpha a flight has no end
+HIGHEST_FLIGHT = 1.0 - 1e-8  # highest energy of a flight over that of alpha [-]: at alpha a flight has no end
+HIGHEST_ENERGY = 25.0  # highest energy before the first impact over that of alpha, of a body released with a push [-]
+SHORTEST_AVERAGE = 0.1  # shortest duration over which a trace is averaged, over the step between samples [-]
+STEP = 1e-6  # of derivatives by changes of ln alpha and ln eta [-]
+
+AVERAGE = 0.5 * np.polynomial.legendre.leggauss(5)[0], 0.5 * np.polynomial.legendre.leggauss(5)[1]
+"""Nodes and weights of an average over a duration of 1."""
 
 LARGEST_RESIDUAL = 0.1
 """Standard deviation of the residual over the first peak, above which the trace is no free rocking [-]."""
@@ -68,8 +81,20 @@ LARGEST_RESIDUAL = 0.1
 NEGLIGIBLE = 1e-3
 """Standard deviation of the residual over the first peak, below which a trace is not refused for its errors [-]."""
 
+LARGEST_DEPARTURE = 0.05
+"""Largest changes of alpha and eta from flight to flight [-]: those of larger ones are not independent of each other.
+
+Of ground that moves at 5 % of uplift they are 0.1 to 16 %, and intervals of those above 5 % too narrow.
+"""
+
+EXACT = 5e-5
+"""Standard deviation of the residual over the first peak, below which a trace is computed, and not measured [-]."""
+
 LEAST_FREEDOM = 10.0  # fewest independent samples less unknowns of a trace that is free rocking [-]
 MAX_LOG = 700.0  # largest logarithm of the end of an interval [-]: e^710 is infinite
+ROUNDS = 8  # most steps of a fit with changes, each with the sizes of changes that the one before it gave [-]
+SETTLED = 0.05  # largest last step over the standard deviation of an unknown [-]
+SHARES = 1.0, 0.5, 0.25, 0.1, 0.02  # of a step that are tried [-]
 SIGNIFICANT = 4.0  # standard deviations beyond which a sum of correlations of the residual is no chance [-]
 HELD_SHARE = 0.95  # share of the first peak below which the body is taken as released [-]: a hand holds it before
 
@@ -90,8 +115,8 @@ def identify_free_rocking(
     edges : {1, 2}
         1 for a body with equal edges; 2 fits the three numbers of each edge.
     confidence : float
-        Of the intervals [-], (0, 1): those of least squares with independent errors of equal variance, which are
-        widened where the residual shows that errors follow each other, or that flights differ.
+        Of the intervals [-], (0, 1). They count errors of the samples, errors that follow each other, as after a
+        filter, and random changes of alpha and restitution from flight to flight.
     stop : StopFlag, optional
         Cancels the work: it raises `StoppedError` soon after another thread sets the flag.
 
@@ -109,8 +134,9 @@ def identify_free_rocking(
     ------
     InvalidArgumentError
         If an argument is not as described, the rotation seems to be in degrees, the trace has fewer than three
-        impacts, for two edges fewer than six, or it is no free rocking: an oscillation, or errors from the best block
-        that last so long that fewer than `LEAST_FREEDOM` more independent samples than unknowns are left.
+        impacts, for two edges fewer than six, or it is no free rocking: an oscillation, flights that differ by more
+        than `LARGEST_DEPARTURE`, or errors from the best block that last so long that fewer than `LEAST_FREEDOM` more
+        independent samples than unknowns are left.
 
     Notes
     -----
@@ -135,7 +161,8 @@ def identify_free_rocking(
     while True:  # a few flights first: a wrong period would shift the later ones by whole flights
         used = (t > first) & (t <= t[flights[count - 1][-1]])
         misfit = partial(_misfit, t[used], theta[used], sign, sides, count, stop)
-        fit = min((_fitted(misfit, start) for start in starts), key=lambda one: float(one.cost))
+        fits = (_fitted(misfit, start, sides, jac="2-point", tolerance=1e-8) for start in starts)
+        fit = min(fits, key=lambda one: float(one.cost))
         starts = [fit.x]
         # the first offset is inaccurate, and errors that follow each other hardly differ from sample to sample
         residual = math.sqrt(2.0 * fit.cost / np.count_nonzero(used))
@@ -144,6 +171,7 @@ def identify_free_rocking(
             break
         fewer = len(flights) < count
         count = min(count + count // 2, len(flights))
+    fit = _fitted(misfit, fit.x, sides, jac="3-point", tolerance=1e-12)
     largest = float(np.abs(peaks).max())
     if fit.x[FIRST_EDGE : FIRST_EDGE + sides].max() >= math.log(0.999 * MAX_ROTATION):
         allowed = f"free rocking in radians, not degrees, of a block with alpha below {MAX_ROTATION:g} rad; none fits"
@@ -151,23 +179,181 @@ def identify_free_rocking(
     if residual > LARGEST_RESIDUAL * largest:
         allowed = "free rocking: no block of the model is within 10 % of the first peak of these samples"
         raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or allowed)
-    trace = partial(_trace, t[used], fit.x, sign, sides, count)
-    model, impacts = trace()
-    error, step = model - theta[used], float(np.ptp(t[used])) / np.count_nonzero(used)
-    correlated = _correlated(error)
-    freedom = error.size / correlated - fit.x.size
-    if freedom < LEAST_FREEDOM and residual > NEGLIGIBLE * largest:
+    bodies = _Bodies(t[used], theta[used], sign, sides, count, stop)
+    state = bodies.state(fit.x, np.zeros(2 * count - 1))
+    best = _estimated(state)._replace(departure=0.0) if residual < EXACT * largest else _with_changes(bodies, state)
+    model, impacts = bodies.trace(best.state.x, best.state.w)
+    step = float(np.ptp(t[used])) / np.count_nonzero(used)
+    if best.freedom < LEAST_FREEDOM and residual > NEGLIGIBLE * largest:
         raise InvalidArgumentError(
             "rotation",
             f"samples {residual:.3g} rad from the best block, {residual / noise:.3g} times their noise, by errors that "
-            f"last {correlated * step:.2g} s",
+            f"last {best.correlated * step:.2g} s",
             "free rocking of a rigid body on ground at rest, by a sensor whose drift does not change",
         )
-    departure, changes = _departure(error, fit.jac, lambda one: trace(one)[0], count)
-    found = _Found(t, theta, used, model, impacts, fit, sides, level)
-    result = _described(found, max(freedom, LEAST_FREEDOM), correlated, departure, changes, noise)
+    if best.departure > LARGEST_DEPARTURE:
+        raise InvalidArgumentError(
+            "rotation",
+            f"flights that differ by {100.0 * best.departure:.2g} % in alpha or restitution",
+            f"free rocking of a rigid body on ground at rest, whose flights differ by {LARGEST_DEPARTURE:.0%} at most",
+        )
+    found = _Found(t, theta, used, model, impacts, best, sides, level, noise)
+    result = _described(found)
     _check_seconds(t, float(result["frequency_parameter_upper"].max()))
     return result
+
+
+class _State(NamedTuple):
+    """Unknowns, changes from flight to flight, errors of the trace, and its derivatives by both."""
+
+    x: Array
+    w: Array
+    error: Array
+    jacobian: Array
+    changes: Array
+
+    def cost(self, scale: float, sizes: Array) -> float:
+        """Errors over their scale, and changes over their sizes, squared."""
+        return float(np.sum((self.error / scale) ** 2) + np.sum((self.w / sizes) ** 2))
+
+
+class _Bodies(NamedTuple):
+    """Blocks for the samples that are fitted."""
+
+    t: Array
+    theta: Array
+    sign: float
+    sides: int
+    flights: int
+    stop: StopFlag | None
+
+    def trace(self, x: Array, w: Array) -> tuple[Array, Array]:
+        """Rotation and impacts."""
+        if self.stop is not None:
+            self.stop.check()
+        return _trace(self.t, x, self.sign, self.sides, self.flights, w)
+
+    def state(self, x: Array, w: Array) -> _State:
+        """The state at unknowns and changes, with derivatives by differences."""
+        here = self.trace(x, w)[0]
+        jacobian = np.empty((here.size, x.size))
+        for k, step in enumerate(_steps(x)):
+            unit = np.zeros(x.size)
+            unit[k] = step
+            jacobian[:, k] = (self.trace(x + unit, w)[0] - here) / step
+        changes = np.empty((here.size, w.size))
+        for k in range(w.size):
+            unit = np.zeros(w.size)
+            unit[k] = STEP
+            changes[:, k] = (self.trace(x, w + unit)[0] - here) / STEP
+        return _State(x, w, here - self.theta, jacobian, changes)
+
+
+def _steps(x: Array) -> Array:
+    """Steps of differences by the unknowns; none goes beyond an end from inside."""
+    steps = np.full(x.size, STEP)
+    steps[FIRST_EDGE - 1] = -STEP * x[FIRST_EDGE - 1]
+    edges = (x.size - FIRST_EDGE) // 3
+    steps[FIRST_EDGE + 2 * edges : FIRST_EDGE + 3 * edges] = -STEP
+    if x.size > FIRST_EDGE + 3 * edges:
+        steps[-1] = 1e-3 * x[-1]
+    return steps
+
+
+class _Best(NamedTuple):
+    """The fit, its intervals, and what widens them.
+
+    `freedom`: of the errors [-]; `correlated`: samples over which they follow each other [-]; `departure`: by how much
+    alpha and eta change from flight to flight, as a share of them [-], 0 where independent errors explain as much.
+    """
+
+    state: _State
+    mixture: Mixture
+    variance: float
+    freedom: float
+    correlated: float
+    departure: float
+
+
+def _with_changes(bodies: _Bodies, state: _State) -> _Best:
+    """Fit alpha and eta with a change in each flight where flights differ, and an average where errors are correlated.
+
+    A filter makes errors follow each other, and averages the rotation too: over a duration that is fitted.
+    """
+    best = _estimated(state)
+    correlated = best.correlated > 1.0
+    if correlated:
+        shortest = float(np.median(np.diff(bodies.t))) ** 2
+        state = bodies.state(np.append(state.x, shortest), state.w)
+        best = _estimated(state)
+    if not (correlated or best.departure):
+        return best
+    for _ in range(ROUNDS):
+        before = best.state
+        sizes = np.repeat(best.mixture.typical_sizes(), [bodies.flights, bodies.flights - 1])
+        state = _improved(bodies, best.state, sizes, math.sqrt(best.variance))
+        if state is best.state:
+            break
+        best = _estimated(state)
+        if np.all(np.abs(state.x - before.x) < SETTLED * best.mixture.deviation.min(axis=0)):
+            break
+    return best
+
+
+def _estimated(state: _State) -> _Best:
+    """The linear model at a state, in the space of the derivatives."""
+    y = state.changes @ state.w - state.error
+    unknowns, flights = state.x.size, (state.w.size + 1) // 2
+    basis, triangle = np.linalg.qr(np.hstack([state.jacobian, state.changes]))
+    seen = basis.T @ y
+    unseen = y - basis @ seen  # what neither unknowns nor changes explain
+    correlated = _correlated(unseen)
+    left = y.size - triangle.shape[1]
+    freedom = max(left / correlated, 1.0)
+    variance = correlated * float(unseen @ unseen) / max(left, 1)
+    fixed, changes = triangle[:, :unknowns], triangle[:, unknowns:]
+    groups = changes[:, :flights], changes[:, flights:]
+    found = mixture(seen, fixed, groups, max(variance, 1e-30), freedom)
+    departure = 0.0
+    if _differs(seen, fixed, changes, variance, freedom):
+        departure = float(found.typical_sizes().max())
+    return _Best(state, found, variance, freedom, correlated, departure)
+
+
+def _differs(seen: Array, fixed: Array, changes: Array, variance: float, freedom: float) -> bool:
+    """True if changes from flight to flight explain more than errors do in one of 100 traces."""
+    fitted = np.linalg.qr(fixed / np.maximum(np.linalg.norm(fixed, axis=0), 1e-300))[0]
+    beside = changes - fitted @ (fitted.T @ changes)
+    basis, sizes, _ = np.linalg.svd(beside)
+    basis = basis[:, : np.count_nonzero(sizes > 1e-6 * sizes[0])]
+    explained = float(np.sum((basis.T @ (seen - fitted @ (fitted.T @ seen))) ** 2))
+    rank = basis.shape[1]
+    return bool(explained > rank * variance * float(fdtri(rank, freedom, 0.99)))
+
+
+def _improved(bodies: _Bodies, state: _State, sizes: Array, scale: float) -> _State:
+    """A step of Gauss and Newton to the least cost of errors of the scale and changes of the sizes.
+
+    Halved until the cost falls; the state itself if none of the steps lowers it.
+    """
+    unknowns = state.x.size
+    lengths = np.maximum(np.linalg.norm(state.jacobian, axis=0), 1e-300)
+    top = np.hstack([state.jacobian / lengths, state.changes * sizes]) / scale
+    bottom = np.hstack([np.zeros((sizes.size, unknowns)), np.eye(sizes.size)])
+    wanted = -np.concatenate([state.error / scale, state.w / sizes])
+    step = np.linalg.lstsq(np.vstack([top, bottom]), wanted)[0]
+    smoothed = unknowns > FIRST_EDGE + 3 * bodies.sides
+    low, high = _ends(bodies.sides, smoothed)
+    if smoothed:
+        low[-1] = (SHORTEST_AVERAGE * float(np.median(np.diff(bodies.t)))) ** 2
+    cost = state.cost(scale, sizes)
+    for share in SHARES:
+        x = np.clip(state.x + share * step[:unknowns] / lengths, low, high)
+        w = state.w + share * step[unknowns:] * sizes
+        error = bodies.trace(x, w)[0] - bodies.theta
+        if state._replace(w=w, error=error).cost(scale, sizes) < cost:
+            return bodies.state(x, w)
+    return state
 
 
 def _check_seconds(t: Array, p: float) -> None:
@@ -185,9 +371,10 @@ class _Found(NamedTuple):
     used: Flags
     model: Array
     impacts: Array
-    fit: OptimizeResult
+    best: _Best
     sides: int
     level: float
+    noise: float
 
 
 def _level(t: Array, x: Array) -> Array:
@@ -206,28 +393,6 @@ def _correlated(residual: Array) -> float:
     lags = 2 ** np.arange(max(size // 4, 1).bit_length())
     sums = np.cumsum(covariance[1:] / covariance[0])[lags - 1] if covariance[0] > 0.0 else np.zeros(lags.size)
     return float(1.0 + 2.0 * np.max(sums, where=sums > SIGNIFICANT * np.sqrt(lags / size), initial=0.0))
-
-
-def _departure(residual: Array, jacobian: Array, trace: Callable[[Array], Array], flights: int) -> tuple[float, Array]:
-    """By how much alpha and eta would have to change from flight to flight for the residual, as a share of them [-].
-
-    0 where independent errors tell as much in one of 100 traces. The ground, or a body that is not rigid, changes the
-    flights so: a ground acceleration of a share of that of uplift changes alpha by this share. Also the derivatives
-    (samples, changes) of the trace.
-    """
-    step = 1e-6
-    units = step * np.delete(np.eye(2 * flights), flights, axis=0).reshape(-1, 2, flights)  # no impact at the start
-    at_none = trace(np.zeros((2, flights)))
-    changes = np.array([trace(one) - at_none for one in units]).T / step
-    seen = changes - jacobian @ np.linalg.lstsq(jacobian, changes)[0]
-    basis, sizes, _ = np.linalg.svd(seen, full_matrices=False)
-    basis = basis[:, sizes > 1e-6 * sizes[0]]
-    told = float(np.sum((basis.T @ residual) ** 2))
-    rank, freedom = basis.shape[1], residual.size - jacobian.shape[1] - basis.shape[1]
-    noise = (float(residual @ residual) - told) / max(freedom, 1)
-    if freedom < 1 or told <= rank * noise * float(fdtri(rank, freedom, 0.99)):
-        return 0.0, changes
-    return math.sqrt((told - rank * noise) / float(np.sum(seen**2))), changes
 
 
 def _oscillation(impacts: Array, peaks: Array) -> str | None:
@@ -297,7 +462,8 @@ def _flights(t: Array, theta: Array, noise: float) -> tuple[list[Index], Array]:
 def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Array]:
     """First values of all unknowns, one set for each share of alpha that the first peak may be.
 
-    p is from peaks and times of flight, in the slender limit (2/p) arccosh(1/(1 - theta_n/alpha)); eta from the peaks.
+    p is from peaks and times of flight, in the slender limit (2/p) arccosh(1/(1 - theta_n/alpha)); eta from the peaks,
+    and with it the energy before the first impact from the peak after it: a push may have added to the first flight.
     """
     size, duration = np.abs(peaks), np.diff(impacts)
     found = []
@@ -305,89 +471,143 @@ def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Arr
         alpha = size.max() / share
         rates = 2.0 * np.arccosh(1.0 / (1.0 - size[1:-1] / alpha)) / duration
         barrier = 1.0 - (1.0 - size / alpha) ** 2
-        eta = float(np.clip(np.sqrt(np.median(barrier[1:] / barrier[:-1])), 0.3, 0.99))
+        eta = float(np.clip(np.sqrt(np.median(barrier[2:] / barrier[1:-1])), 0.3, 0.99))
         edges = np.repeat([math.log(alpha), math.log(np.median(rates)), eta], sides)
-        found.append(np.concatenate([[offset, 0.0, impacts[0], size[0] / alpha], edges]))
+        found.append(np.concatenate([[offset, 0.0, impacts[0], barrier[1] / eta**2], edges]))
     return found
 
 
-def _misfit(t: Array, theta: Array, sign: float, sides: int, flights: int, stop: StopFlag | None, x: Array) -> Array:
+def _misfit(
+    t: Array,
+    theta: Array,
+    sign: float,
+    sides: int,
+    flights: int,
+    stop: StopFlag | None,
+    x: Array,
+    w: Array | None = None,
+) -> Array:
     if stop is not None:
         stop.check()
-    return _trace(t, x, sign, sides, flights)[0] - theta
+    return _trace(t, x, sign, sides, flights, w)[0] - theta
 
 
-def _fitted(misfit: Callable[[Array], Array], x: Array) -> OptimizeResult:
-    sides = (x.size - FIRST_EDGE) // 3
+def _ends(sides: int, smoothed: bool) -> tuple[list[float], list[float]]:
+    """Lowest and highest values of the unknowns."""
     low = [-1.0, -np.inf, -np.inf, 1e-6, *[-12.0] * sides, *[-5.0] * sides, *[0.0] * sides]
-    high = [1.0, np.inf, np.inf, HIGHEST_SHARE, *[math.log(MAX_ROTATION)] * sides, *[6.0] * sides, *[1.0] * sides]
+    high = [1.0, np.inf, np.inf, HIGHEST_ENERGY, *[math.log(MAX_ROTATION)] * sides, *[6.0] * sides, *[1.0] * sides]
+    return low + [0.0] * smoothed, high + [np.inf] * smoothed
+
+
+def _fitted(
+    misfit: Callable[[Array], Array], x: Array, sides: int, *, jac: Literal["2-point", "3-point"], tolerance: float
+) -> OptimizeResult:
+    low, high = _ends(sides, smoothed=False)
     inside = np.clip(x, np.add(low, 1e-7), np.subtract(high, 1e-7))
-    return least_squares(misfit, inside, bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12)
+    return least_squares(misfit, inside, jac, (low, high), x_scale="jac", xtol=tolerance, ftol=tolerance)
 
 
 def _trace(
     t: Array, x: Array, sign: float, sides: int, flights: int, changes: Array | None = None
 ) -> tuple[Array, Array]:
-    """Rotation at times t (samples,), and times of the impacts (flights - 1,), from all unknowns.
+    """Rotation at times t (samples,), ascending, and times of the impacts (flights - 1,), from all unknowns.
 
-    x: offset at the first impact, drift, time of that impact, peak before it over alpha, and of each edge ln alpha,
-    ln p, eta. `changes` (2, flights): of ln alpha and ln eta, flight by flight.
+    x: offset at the first impact, drift, time of that impact, energy before it over that of alpha, and of each edge
+    ln alpha, ln p, eta; where it has one more, the square of the duration over which the trace is averaged [s2].
+    `changes` (2 flights - 1,): of ln alpha, flight by flight, and of ln eta, impact by impact.
     """
-    impact, share = x[2:FIRST_EDGE]
-    alpha, p, eta = x[FIRST_EDGE:].reshape(3, sides)
-    alpha, p = np.exp(alpha), np.exp(p)
-    side = 0 if sign > 0.0 else sides - 1
-    tilts, kicks = np.exp(np.zeros((2, flights)) if changes is None else changes).tolist()
-    angle = float(alpha[side]) * tilts[0]
-    phi = angle - float(alpha[side]) * share
+    shape = _shape(x, sign, sides, flights, np.zeros(2 * flights - 1) if changes is None else changes)
+    impacts = shape.impacts[:-1]
+    if x.size == FIRST_EDGE + 3 * sides:
+        return _level(t, x) + _rotation(t, shape), impacts
     theta = _level(t, x)
-    impacts = np.empty(flights)
-    begin = -math.inf
+    for node, weight in zip(*AVERAGE, strict=True):
+        theta += weight * _rotation(t + node * math.sqrt(x[-1]), shape)
+    return theta, impacts
+
+
+class _Shape(NamedTuple):
+    """Flights of a trace: the arrays (flights,) are of the closed form; `energy` is that before the first impact."""
+
+    impacts: Array
+    centre: Array
+    p: Array
+    angle: Array
+    lowest: Array
+    sign: Array
+    energy: float
+
+
+def _shape(x: Array, sign: float, sides: int, flights: int, changes: Array) -> _Shape:
+    impact, energy = x[2:FIRST_EDGE].tolist()
+    alpha, p, eta = x[FIRST_EDGE : FIRST_EDGE + 3 * sides].reshape(3, sides)
+    alpha, p, eta = np.exp(alpha).tolist(), np.exp(p).tolist(), eta.tolist()
+    tilts, kicks = np.exp(changes[:flights]).tolist(), np.exp(changes[flights:]).tolist()
+    side = 0 if sign > 0.0 else sides - 1
+    rows = []
+    end = impact
     for k in range(flights):
-        m = math.cos(0.5 * phi) ** 2
-        lowest = math.sin(0.5 * phi)
+        angle = alpha[side] * tilts[k]
         edge = math.sin(0.5 * angle)
-        dn = min(lowest / edge, 1.0)
+        if k > 0:
+            energy = min(energy, HIGHEST_FLIGHT)
+        lowest = edge * math.sqrt(max(1.0 - energy, 1.0 - HIGHEST_FLIGHT))  # sin(phi_c/2)
+        m = 1.0 - lowest * lowest
+        dn = lowest / edge
         half = float(ellipkinc(math.asin(math.sqrt(max(1.0 - dn * dn, 0.0) / m)), m)) / p[side]
-        centre = impact - half if k == 0 else begin + half
+        centre = impact - half if k == 0 else end + half
         end = centre + half
-        inside = (t > begin) & ((t <= end) if k < flights - 1 else True)
-        shape = ellipj(np.clip(p[side] * (t[inside] - centre), -1e3, 1e3), m)[2]
-        theta[inside] += sign * (angle - 2.0 * np.arcsin(np.clip(lowest / shape, 0.0, 1.0)))
-        impacts[k] = begin = end
+        rows.append((end, centre, p[side], angle, lowest, sign))
         if k == flights - 1:
             break
-        energy = p[side] ** 2 * (math.cos(phi) - math.cos(angle))
+        speed = p[side] ** 2 * energy * edge * edge
         side, sign = sides - 1 - side if sides == 2 else 0, -sign
-        angle = float(alpha[side]) * tilts[k + 1]
-        cosine = math.cos(angle) + (eta[side] * kicks[k + 1]) ** 2 * max(energy, 0.0) / p[side] ** 2
-        phi = max(math.acos(min(cosine, 1.0)), (1.0 - HIGHEST_SHARE) * angle)
-    return theta, impacts[:-1]
+        edge = math.sin(0.5 * alpha[side] * tilts[k + 1])
+        energy = (eta[side] * kicks[k]) ** 2 * speed / (p[side] * edge) ** 2
+    impacts, centres, rates, angles, lowest_sines, signs = np.array(rows).T
+    return _Shape(impacts, centres, rates, angles, lowest_sines, signs, float(x[3]))
 
 
-def _described(
-    found: _Found, freedom: float, correlated: float, departure: float, changes: Array, noise: float
-) -> xr.Dataset:
-    """The result, with intervals from the Jacobian."""
-    t, theta, used, model, impacts, fit, sides, level = found
-    variance = 2.0 * fit.cost / freedom
-    inverse = np.linalg.pinv(fit.jac)
-    deviation = np.sqrt(variance * (inverse**2).sum(axis=1))
-    tail, texts = 0.5 * (1.0 + level), []
-    reach = float(stdtrit(freedom, tail)) * deviation
-    plain = float(stdtrit(model.size - fit.x.size, tail)) * np.sqrt(2.0 * fit.cost / (model.size - fit.x.size))
-    if departure:
-        by_changes = departure * np.sqrt(((inverse @ changes) ** 2).sum(axis=1))
-        reach = np.maximum(reach, float(stdtrit(impacts.size, tail)) * np.hypot(by_changes, deviation))
-        texts.append(f"the flights depart from those of one rigid body on ground at rest by {100 * departure:.2g} %")
-    if correlated > 1.0:
-        texts.append(f"errors follow each other over {correlated:.2g} samples")
+def _rotation(t: Array, shape: _Shape) -> Array:
+    """Rotation of the block from its rest position (samples,)."""
+    flight = np.searchsorted(shape.impacts[:-1], t)
+    centre, p, angle, lowest, sign = (column[flight] for column in shape[1:6])
+    dn = ellipj(np.clip(p * (t - centre), -1e3, 1e3), 1.0 - lowest * lowest)[2]
+    theta = sign * (angle - 2.0 * np.arcsin(np.clip(lowest / dn, 0.0, 1.0)))
+    if shape.energy <= HIGHEST_FLIGHT:
+        return np.asarray(theta)
+    # released with a velocity that would have taken it over alpha: phi/2 = pi/2 - am(u), without a peak
+    first = flight == 0
+    edge = math.sin(0.5 * shape.angle[0])
+    above = (max(shape.energy, 2.0 - HIGHEST_FLIGHT) - 1.0) * edge * edge
+    m = 1.0 / (1.0 + above)
+    at_impact = float(ellipkinc(0.5 * (math.pi - shape.angle[0]), m))
+    u = at_impact + shape.p[0] * math.sqrt(1.0 + above) * (shape.impacts[0] - t[first])
+    theta[first] = shape.sign[0] * (shape.angle[0] - math.pi + 2.0 * ellipj(np.clip(u, -1e3, 1e3), m)[3])
+    return np.asarray(theta)
+
+
+def _described(found: _Found) -> xr.Dataset:
+    """The result, with intervals, and texts for what widens them."""
+    t, theta, used, model, impacts, best, sides, level, noise = found
+    x = best.state.x
+    reach = best.mixture.half_widths(level)
+    freedom = model.size - x.size
+    residual = math.sqrt(float(best.state.error @ best.state.error) / freedom)
+    texts = []
+    if best.departure:
+        texts.append(
+            f"the flights depart from those of one rigid body on ground at rest by {100 * best.departure:.2g} %"
+        )
+    if best.correlated > 1.0:
+        texts.append(f"errors follow each other over {best.correlated:.2g} samples")
+    alone = np.sqrt((np.linalg.pinv(best.state.jacobian) ** 2).sum(axis=1))
     if texts:
-        alone = plain * np.sqrt((inverse**2).sum(axis=1))  # 0 at a confidence of almost 0
-        wider = float(np.max(np.divide(reach, alone, out=np.ones_like(reach), where=alone > 0.0)))
+        plain = float(stdtrit(freedom, 0.5 * (1.0 + level))) * residual * alone  # 0 at a confidence of almost 0
+        wider = float(np.max(np.divide(reach, plain, out=np.ones_like(reach), where=plain > 0.0)))
         texts = [f"{' and '.join(texts)}: the intervals are up to {wider:.2g} times wider for it"]
-    if abs(fit.x[1]) > SIGNIFICANT * deviation[1]:
-        texts.append(f"the sensor drifts by {fit.x[1]:.3g} rad/s, which is taken off")
+    if abs(x[1]) > SIGNIFICANT * math.sqrt(best.variance) * alone[1]:
+        texts.append(f"the sensor drifts by {x[1]:.3g} rad/s, which is taken off")
     fitted = np.full(t.shape, np.nan)
     fitted[used] = model
     about = "drift of the sensor"
@@ -397,13 +617,11 @@ def _described(
             "fitted": variable("time", fitted, "rad", "rotation of the fitted body"),
             "residual": variable("time", theta - fitted, "rad", "measured less fitted rotation"),
             "impact_time": variable("impact", impacts, "s", "times of the impacts"),
-            "offset": variable((), fit.x[0], "rad", "rotation of the body at rest, at the first impact"),
-            "drift": variable((), fit.x[1], "rad s-1", about),
-            "drift_lower": variable((), fit.x[1] - reach[1], "rad s-1", f"{about}, end of the interval"),
-            "drift_upper": variable((), fit.x[1] + reach[1], "rad s-1", f"{about}, end of the interval"),
-            "noise": variable(
-                (), math.sqrt(2.0 * fit.cost / (model.size - fit.x.size)), "rad", "standard deviation of the residual"
-            ),
+            "offset": variable((), x[0], "rad", "rotation of the body at rest, at the first impact"),
+            "drift": variable((), x[1], "rad s-1", about),
+            "drift_lower": variable((), x[1] - reach[1], "rad s-1", f"{about}, end of the interval"),
+            "drift_upper": variable((), x[1] + reach[1], "rad s-1", f"{about}, end of the interval"),
+            "noise": variable((), residual, "rad", "standard deviation of the residual"),
             "sample_noise": variable((), noise, "rad", "standard deviation of independent errors of the samples"),
         },
         {
@@ -418,7 +636,7 @@ def _described(
     ):  # fmt: skip
         own = slice(FIRST_EDGE + k * sides, FIRST_EDGE + (k + 1) * sides)
         for suffix, shift in (("", 0.0), ("_lower", -reach[own]), ("_upper", reach[own])):
-            values = fit.x[own] + shift
+            values = x[own] + shift
             attributes = {"units": unit, "long_name": meaning + (", end of the interval" if suffix else "")}
             result[name + suffix] = (
                 "edge",

@@ -27,6 +27,7 @@ from rocking.extension import (
     fit_curve,
     one_of,
     with_block,
+    write_output,
 )
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
@@ -105,7 +106,11 @@ def write_nrml(
             deviation = mean * math.sqrt(math.expm1(beta**2))
             ET.SubElement(function, "params", ls=state, mean=f"{mean:.9g}", stddev=f"{deviation:.9g}")
     ET.indent(root)
-    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    content = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    if isinstance(path, str | PathLike):
+        write_output(path, content)
+    else:
+        path.write(content)
 
 
 def checked_measure(fragility: xr.Dataset, known: Mapping[str, object]) -> str:

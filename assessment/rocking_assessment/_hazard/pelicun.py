@@ -7,12 +7,11 @@ whether it is taken along a direction, and for each limit state the family, medi
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from rocking.extension import STANDARD_GRAVITY, csv_text
+from rocking.extension import STANDARD_GRAVITY, csv_text, write_output
 from rocking_assessment._hazard.nrml import checked_measure, lognormal_of, reached_states
 
 DEMANDS = {"pga": ("Peak Floor Acceleration", "g", STANDARD_GRAVITY), "pgv": ("Peak Floor Velocity", "mps", 1.0)}
@@ -55,4 +54,4 @@ def write_pelicun(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
         columns[f"LS{k}-Family"] = ["lognormal"] * len(blocks)
         columns[f"LS{k}-Theta_0"] = [median / in_si for median, _ in fits]
         columns[f"LS{k}-Theta_1"] = [dispersion for _, dispersion in fits]
-    Path(path).write_text(csv_text(columns), encoding="utf-8")
+    write_output(path, csv_text(columns))

@@ -114,16 +114,14 @@ def curve_rates(model: str, x: Array, rates: Array, median: Array, dispersion: A
 
 def outcome_rates(x: Array, rates: Array, levels: Array) -> tuple[tuple[float, float], tuple[float, float]]:
     """Bounds of the annual rate if no record reaches a limit state up to the last level, or all from the first on."""
-
-    def exceeded(level: float, above: float) -> float:
-        """Rate at which a level is exceeded; `above` the hazard curve."""
-        if level >= x[-1]:
-            return above if level > x[-1] else float(rates[-1])
-        return float(np.exp(np.interp(np.log(level), np.log(x), np.log(rates))))
-
     first, last = levels[0], levels[-1]
-    at_most = np.inf if last < x[0] else exceeded(last, rates[-1])
-    return (0.0, at_most), (exceeded(first, 0.0), np.inf)
+    at_most = np.inf if last < x[0] else float(exceedance_rates(x, rates, last))
+    return (0.0, at_most), (0.0 if first > x[-1] else float(exceedance_rates(x, rates, first)), np.inf)
+
+
+def exceedance_rates(x: Array, rates: Array, intensity: Array) -> Array:
+    """Annual rates at which intensities are exceeded [1/year]; beyond the hazard curve those of its ends."""
+    return np.asarray(np.exp(np.interp(np.log(intensity), np.log(x), np.log(rates))))
 
 
 def hazard_quadrature(x: Array, rates: Array) -> tuple[Array, Array]:

@@ -44,25 +44,34 @@ CLAUSES = {
     "static": "static check: PGA over g b/h",
     "ishiyama": "Ishiyama (1982): PGA and PGV over their lower bounds, the smaller ratio",
     "asce43": "ASCE 43-05 A.2, best estimate: spectral demand over capacity at alpha, at most PGA over g b/h",
-    "circolare_linear": "Circolare 2009 C8A.4.2.3, linear kinematic check with q = 2: PGA/q over g b/h",
+    "circolare_linear":
+        "Circolare 2009 C8A.4.2.3 and 2019 C8.7.1.2.1.7, linear kinematic check with q = 2: PGA/q over g b/h",
     "circolare_nonlinear": "Circolare 2009 C8A.4.2.3, nonlinear kinematic check: S_De(T_s) over 0.4 b",
-}
+    "circolare2019_nonlinear":
+        "Circolare 2019 C8.7.1.2.1.8, check of SLV in displacements: largest S_De up to T_SLV over 0.4 b, at most PGA "
+        "over g b/h",
+}  # fmt: skip
 """Checks by standards and their demand over capacity; a body passes below 1. Spectra are those of the motion of the
-ground, or of the floor on which the body stands."""
+ground, or of the floor on which the body stands; by the Circolare a body on a floor passes under both."""
 
 OUTPUTS = (
     Quantity("object", "", "name of the object"),
     Quantity("direction", "",
         "direction in which it rocks: width, depth, any (round base), the plane of an outline, or the angle from the x "
         "axis of a mesh"),
-    Quantity("verdict", "", "stays, rocks, overturns in some motions or overturns in most"),
+    Quantity("verdict", "",
+        "stays, rocks, depth missing (along its width alone it does not overturn), overturns in some motions or "
+        "overturns in most"),
     Quantity("uplifts", "bool", "whether a motion of the site makes it uplift"),
     Quantity("uplift_acceleration", "m/s2", "peak acceleration above which it uplifts"),
     Quantity("factor", "-", "lowest factor tried at which a motion of the site overturns it"),
     Quantity("governing", "", "motion that overturns it at that factor"),
-    Quantity("overturned_by", "", "motions that overturn it at the strength of the site or below"),
+    Quantity("overturned_by", "", "motions that overturn it, at full strength or only at a lower factor"),
+    Quantity("overturned_at_full_strength", "", "those of them that overturn it at full strength, a factor of 1"),
     Quantity("share", "-",
-        "share of the motions of the site that overturn it at a factor up to 1; a pair of components counts once"),
+        "share of the motions of the site that overturn it, at full strength or only at a lower factor; a pair of "
+        "components counts once"),
+    Quantity("share_at_full_strength", "-", "share of them that overturn it at full strength, a factor of 1"),
     Quantity("share_lower", "-", "lower end of the 95 % interval of the share, for records"),
     Quantity("share_upper", "-", "upper end of that interval"),
     Quantity("rotation", "rad", "largest rotation under the motions that do not overturn it"),
@@ -93,8 +102,29 @@ OUTPUTS = (
     Quantity("sampled_share", "-",
         "share of its variants (tolerance, restitution 0.05 up and down) that a motion overturns at a factor up to 1"),
     *(Quantity(f"{name}_ratio", "-", f"{meaning}; the largest of the motions") for name, meaning in CLAUSES.items()),
+    Quantity("contact_tolerance", "m",
+        "of a mesh: height above its lowest point up to which vertices are in contact with the ground"),
     Quantity("warnings", "", "reasons to doubt the row"),
 )  # fmt: skip
 
-VERDICTS = ("stays", "rocks", "overturns in some motions", "overturns in most")  # from the best to the worst
+DEPTH_MISSING = "depth missing"
+"""Verdict of an object that does not overturn along its width, the only direction that is known."""
+
+VERDICTS = ("stays", "rocks", DEPTH_MISSING, "overturns in some motions", "overturns in most")
+"""From the best to the worst."""
+
 CLOSE = 0.2  # distance of a factor from 1 below which a warning is given [-]: a ground motion is not known better
+
+RESTS_AT_FULL_STRENGTH = "comes to rest at full strength under a motion that overturns it at a lower factor"
+"""Beginning of the warning of an object whose outcome at a factor of 1 differs from that at a lower factor."""
+
+
+def digits_apart(value: float) -> int:
+    """Significant digits of a factor or ratio, 3 or more, so that it is written as 1 only if it equals 1.
+
+    Otherwise a body that a factor of 1.0035 overturns would be said to overturn "from 1" with the verdict "rocks".
+    """
+    digits = 3
+    while digits < 17 and value != 1.0 and float(f"{value:.{digits}g}") == 1.0:
+        digits += 1
+    return digits

@@ -41,17 +41,25 @@ def factors_by_direction(
     across = np.concatenate([angles, angles + 180.0])  # in the opposite direction the body is the mirror image
     directions = across if angles.size == 1 else np.union1d(np.arange(0.0, 360.0, STEP), across)
     reversed_planes = [plane.mirrored for plane in planes.values()]
-    body = Bodies.of_planes((plane, restitution) for plane in [*planes.values(), *reversed_planes]).scaled()
+    bodies = Bodies.of_planes((plane, restitution) for plane in [*planes.values(), *reversed_planes])
+    body = bodies.scaled()
+    component = np.cos(np.radians(directions[:, None] - across))
+    ahead = component > LEAST_COMPONENT
     columns = []
+    at_full_strength = np.zeros(directions.size, dtype=np.bool_)
     for motion in motions:
         problem = problem_of(body, motion)
         factor = factor_from_one_side(problem, motion, stop, resolution)
         overturned = problem.solve_edges(stop=stop)[0]["outcome"].ravel() >= Outcome.OVERTURNED_DIRECTLY
         # an object beyond the range of the search has no factor, and may overturn
         columns.append(np.fmin(factor, np.where(overturned, 1.0, np.nan)))
+        counted = ahead & (np.nan_to_num(columns[-1], nan=np.inf) <= component)  # at a factor up to 1
+        direction, side = np.nonzero(counted)
+        if direction.size:
+            acceleration = motion.peak_acceleration * component[counted]
+            full = problem_of(bodies.take(side).scaled(), motion, acceleration).solve_edges(stop=stop)[0]["outcome"]
+            at_full_strength[direction[full.ravel() >= Outcome.OVERTURNED_DIRECTLY]] = True
     own = np.nan_to_num(np.stack(columns, axis=1), nan=np.inf)
-    component = np.cos(np.radians(directions[:, None] - across))
-    ahead = component > LEAST_COMPONENT
     by_side = np.where(ahead, own.min(axis=1) / np.where(ahead, component, 1.0), np.inf)
     side, factor = by_side.argmin(axis=1), by_side.min(axis=1)
     known = factor <= HIGHEST_FACTOR
@@ -63,6 +71,7 @@ def factors_by_direction(
             "lowest factor tried on the motions at which one of them overturns the object",
         ),
         "along": (np.where(known, across[side], np.nan), "degrees", "direction along which their component does so"),
+        "at_full_strength": (at_full_strength, "", "whether a motion overturns it at full strength, a factor of 1"),
         "governing": (np.where(known, names[own[side].argmin(axis=1)], ""), "", "the motion that does so"),
     }
     return xr.Dataset(

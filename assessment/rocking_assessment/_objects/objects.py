@@ -179,7 +179,9 @@ class Object:
         name : str, optional
             For output; the name of the file by default.
         others
-            mass, friction, restitution, tolerance, pedestal and notes, as above.
+            mass, friction, restitution, tolerance, pedestal and notes, as above, and `contact_tolerance`: height above
+            the lowest point up to which vertices are in contact with the ground, over the height of the mesh [-],
+            [0, 0.1], by default 1e-4. The column `contact_tolerance` of an assessment names it in metres.
 
         Raises
         ------
@@ -229,6 +231,11 @@ class Object:
     def cells(self) -> Mapping[str, str]:
         """The unchanged row of its table, by header; empty for an object that was not read from a table."""
         return self.details.row if isinstance(self.details, RowDetails) else {}
+
+    @property
+    def depth_is_missing(self) -> bool:
+        """True if it has a width and no depth, so that only rocking along the width can be assessed."""
+        return self.width is not None and self.depth is None
 
     @property
     def planes(self) -> dict[str, Plane]:
@@ -324,35 +331,38 @@ class MeshObject(Object):
 
     path: str = ""  # the file
     unit: str = "m"  # of its lengths
+    contact_tolerance: float = 1e-4  # of vertices in contact with the ground, over the height of the mesh [-]
 
     def __post_init__(self) -> None:
         self._check_described("a mesh")
 
+    @property
+    def contact_height(self) -> float:
+        """Height above its lowest point up to which vertices are in contact with the ground [m]."""
+        return self.contact_tolerance * next(iter(self.planes.values())).height
+
     @cached_property
     def planes(self) -> dict[str, Plane]:
-        angles = sorted({*map(float, range(0, 180, STEP)), *self._across})
+        from rocking_assessment._meshes.mesh import directions_around  # noqa: PLC0415  (trimesh is an extra)
+
+        angles = directions_around(self.footprint, STEP)
         return {f"{angle:g} deg": self._plane_at(angle) for angle in angles}
 
     @property
     def planes_around(self) -> dict[float, Plane]:
-        return {angle: self._plane_at(angle) for angle in self._across}
-
-    @property
-    def _across(self) -> list[float]:
-        from rocking_assessment._meshes.mesh import directions_across  # noqa: PLC0415  (trimesh takes time to load)
-
-        return directions_across(self.footprint, STEP)
+        return {float(name.removesuffix(" deg")): plane for name, plane in self.planes.items()}
 
     def _plane_at(self, angle: float) -> Plane:
         from rocking_assessment._meshes.mesh import body_from_mesh  # noqa: PLC0415  (trimesh takes time to load)
 
-        return plane_of(body_from_mesh(self.path, math.radians(angle), unit=self.unit))
+        given: dict[str, Any] = {"unit": self.unit, "contact_tolerance": self.contact_tolerance}
+        return plane_of(body_from_mesh(self.path, math.radians(angle), **given))
 
     @cached_property
     def footprint(self) -> Array:
         from rocking_assessment._meshes.mesh import mesh_footprint  # noqa: PLC0415  (trimesh takes time to load)
 
-        return mesh_footprint(self.path, self.unit)
+        return mesh_footprint(self.path, self.unit, self.contact_tolerance)
 
     def outline(self, direction: str) -> Array:
         from rocking_assessment._meshes.mesh import mesh_outline  # noqa: PLC0415  (trimesh takes time to load)

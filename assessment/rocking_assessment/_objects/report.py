@@ -17,8 +17,10 @@ from rocking_assessment._objects.columns import CLAUSES, VERDICTS
 from rocking_assessment._objects.motions import envelope_of, frictions_of
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.result import Assessment
+from rocking_assessment._objects.site import Motion, Site
 from rocking_assessment._objects.summary import (
     Line,
+    counts_of,
     lines_of,
     names_in_short,
     number_header,
@@ -29,19 +31,15 @@ from rocking_assessment._objects.summary import (
 
 TEMPLATE = "report.html"
 
-COLOURS = ("#56b4e9", "#f0e442", "#e69f00", "#d55e00")
+COLOURS = ("#56b4e9", "#f0e442", "#cc79a7", "#e69f00", "#d55e00")
 """Colours of the verdicts; colour-blind people can tell them apart (Okabe and Ito 2008)."""
 
 WORST = 5  # objects that are drawn on the first page [-]
-LARGEST = 120.0, 165.0  # largest width and height of a drawing on the first page [pixels]; all have one scale
+LARGEST = 115.0, 150.0  # largest width and height of a drawing on the first page [pixels]; all have one scale
 DRAWING = 105.0  # height of an object in its drawings, and width of these together, at most [pixels]
 MOST_DETAILED = 60  # largest number of objects with drawings and charts, the worst ones [-]
 MOST_MOTIONS = 8  # number of motions listed beside an object, the worst first [-]; `detailed` lists all
 
-PAGE, HEAD, NOTE, LINE, GAP = 259.0, 28.0, 13.0, 3.6, 1.0
-"""Heights [mm]: of a page, of the title and head of the table, of the text below it, of a line, between two rows."""
-
-NAME, VERDICT, MOTION, STEP = 22, 14, 11, 17  # characters in a line of these columns of the table [-], on the safe side
 STRONGEST = 3.0  # height of the axis of an envelope over the peak acceleration of the site [-]
 
 
@@ -61,8 +59,8 @@ def report_html(
 ) -> str:
     """The report as text; `reading` says what the columns of the table of objects were read as.
 
-    Objects that rock, overturn or are within 20 % of overturning have half a page each, in their worse direction. With
-    `detailed` every object has a page for each direction.
+    Objects that rock, overturn or are within 20 % of overturning are shown in detail, in their worse direction. With
+    `detailed` every object is, in each direction.
     """
     from jinja2 import Environment, StrictUndefined  # noqa: PLC0415  (only a report needs it)
 
@@ -77,12 +75,9 @@ def report_html(
         one for line in concerned for one in (lines_of(found, directions=True, only=line) if detailed else [line])
     ]
     number = number_header(found)
-    tables = _pages_of_table(lines, number)
-    first = 2 + len(tables)  # page of the first object
-    last = first + (len(chosen) if detailed else math.ceil(len(chosen) / 2))
-    pages: dict[int, int] = {}
-    for k, one in enumerate(chosen):
-        pages.setdefault(one.rows[0], first + (k if detailed else k // 2))
+    numbers: dict[int, int] = {}  # of an object in the part on objects, by its first row
+    for line in chosen:
+        numbers.setdefault(line.rows[0], len(numbers) + 1)
     return template.render(
         project=project,
         site=found.site,
@@ -90,15 +85,14 @@ def report_html(
         lines=lines,
         clauses=CLAUSES,
         counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
+        full_strength=counts_of(lines),
         worst=_worst(lines),
-        tables=tables,
         number=number,
         blocks=_blocks(found, chosen, detailed),
         all_concerned=sum(one.concerns for one in lines),
         detailed=detailed,
-        pages=pages,
-        first=first,
-        last=last,
+        numbers=numbers,
+        motions=_motion_texts(found.site),
         warnings=[(text, len(names), names_in_short(names)) for text, names in warnings_of(found)],
         colours=dict(zip(VERDICTS, COLOURS, strict=True)),
         bad_rows=bad_rows,
@@ -113,21 +107,33 @@ def css_text(text: str) -> str:
     return "".join(one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
 
 
-def _pages_of_table(lines: Sequence[Line], number: str) -> list[list[Line]]:
-    """The lines of each page of the table."""
-    pages: list[list[Line]] = [[]]
-    room = PAGE - HEAD
-    for line in lines:
-        name = line.object.cells.get(number, "") + line.object.name
-        verdict, motion = line.values["verdict"], line.values["governing"]
-        texts = (name, NAME), (verdict, VERDICT), (motion, MOTION), (line.first_step, STEP)
-        height = GAP + LINE * max(math.ceil((len(text) + 1) / size) for text, size in texts)
-        if height + (NOTE if line is lines[-1] else 0.0) > room and pages[-1]:
-            pages.append([])
-            room = PAGE - HEAD
-        pages[-1].append(line)
-        room -= height
-    return pages
+def _motion_texts(site: Site) -> list[str]:
+    """The motions of the site in words: records, shapes on a floor, or shapes with their periods."""
+    if site.records:
+        texts = []
+        for motions in _by_group(site.motions):
+            first = motions[0].name.removesuffix(", 0 deg")
+            texts.append(
+                first if len(motions) == 1 else f"{first}, a pair at angles every {180 // len(motions)} degrees"
+            )
+        return texts
+    if site.floor_periods is not None:
+        return [motion.name for motion in site.motions]
+    periods: dict[str, list[str]] = {}
+    for motion in site.motions:
+        periods.setdefault(motion.motion.name, []).append(number_of(motion.period))
+    shapes: dict[str, list[str]] = {}
+    for name, numbers in periods.items():
+        shapes.setdefault(", ".join(numbers), []).append(name)
+    return [f"{', '.join(names)} of {numbers} s" for numbers, names in shapes.items()]
+
+
+def _by_group(motions: Sequence[Motion]) -> list[list[Motion]]:
+    """The motions of each group, those of a pair of components together."""
+    groups: dict[int, list[Motion]] = {}
+    for motion in motions:
+        groups.setdefault(motion.group, []).append(motion)
+    return list(groups.values())
 
 
 def _worst(lines: Sequence[Line]) -> list[dict[str, Any]]:

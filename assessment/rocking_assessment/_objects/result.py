@@ -6,14 +6,23 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking.extension import RESOLUTION, Array, BadRow, EqualByValue, StopFlag, csv_text, integer, numbers_of
-from rocking_assessment._objects.columns import OUTPUTS, VERDICTS
+from rocking.extension import (
+    RESOLUTION,
+    Array,
+    BadRow,
+    EqualByValue,
+    StopFlag,
+    csv_text,
+    integer,
+    numbers_of,
+    write_output,
+)
+from rocking_assessment._objects.columns import OUTPUTS, VERDICTS, digits_apart
 from rocking_assessment._objects.directions import factors_by_direction
 from rocking_assessment._objects.motions import frictions_of, history_of
 from rocking_assessment._objects.objects import Object
@@ -57,6 +66,11 @@ class Assessment(EqualByValue):
     rotations: Array
     site: Site
     resolution: float = 0.0
+
+    @property
+    def events(self) -> int:
+        """Number of motions of the site, a pair of components as one [-]."""
+        return len({motion.group for motion in self.site.motions})
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -138,7 +152,8 @@ class Assessment(EqualByValue):
         and of an object without a depth, 0 and 180 degrees. Each motion acts from one side, so that the opposite
         direction is the motion reversed: it has another factor if the centre of mass is not in the middle.
 
-        An object turns about a side of its base, for which the component of the motion across that side suffices. A
+        An object turns about a side of its base, for which the component of the motion across that side suffices. Of a
+        mesh the planes in oblique directions count as well, so that no direction is above the rows of the table. A
         planar base of its extent in an oblique direction, which turns about a corner, would overestimate it.
 
         Parameters
@@ -152,7 +167,8 @@ class Assessment(EqualByValue):
         -------
         xarray.Dataset
             Over `direction` [degrees]: `factor`, nan where none up to `highest_factor` overturns it; `along`, the
-            direction across a side along which the component of the motion does [degrees]; `governing`, the motion.
+            direction across a side along which the component of the motion does [degrees]; `governing`, the motion;
+            `at_full_strength`, whether a motion overturns it at a factor of 1.
         """
         row = integer("row", row, 0, len(self.objects) - 1)
         one = self.objects[row]
@@ -185,7 +201,7 @@ class Assessment(EqualByValue):
         """
         text = csv_text(self._columns_with(bad_rows))
         if path is not None:
-            Path(path).write_text(text, encoding="utf-8", newline="")
+            write_output(path, text)
         return text
 
     def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
@@ -193,7 +209,7 @@ class Assessment(EqualByValue):
         columns = self._columns_with(bad_rows)
         raw = xlsx_bytes(columns | {label: numbers_of(columns[label]) for label in self.details if label in columns})
         if path is not None:
-            Path(path).write_bytes(raw)
+            write_output(path, raw)
         return raw
 
     def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:
@@ -211,8 +227,14 @@ class Assessment(EqualByValue):
         worst = next(iter(self.rows), None)
         if worst is None:
             return f"{head}none>"
-        margin = f"up to {self.highest_factor:g}" if worst["factor"] is None else f"from {worst['factor']:.3g}"
+        margin = (
+            f"up to {self.highest_factor:g}"
+            if worst["factor"] is None
+            else f"from {worst['factor']:.{digits_apart(worst['factor'])}g}"
+        )
         how = "not overturned" if worst["factor"] is None else "overturned"
+        rests = worst["share"] > worst["share_at_full_strength"] == 0.0
+        full = ", at full strength it comes to rest" if rests else ""
         apart = f"; factors at most {100.0 * self.resolution:g} % apart were tried" if self.resolution else ""
         named = f"{worst['object']}, {worst['direction']}"
-        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{apart}>"
+        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{full}{apart}>"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from rocking.extension import (
     StopFlag,
     highest_vertical_scale,
     lowest_thresholds,
+    record_lines,
     respond,
 )
 from rocking_assessment._objects.objects import BodyArray
@@ -83,10 +85,11 @@ def lowest_factor(
 def overturned_by(
     body: BodyArray, motion: Motion, stop: StopFlag | None = None, acceleration: Array | float | None = None
 ) -> Flags:
-    """Whether a motion overturns each body from either side, at the strength of the site or at another one."""
-    given = motion.peak_acceleration if acceleration is None else acceleration
-    given = np.minimum(given, motion.peak_acceleration * strongest_factor(motion))
-    problems = problems_of(body, motion, given)
+    """Whether a motion overturns each body from either side, at the strength of the site or at another one.
+
+    Refused where its vertical acceleration reaches -g, from `strongest_factor` on.
+    """
+    problems = problems_of(body, motion, acceleration)
     codes = [problem.solve_edges(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
     return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
 
@@ -122,3 +125,30 @@ def strongest_factor(motion: Motion) -> float:
         return math.inf
     unit = motion.peak_acceleration / motion.motion.peak_acceleration
     return 0.999 * highest_vertical_scale(motion.motion) / unit
+
+
+def searched_factor(motions: Sequence[Motion]) -> float:
+    """Factor up to which all motions are searched, three digits [-]: `HIGHEST_FACTOR`, or the least strongest one."""
+    strongest = min(strongest_factor(motion) for motion in motions)
+    if strongest >= HIGHEST_FACTOR:
+        return HIGHEST_FACTOR
+    digits = 2 - math.floor(math.log10(strongest))
+    return round(math.floor(strongest * 10.0**digits) / 10.0**digits, digits)
+
+
+def estimated_outcomes(
+    body: BodyArray, records: Sequence[Motion], first: Array, ground: Array, stop: StopFlag | None = None
+) -> Flags:
+    """Whether one of some records overturns each body from either side at peak ground accelerations (levels,) [m/s2].
+
+    Array (bodies, levels), by the estimate of the search under records (`rocking._solver.records.estimate`), which
+    takes a fifth of the time. `first`: acceleration of each body below which none does, which are not computed.
+    """
+    line, level = np.nonzero(ground >= first[:, None])
+    overturned = np.zeros((first.size, ground.size), dtype=np.bool_)
+    for motion in records:
+        record: Any = motion.motion
+        factor = ground[level] * (motion.peak_acceleration / motion.ground / record.peak_acceleration)
+        for problem in problems_of(body, motion, np.full(body.shape, record.peak_acceleration)):
+            overturned[line, level] |= record_lines(problem, stop).estimated(line, factor)[0]
+    return overturned

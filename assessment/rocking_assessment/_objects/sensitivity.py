@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from rocking.extension import Array, Flags, Index, Outcome, Record, StopFlag
+from rocking.extension import Array, Flags, Index, StopFlag
 from rocking_assessment._objects.objects import Bodies, BodyArray, Object
 from rocking_assessment._objects.search import (
     HIGHEST_FACTOR,
@@ -16,8 +16,6 @@ from rocking_assessment._objects.search import (
     least,
     lowest_factor,
     overturned_by,
-    problems_of,
-    strongest_factor,
 )
 from rocking_assessment._objects.site import Motion, static_acceleration
 
@@ -31,10 +29,7 @@ is halved, to 0.8 %, if a factor at one of its ends is within `NEAR` times its w
 NEAR = 2.0
 
 PROBES = np.append(np.geomspace(0.5, 0.9, 5), 1.0)
-"""Factors that are tried before a search, beside the highest of interest [-]."""
-
-QUIET = 0.5
-"""Peak |theta|/alpha under a pulse up to which, at these factors, a body is taken not to overturn between them [-]."""
+"""Factors that are tried before a search [-]: where one overturns, none is needed."""
 
 SIZES = np.geomspace(1.0, LARGEST, COARSE * 2**HALVINGS + 1)  # sizes that may be tried [-]
 
@@ -160,7 +155,7 @@ def _limiting_sizes(
         ) -> Array:
             one = np.ones(rows.size)
             base, height = (still[rows] / size, one) if narrower else (one, size / still[rows])
-            found, searched = _probed(bodies.take(rows).scaled(base, height), motion, highest, stop)
+            found, searched = _probed(bodies.take(rows).scaled(base, height), motion, stop)
             if searched.size:
                 body = bodies.take(rows[searched]).scaled(base[searched], height[searched])
                 found[searched] = lowest_factor(body, motion, stop, share * resolution, highest)
@@ -171,19 +166,12 @@ def _limiting_sizes(
     return found
 
 
-def _probed(body: BodyArray, motion: Motion, highest: float, stop: StopFlag | None) -> tuple[Array, Index]:
+def _probed(body: BodyArray, motion: Motion, stop: StopFlag | None) -> tuple[Array, Index]:
     """A factor up to 1 at which each body overturns, inf where none was met; and which bodies are to be searched."""
-    factors = np.minimum(np.append(PROBES, highest), strongest_factor(motion))
-    over, peak = np.zeros((body.shape[0], factors.size), dtype=np.bool_), np.zeros((body.shape[0], factors.size))
-    for problem in problems_of(body.column, motion, motion.peak_acceleration * factors):
-        records = problem.solve_edges(stop=stop)[0].reshape(over.shape)
-        over |= records["outcome"] >= Outcome.OVERTURNED_DIRECTLY
-        peak = np.fmax(peak, records["peak_rotation"])
-    met = over[:, : PROBES.size]
-    known = met.any(axis=1)
-    moves = isinstance(motion.motion, Record) | over.any(axis=1) | (peak > QUIET).any(axis=1)
-    found = np.where(known, factors[met.argmax(axis=1)], np.inf)
-    return found, np.flatnonzero(~known & moves)
+    over = overturned_by(body.column, motion, stop, motion.peak_acceleration * PROBES)
+    known = over.any(axis=1)
+    found = np.where(known, PROBES[over.argmax(axis=1)], np.inf)
+    return found, np.flatnonzero(~known)
 
 
 def _outermost(lowest: Callable[..., Array], count: int, motions: Sequence[Motion]) -> Array:

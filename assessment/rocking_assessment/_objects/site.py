@@ -58,6 +58,7 @@ class Motion:
     period: float  # of a pulse [s]; 1 for a record
     group: int  # motions of one group are one event: the components of a pair, and a pair at other angles
     ground: float  # peak ground acceleration that belongs to `peak_acceleration` [m/s2]
+    below: Motion | None = None  # of a floor: the motion of the ground
 
 
 @dataclass(frozen=True)
@@ -208,7 +209,9 @@ class Site:
         names = "periods", "damping", "participation"
         found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
         scale = motion.peak_acceleration / ground.peak_acceleration
-        return replace(motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0)
+        return replace(
+            motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0, below=motion
+        )
 
 
 def record_doubts(site: Site) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rocking.extension import NUMBER, UNITS, named, plain_name
-from rocking_assessment._objects.columns import CLAUSES, CLOSE, OUTPUTS, VERDICTS
+from rocking_assessment._objects.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, digits_apart
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.result import Assessment
 
@@ -18,7 +19,13 @@ SMALL = {"m": 0.05, "rad": 0.05}  # numbers in such a unit below which they are 
 
 WITHIN = "within 20 %"
 
-DETAILED = (WITHIN, "slides before it rocks", "may slide while it rocks", "the hazard curve does not")
+DETAILED = (
+    WITHIN,
+    RESTS_AT_FULL_STRENGTH,
+    "slides before it rocks",
+    "may slide while it rocks",
+    "the hazard curve does not",
+)
 """Beginnings of warnings whose numbers, behind a colon, differ from object to object."""
 
 LONGEST = 40  # characters of a name on a screen, and in a warning [-]
@@ -35,6 +42,7 @@ class Line:
     values: dict[str, Any]  # that row, by the names of the columns
     pga: float | None  # peak ground acceleration from which it overturns [m/s2]
     base: float  # in this direction [m]
+    events: int  # motions of the site, a pair of components as one [-]
 
     @property
     def is_close(self) -> bool:
@@ -43,7 +51,14 @@ class Line:
 
     @property
     def overturns(self) -> bool:
-        return VERDICTS.index(self.values["verdict"]) > VERDICTS.index("rocks")
+        return bool(self.values["share"] > 0.0)
+
+    @property
+    def at_full_strength(self) -> str:
+        """How many motions overturn it at full strength, and how many only at a lower factor."""
+        names = "share_at_full_strength", "share"
+        full, counted = (round(self.events * self.values[name]) for name in names)
+        return f"{full} of {self.events}" + (f", {counted - full} only below" if counted > full else "")
 
     @property
     def concerns(self) -> bool:
@@ -52,13 +67,33 @@ class Line:
 
     @property
     def wider(self) -> float | None:
-        """Width that the base lacks [m]."""
+        """Width that the base lacks [m], rounded up to a tenth of a millimetre."""
         needed = self.values["smallest_width"]
-        return None if needed is None else max(needed - self.base, 0.0)
+        if needed is None:
+            return None
+        return _rounded_up(needed - self.base) if needed > self.base else 0.0
+
+    @property
+    def base_needed(self) -> float | None:
+        """Smallest base that suffices [m], rounded up: one that is rounded down could overturn."""
+        needed = self.values["smallest_width"]
+        return None if needed is None else _rounded_up(needed)
+
+    @property
+    def digits(self) -> int:
+        """Significant digits of the factor and of the PGA that belongs to it."""
+        factor = self.values["factor"]
+        return 3 if factor is None else digits_apart(factor)
 
     @property
     def first_step(self) -> str:
         """What to do first."""
+        if not self.object.depth_is_missing:
+            return self._step_with_depth
+        return f"measure the depth, then {self._step_with_depth}" if self.overturns else "measure the depth"
+
+    @property
+    def _step_with_depth(self) -> str:
         row = self.values
         if self.overturns and self.wider and row["smallest_width"] <= WIDER * self.base:
             return "widen the base, or fix it"
@@ -67,9 +102,9 @@ class Line:
         if self.is_close:
             return "measure it again"
         if row["sliding"] is not None and rounded(row["sliding"], "m"):
-            return f"keep {text_of(row['sliding'], 'm')} clear: it slides"
+            return f"keep {_clearance(row['sliding'])} clear: it slides"
         if rounded(row["displacement"], "m"):
-            return f"keep {text_of(row['displacement'], 'm')} clear"
+            return f"keep {_clearance(row['displacement'])} clear"
         return "nothing"
 
 
@@ -88,29 +123,49 @@ def lines_of(found: Assessment, *, directions: bool = False, only: Line | None =
             one, values = found.objects[k], all_values[k]
             ground = None if values["factor"] is None else motions[int(np.nanargmin(found.factors[k]))].ground
             pga = None if ground is None else ground * values["factor"]
-            lines.append(Line(one, rows, k, values, pga, one.planes[values["direction"]].base))
+            lines.append(Line(one, rows, k, values, pga, one.planes[values["direction"]].base, found.events))
     return lines
 
 
-def rounded(value: Any, unit: str = "-") -> Any:
-    """A number in the unit of the output, to three digits; a small one is 0. Other values are returned unchanged."""
+def _rounded_up(length: float) -> float:
+    """A length [m] rounded up to three digits, at most to a tenth of a millimetre [m]."""
+    step = max(10.0 ** (math.floor(math.log10(length)) - 2), 1e-4)
+    return math.ceil(length / step - 1e-9) * step
+
+
+def _clearance(movement: float) -> str:
+    """The distance to keep clear for a movement [m], rounded up to whole millimetres, from 10 cm on to centimetres."""
+    step = 0.001 if movement < 0.1 else 0.01
+    return f"{100.0 * step * math.ceil(movement / step - 1e-9):.10g} cm"
+
+
+def rounded(value: Any, unit: str = "-", digits: int = 3) -> Any:
+    """A number in the unit of the output, to three digits; a small one is 0. Other values are returned unchanged.
+
+    A ratio is written as 1 only if it equals 1; a length in cm has two decimals at most.
+    """
     if not isinstance(value, float):
         return value
     shown = value / UNITS[unit][PEOPLE[unit]] if unit in PEOPLE else value
-    return float(f"{shown:.3g}") if abs(shown) >= SMALL.get(unit, 5e-4) else 0.0
+    if abs(shown) < SMALL.get(unit, 5e-4):
+        return 0.0
+    if unit == "-":
+        digits = max(digits, digits_apart(shown))
+    short = float(f"{shown:.{digits}g}")
+    return round(short, 2) if unit == "m" else short
 
 
-def text_of(value: Any, unit: str = "-") -> str:
+def text_of(value: Any, unit: str = "-", digits: int = 3) -> str:
     """The same as text with its unit; a dash for what is not known."""
     sign = {"rad": "\u00b0"}.get(unit, f" {PEOPLE.get(unit, unit)}" if unit not in ("", "-") else "")
-    return number_of(value, unit) + (sign if isinstance(value, float) and value == value else "")
+    return number_of(value, unit, digits) + (sign if isinstance(value, float) and value == value else "")
 
 
-def number_of(value: Any, unit: str = "-") -> str:
+def number_of(value: Any, unit: str = "-", digits: int = 3) -> str:
     """The same without its unit."""
     if value is None or value != value:
         return "\u2013"
-    return f"{rounded(value, unit):.10g}" if isinstance(value, float) else str(value)
+    return f"{rounded(value, unit, digits):.15g}" if isinstance(value, float) else str(value)
 
 
 def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[Any]]:
@@ -134,14 +189,22 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
     return columns | {
         "verdict": column("verdict"),
         "overturns from factor": [top if one is None else rounded(one) for one in column("factor")],
-        "PGA [g]": [None if one.pga is None else rounded(one.pga, "m/s2") for one in lines],
+        "at full strength by": [one.at_full_strength for one in lines],
+        "PGA [g]": [None if one.pga is None else rounded(one.pga, "m/s2", one.digits) for one in lines],
         "governing motion": [one.replace("_", " ") or "-" for one in column("governing")],
         "moves by [cm]": ["overturns" if one is None else rounded(one, "m") for one in column("displacement")],
-        "base needed [cm]": [rounded(one, "m") for one in column("smallest_width")],
+        "base needed [cm]": [rounded(one.base_needed, "m") for one in lines],
         "wider by [cm]": [rounded(one.wider, "m") for one in lines],
         "what to do first": [one.first_step for one in lines],
         **clauses,
     }
+
+
+def counts_of(lines: Sequence[Line]) -> str:
+    """How many objects the motions overturn at full strength, and how many only at a lower factor, in words."""
+    overturned = [line.values["share_at_full_strength"] > 0.0 for line in lines if line.overturns]
+    full, below = sum(overturned), len(overturned) - sum(overturned)
+    return f"overturned at full strength: {full} of {len(lines)} objects; only at a lower factor: {below}"
 
 
 def rows_in_units(found: Assessment) -> dict[str, list[Any]]:

@@ -40,11 +40,19 @@ async def read_mesh(helper: Helper, raw: bytes, name: str, unit: str) -> MeshSha
 
 
 def _shape_of(path: Path, unit: str) -> tuple[dict[float, PolygonProperties], list[tuple[float, float]], list[str]]:
-    """The properties of a mesh in the planes across the sides of its base, its footprint, and what was repaired."""
-    from rocking_assessment._meshes.mesh import directions_across, mesh_footprint, mesh_properties  # noqa: PLC0415
+    """The properties of a mesh in the planes in which it is assessed, its footprint, and what was repaired."""
+    from rocking_assessment._meshes.mesh import (  # noqa: PLC0415  # only the helper loads trimesh
+        CONTACT_TOLERANCE,
+        directions_around,
+        mesh_footprint,
+        mesh_properties,
+    )
 
     footprint = mesh_footprint(path, unit)
-    found = {angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_across(footprint, STEP)}
+    found = {angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_around(footprint, STEP)}
     remarks = next(remarks for _, remarks in found.values())
+    height = next(properties.top for properties, _ in found.values())
+    contact = f"stands on its vertices up to {1000.0 * CONTACT_TOLERANCE * height:.2g} mm above the lowest one"
     corners = footprint[:: len(footprint) // CORNERS + 1].tolist()
-    return {angle: properties for angle, (properties, _) in found.items()}, [(x, y) for x, y in corners], remarks
+    planes = {angle: properties for angle, (properties, _) in found.items()}
+    return planes, [(x, y) for x, y in corners], [contact, *remarks]

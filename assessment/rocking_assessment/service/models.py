@@ -70,7 +70,10 @@ class AssessParams(Params):
     )
     seed: int = between(0, 2**53, "seed of these variants", default=0, unit="-")
     resolution: float = between(
-        *RESOLUTIONS, "largest relative step of factors on a record", default=RESOLUTION, unit="-"
+        *RESOLUTIONS,
+        "largest relative step of factors on a record, 2.5 times that on a pulse",
+        default=RESOLUTION,
+        unit="-",
     )
     sensitivity: bool = said("find the factors of changed objects, and the sizes that survive", True)
     standards: str = said("checks by standards, with commas between, or all", "", examples=["static,asce43"])

@@ -230,6 +230,7 @@ def page_of(
         dial=dial_of(found, footprint) if worst and found is not None and footprint is not None else None,
         highest=HIGHEST_FACTOR,
         notes=notes or [],
+        depth_missing=given["shape"] == "rectangle" and not given["depth"].strip(),
     )
     headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"}
     return HTMLResponse(text, 200 if error is None else 422, headers)

@@ -38,7 +38,7 @@ from rocking_assessment._objects.assess import assess
 from rocking_assessment._objects.columns import VERDICTS
 from rocking_assessment._objects.report import Project, report_html
 from rocking_assessment._objects.result import Assessment
-from rocking_assessment._objects.summary import lines_of, names_in_short, number_of, warnings_of
+from rocking_assessment._objects.summary import counts_of, lines_of, names_in_short, number_of, warnings_of
 from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking_assessment.service.assess import MAX_BODY, check_table
 from rocking_assessment.service.models import MAX_OBJECTS
@@ -223,6 +223,7 @@ def _page(
     bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
     shown = {one.row for one in bad_rows}
     rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
+    lines = lines_of(found) if found else []
     text = html(
         "objects.html",
         "Which objects overturn?",
@@ -233,7 +234,8 @@ def _page(
         texts={number: row.rstrip("\r\n") for number, row in rows if number in shown},
         table=table,
         found=found,
-        lines=lines_of(found) if found else [],
+        lines=lines,
+        full_strength=counts_of(lines),
         warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
         own_of=lambda one: ", ".join(filter(None, (one.cells[label] for label in table.skipped))) if table else "",
         verdicts=VERDICTS,

@@ -10,6 +10,16 @@ from .circolare2009 import circolare2009_floor_displacement as circolare2009_flo
 from .circolare2009 import circolare2009_linear_check as circolare2009_linear_check
 from .circolare2009 import circolare2009_nonlinear_check as circolare2009_nonlinear_check
 from .circolare2009 import circolare2009_secant_period as circolare2009_secant_period
+from .circolare2019 import circolare2019_activation as circolare2019_activation
+from .circolare2019 import circolare2019_capacity as circolare2019_capacity
+from .circolare2019 import circolare2019_displacement_capacity as circolare2019_displacement_capacity
+from .circolare2019 import circolare2019_elastic_period as circolare2019_elastic_period
+from .circolare2019 import circolare2019_floor_acceleration as circolare2019_floor_acceleration
+from .circolare2019 import circolare2019_floor_displacement as circolare2019_floor_displacement
+from .circolare2019 import circolare2019_floor_spectrum as circolare2019_floor_spectrum
+from .circolare2019 import circolare2019_linear_check as circolare2019_linear_check
+from .circolare2019 import circolare2019_nonlinear_check as circolare2019_nonlinear_check
+from .circolare2019 import circolare2019_period as circolare2019_period
 from .ishiyama1982 import ishiyama_check as ishiyama_check
 from .ishiyama1982 import ishiyama_velocity as ishiyama_velocity
 from .static import static_check as static_check

@@ -26,6 +26,19 @@ RANGES: dict[str, tuple[float, float, str, str]] = {
     "storeys": (1.0, 1000.0, "both", "-"),
     "period": (0.0, math.inf, "neither", "s"),
     "secant_period": (0.0, math.inf, "neither", "s"),
+    "first_period": (0.0, math.inf, "neither", "s"),
+    "elastic_period": (0.0, math.inf, "left", "s"),
+    "first_acceleration": (0.0, math.inf, "left", "m/s2"),
+    "floor_acceleration": (0.0, math.inf, "left", "m/s2"),
+    "ground_acceleration": (0.0, math.inf, "left", "m/s2"),
+    "ground_displacement": (0.0, math.inf, "left", "m"),
+    "damping": (0.0, 1.0, "left", "-"),
+    "first_damping": (0.0, 1.0, "neither", "-"),
+    "length": (0.0, math.inf, "neither", "m"),
+    "thickness": (0.0, math.inf, "neither", "m"),
+    "unit_weight": (0.0, math.inf, "neither", "N/m3"),
+    "modulus": (0.0, math.inf, "neither", "Pa"),
+    "coefficient": (0.0, 10.0, "right", "-"),
 }
 
 

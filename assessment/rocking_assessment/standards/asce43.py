@@ -5,8 +5,9 @@ formulas missing. Step 2 of A.2 follows a secondary description. Both steps can 
 at theta the work against gravity m g h f_1, and loses per cycle what two impacts with C_R take. The design rule of
 section 7 multiplies the best estimate by a factor of safety, which is not applied here.
 
-The body rotates by theta; a = b/h; C_3 = I_O/(m h^2), 4/3 (1 + a^2) for a uniform rectangle. Arguments that all clauses
-share: `rocking_assessment.standards`.
+The formulas assume M_L = M, the mass that acts horizontally is that of the body; for other bodies the text has a factor
+F_H, which is left out. The body rotates by theta; a = b/h; C_3 = I_O/(m h^2), 4/3 (1 + a^2) for a uniform rectangle.
+Arguments that all clauses share: `rocking_assessment.standards`.
 
 References
 ----------
@@ -40,7 +41,7 @@ def asce43_capacity(
 ) -> Array:
     """Horizontal spectral acceleration capacity at a rotation (A.2 step 1): SA_cap = 2 g f_1/(theta F_V) [m/s2].
 
-    f_1 = cos theta + a sin theta - 1, F_V = sqrt(1 + (a SA_V/SA_H)^2).
+    f_1 = cos theta + a sin theta - 1, F_V = sqrt(1 + (a SA_V/SA_H)^2); for M_L = M, without F_H.
 
     Parameters
     ----------

@@ -2,9 +2,10 @@
 
 The text was not seen: formulas after secondary sources, by section and not by equation number; compare them with it
 before use. For one block the mass ratio e* is 1, the multiplier of collapse b/h, and the horizontal displacement of the
-centre of mass at which the block is in equilibrium without a force is d_0 = b. The Circolare of 21 January 2019, n. 7,
-changes periods and limits (C8.7.1.2.1); its text was not seen either, and nothing of it is stated here. Arguments that
-all clauses share: `rocking_assessment.standards`.
+centre of mass at which the block is in equilibrium without a force is d_0 = b. A block on a floor passes the check at
+the ground as well: demands on floors are at least those of the ground. The Circolare of 2019, in
+`rocking_assessment.standards.circolare2019`, changes periods and limits. Arguments that all clauses share:
+`rocking_assessment.standards`.
 
 References
 ----------
@@ -67,8 +68,10 @@ def circolare2009_linear_check(
     return passes
 
 
-def circolare2009_floor_acceleration(acceleration: ArrayLike, height_ratio: ArrayLike, storeys: ArrayLike) -> Array:
-    """Demand on a floor of the linear check before q (C8A.4.2.3): S_e(T_1) psi(Z) gamma [m/s2].
+def circolare2009_floor_acceleration(
+    acceleration: ArrayLike, height_ratio: ArrayLike, storeys: ArrayLike, *, ground_acceleration: ArrayLike
+) -> Array:
+    """Demand on a floor of the linear check before q (C8A.4.2.3): S_e(T_1) psi(Z) gamma, at least a_g S [m/s2].
 
     psi = Z/H, gamma = 3 N/(2 N + 1).
 
@@ -80,9 +83,13 @@ def circolare2009_floor_acceleration(acceleration: ArrayLike, height_ratio: Arra
         Z/H [-], [0, 1].
     storeys : array_like
         N [-], [1, 1000].
+    ground_acceleration : array_like
+        a_g S, that of the check at the ground [m/s2], >= 0.
     """
-    a, psi, n = checked(acceleration=acceleration, height_ratio=height_ratio, storeys=storeys)
-    return a * psi * _participation(n)  # C8A.4.2.3
+    a, psi, n, ground = checked(
+        acceleration=acceleration, height_ratio=height_ratio, storeys=storeys, ground_acceleration=ground_acceleration
+    )
+    return np.maximum(a * psi * _participation(n), ground)  # C8A.4.2.3
 
 
 def circolare2009_displacement_capacity(half_width: ArrayLike) -> Array:
@@ -112,11 +119,17 @@ def circolare2009_nonlinear_check(displacement: ArrayLike, half_width: ArrayLike
 
 
 def circolare2009_floor_displacement(
-    displacement: ArrayLike, period: ArrayLike, secant_period: ArrayLike, height_ratio: ArrayLike, storeys: ArrayLike
+    displacement: ArrayLike,
+    period: ArrayLike,
+    secant_period: ArrayLike,
+    height_ratio: ArrayLike,
+    storeys: ArrayLike,
+    *,
+    ground_displacement: ArrayLike,
 ) -> Array:
     """Demand on a floor of the nonlinear check (C8A.4.2.3) [m].
 
-    S_De(T_1) psi(Z) gamma (T_s/T_1)^2/sqrt((1 - T_s/T_1)^2 + 0.02 T_s/T_1).
+    S_De(T_1) psi(Z) gamma (T_s/T_1)^2/sqrt((1 - T_s/T_1)^2 + 0.02 T_s/T_1), at least S_De(T_s).
 
     Parameters
     ----------
@@ -128,17 +141,20 @@ def circolare2009_floor_displacement(
         T_s of the mechanism, `circolare2009_secant_period` [s], > 0.
     height_ratio, storeys
         As for `circolare2009_floor_acceleration`.
+    ground_displacement : array_like
+        S_De(T_s), that of the check at the ground [m], >= 0.
     """
-    d, first, secant, psi, n = checked(
+    d, first, secant, psi, n, ground = checked(
         displacement=displacement,
         period=period,
         secant_period=secant_period,
         height_ratio=height_ratio,
         storeys=storeys,
+        ground_displacement=ground_displacement,
     )
     ratio = secant / first
-    amplified: Array = d * psi * _participation(n) * ratio**2 / np.sqrt((1.0 - ratio) ** 2 + 0.02 * ratio)  # C8A.4.2.3
-    return amplified
+    amplified = d * psi * _participation(n) * ratio**2 / np.sqrt((1.0 - ratio) ** 2 + 0.02 * ratio)  # C8A.4.2.3
+    return np.maximum(amplified, ground)  # C8A.4.2.3
 
 
 def _participation(storeys: Array) -> Array:

@@ -32,7 +32,7 @@ def boundary(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     ax : matplotlib.axes.Axes, optional
         Where to draw, for instance over `control_map`; by default in a new figure.
     **style
-        Properties of the lines, which replace those of both regions.
+        Properties of the lines, which replace those of both regions; with one `color` for both there is no legend.
     """
     if "row_size" not in data or "neighbour_outcome" not in data:
         raise InvalidArgumentError("data", sorted(map(str, data)), "boundary curves of overturning")
@@ -40,6 +40,8 @@ def boundary(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     in_si = "peak_acceleration" in data
     for outcome, colour, label in _REGIONS:
         lines = outcome_lines(_of_outcome(data, outcome))
+        if not lines.amplitude.size:
+            continue
         x, y = lines.frequency_ratio, lines.amplitude
         if in_si:
             # both products are constant along the curves of one block
@@ -50,6 +52,8 @@ def boundary(data: xr.Dataset, ax: Axes | None = None, **style: Any) -> Axes:
     plain_numbers(ax, "y")
     if in_si:
         plain_numbers(ax, "x")
+    if "color" not in style and ax.lines:
+        ax.legend()
     ax.set_xlabel(f"{LABELS['period']} [s]" if in_si else f"{LABELS['frequency_ratio']} [-]")
     ax.set_ylabel(f"{LABELS['peak_acceleration']} [m/s$^2$]" if in_si else f"{LABELS['amplitude']} [-]")
     return ax

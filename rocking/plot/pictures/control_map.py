@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._model.outcome import Outcome
@@ -38,7 +39,7 @@ def control_map(data: xr.Dataset, ax: Axes | None = None, *, key: bool = True) -
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default in a new figure.
     key : bool
-        Whether to add the colour bar and the meaning of the greys.
+        Whether to add the colour bar and the meaning of the greys that are in the map.
     """
     if "peak_rotation" not in data or data["peak_rotation"].ndim != 2:
         raise InvalidArgumentError("data", dict(data.sizes), "peak_rotation and outcome along two dimensions")
@@ -63,7 +64,7 @@ def control_map(data: xr.Dataset, ax: Axes | None = None, *, key: bool = True) -
     ax.set_xlabel(label_of(columns))
     ax.set_ylabel(label)
     if key:
-        _add_key([ax])
+        _add_key([ax], outcome)
     return ax
 
 
@@ -93,11 +94,12 @@ def cube(data: xr.Dataset, axes: Sequence[Axes] | None = None) -> Sequence[Axes]
         control_map(data.isel(alpha=k), ax, key=False)
         ax.set_title(f"alpha = {np.degrees(angles[k]):.3g} deg" if angles[k] else "slender limit", loc="right")
         ax.label_outer()
-    _add_key(list(axes))
+    _add_key(list(axes), data["outcome"].values)
     return axes
 
 
-def _add_key(axes: list[Axes]) -> None:
+def _add_key(axes: list[Axes], outcome: NDArray[Any]) -> None:
+    """Add the colour bar, and a legend of those classes that are among the outcomes."""
     figure = axes[0].figure
     figure.colorbar(
         ScalarMappable(Normalize(0.0, 1.0), _PEAKS), ax=axes, extend="max",
@@ -105,8 +107,11 @@ def _add_key(axes: list[Axes]) -> None:
     )  # fmt: skip
     handles = [
         Patch(facecolor=colour, edgecolor="#808080", linewidth=0.5, label=meaning)
-        for colour, meaning in _COLOURS.values()
+        for kind, (colour, meaning) in _COLOURS.items()
+        if (outcome == kind).any()
     ]
+    if not handles:
+        return
     # compact, so that it fits a figure of 5.6 inches
     spacing = {"handlelength": 1.2, "handletextpad": 0.5, "columnspacing": 1.2}
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), **spacing)

@@ -18,7 +18,6 @@ import rocking
 from rocking._cli.app import app
 from tests.api.explorer.chromium import HOW, find
 from tests.cli.test_cli import read_csv, refused, run
-from tests.sampling import ALL
 
 TABLE = """name,width [cm],depth [cm],height [cm],friction
 bust,40,30,160,0.5
@@ -57,8 +56,8 @@ INVENTORY = """Inv. no.;Bezeichnung;material;location;room;remarks;width [mm];de
 0031;Herm;marble;hall;2;;270;220;wide;
 """
 ASKED = [
-    *("Inv. no.", "object", "verdict", "overturns from factor", "PGA [g]", "governing motion", "moves by [cm]"),
-    *("base needed [cm]", "wider by [cm]", "what to do first"),
+    *("Inv. no.", "object", "verdict", "overturns from factor", "at full strength by", "PGA [g]"),
+    *("governing motion", "moves by [cm]", "base needed [cm]", "wider by [cm]", "what to do first"),
 ]
 PULSES = ["--pga", "0.3g", "--pgv", "0.3 m/s", "--shapes", "sine,cosine"]
 
@@ -79,17 +78,44 @@ def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
     for line in lines[:-1]:
         row, depth = worst[line[1]], {"Kore": 26.0, "Stele": 16.0, "Herm": 22.0}[line[1]]
         expected = [row["factor"], 0.3 * row["factor"], 100 * row["displacement"], 100 * row["smallest_width"]]
-        assert [float(line[k]) for k in (3, 4, 6, 7)] == pytest.approx(expected, rel=5e-3)
-        assert all(len(line[k].replace(".", "").lstrip("0")) <= 3 for k in (3, 4, 6, 7))
-        assert float(line[8]) == pytest.approx(max(0.0, expected[3] - depth), rel=5e-3)
-        assert line[2:6:3] == [row["verdict"], row["governing"]]
-        assert ("fix it" in line[9]) == (row["share"] > 0.0)
-    assert lines[-1] == ["0030", "Altar", "stays", "> 10", "-", "-", "0", "14.1", "0", "nothing"]
+        assert [float(line[k]) for k in (3, 5, 7, 8)] == pytest.approx(expected, rel=1e-2)
+        assert all(len(line[k].replace(".", "").lstrip("0")) <= 3 for k in (3, 5, 7, 8))
+        assert float(line[9]) == pytest.approx(max(0.0, expected[3] - depth), rel=1e-2, abs=0.02)
+        assert [line[2], line[6]] == [row["verdict"], row["governing"]]
+        assert line[4].startswith(f"{round(2 * row['share_at_full_strength'])} of 2")
+        assert ("fix it" in line[10]) == (row["share"] > 0.0)
+    assert lines[-1] == ["0030", "Altar", "stays", "> 10", "0 of 2", "-", "-", "0", "14.2", "0", "nothing"]
     both = cells(run("assess", str(table), *PULSES, "--directions"), 9)
     assert both[0][2] == "direction"
     assert [(row[1], row[2]) for row in both[1:3]] == [("Stele", "depth"), ("Stele", "width")]
     full = cells(run("assess", str(table), *PULSES, "--all"), 2)
     assert full[0][:4] == ["Inv. no.", "Bezeichnung", "material", "location"]
+
+
+def test_a_missing_depth_is_said_in_every_output(table):
+    """0.85 m wide and 1.7 m high; with a depth of 0.06 m it overturns from a factor of 0.23."""
+    table.write_text("name,width [cm],depth [cm],height [cm]\nshelf,85,,170\nscreen,20,,200\nchest,80,80,80\n")
+    report, file, book = (table.with_name(f"out.{ending}") for ending in ("html", "csv", "xlsx"))
+    options = [*PULSES, "--no-sensitivity"]
+    lines = cells(run("assess", str(table), *options, "--report", str(report), "--output", str(file)), 4)
+    assert [line[1] for line in lines[1:]] == ["overturns in some motions", "depth missing", "stays"]
+    assert lines[1][-1] == "measure the depth, then fix it, or widen the base"
+    assert lines[2][-1] == "measure the depth"
+    expected = {"screen": "overturns in some motions", "shelf": "depth missing", "chest": "stays"}
+    found = json.loads(run("assess", str(table), *options, "--format=json"))
+    assert dict(zip(found["object"], found["verdict"], strict=True)) == expected
+    assert {row["name"]: row["verdict"] for row in read_csv(file.read_text())} == expected
+    run("assess", str(table), *options, "--output", str(book))
+    sheet = pd.read_excel(book, engine="calamine")
+    assert dict(zip(sheet["name"], sheet["verdict"], strict=True)) == expected
+    text = Page(report.read_text()).text
+    assert "shelf: depth missing" in text
+    assert "measure the depth" in text
+    thin = rocking_assessment.assess(
+        rocking_assessment.Object("shelf", width=0.85, height=1.7, depth=0.06),
+        rocking_assessment.Site("0.3 g", "0.3 m/s"),
+    )
+    assert thin.columns["factor"].min() == pytest.approx(0.23, abs=0.01)
 
 
 def test_warnings_are_grouped_and_say_the_side(table):
@@ -259,32 +285,101 @@ def test_report_is_self_contained_and_escapes_names(table, monkeypatch):
     assert page.text.index("What it means") < page.text.index("All objects") < page.text.index("Model and assumptions")
     assert f"rocking {rocking.__version__}" in page.text
     assert CliRunner().invoke(app, [*argv, "--detail", "all"]).exit_code == 2
-    assert file.read_text().count('<section class="block page"') == 5  # each direction of each object
+    assert file.read_text().count('<section class="block"') == 5  # each direction of each object
 
 
 COLLECTION = Path(__file__).parents[3] / "docs" / "assessment" / "collection.csv"
 
 
-def test_the_report_of_thirty_objects_is_short_and_its_page_numbers_are_true(tmp_path):
-    file, paper = tmp_path / "report.html", tmp_path / "report.pdf"
-    shown = run("assess", str(COLLECTION), "--pga", "0.3g", "--pgv", "0.3m/s", "--report", str(file))
-    guide = COLLECTION.with_name("assess.md").read_text()
-    assert shown.startswith(re.search(r"```text\n(inventory number  .*?)```", guide, re.DOTALL)[1])
-    text = file.read_text()
-    assert len(text) < 300_000
+OVERFLOWING = """
+const body = document.body.getBoundingClientRect();
+const drawn = [...document.body.querySelectorAll("*")].filter((part) => part.getClientRects().length);
+const wide = drawn.filter((part) => {
+  const { left, right } = part.getBoundingClientRect();
+  const outside = left < body.left - 1 || right > body.right + 1;
+  const { overflow, display } = getComputedStyle(part);
+  const box = display !== "inline" && !part.ownerSVGElement && part.tagName.toLowerCase() !== "svg";
+  const cut = overflow === "hidden" && part.scrollHeight > part.clientHeight + 1;
+  return outside || (box && part.clientWidth && part.scrollWidth > part.clientWidth + 1) || (box && cut);
+});
+const labels = [...document.querySelectorAll("svg text")].filter((text) => {
+  const { left, right, top, bottom } = text.getBoundingClientRect();
+  const picture = text.ownerSVGElement.getBoundingClientRect();
+  const beside = left < picture.left - 1 || right > picture.right + 1;
+  return beside || top < picture.top - 1 || bottom > picture.bottom + 1;
+});
+const named = (part) => `${part.tagName} ${part.textContent.trim().slice(0, 40)}`;
+document.title = [...wide, ...labels].map(named).join("|");
+"""
+"""The title of the page lists what is wider than its box, or cut by it; it is empty if nothing is."""
+
+
+def of_browser(*flags):
+    """What the browser prints with some flags; skipped without a browser."""
     browser = find()
     if browser is None:
         pytest.skip(HOW)
-    flags = [str(browser.path), *browser.flags, "--headless", "--no-pdf-header-footer"]
+    command = [str(browser.path), *browser.flags, "--headless", *flags]
     surroundings = os.environ | browser.environment
-    subprocess.run(
-        [*flags, f"--print-to-pdf={paper}", file.as_uri()], env=surroundings, check=True, capture_output=True
-    )
-    pages = len(re.findall(rb"/Type /Page\b(?!s)", paper.read_bytes()))
-    assert pages == int(re.findall(r"<i></i>([0-9]+)", text)[-1])
-    if ALL:  # nothing is cut off
-        cut = "[...document.querySelectorAll('.half, td, dd')].filter(e => e.scrollHeight > e.clientHeight + 1)"
-        script = f"<script>document.title = {cut}.map(e => e.textContent)</script></body>"
-        file.write_text(text.replace("</body>", script))
-        found = subprocess.run([*flags, "--dump-dom", file.as_uri()], env=surroundings, check=True, capture_output=True)
-        assert b"<title></title>" in found.stdout
+    return subprocess.run(command, env=surroundings, check=True, capture_output=True, text=True).stdout
+
+
+def overflowing(file):
+    """What is wider than its box in a report, at the width of its page."""
+    copy = file.with_name("copy.html")
+    copy.write_text(file.read_text().replace("</body>", f"<script>{OVERFLOWING}</script></body>"))
+    shown = of_browser("--window-size=700,1000", "--dump-dom", copy.as_uri())
+    return re.search("<title>(.*?)</title>", shown, re.DOTALL)[1]
+
+
+def pages_of(file):
+    """Number of pages of a report that is printed."""
+    paper = file.with_suffix(".pdf")
+    of_browser("--no-pdf-header-footer", f"--print-to-pdf={paper}", file.as_uri())
+    return len(re.findall(rb"/Type /Page\b(?!s)", paper.read_bytes()))
+
+
+@pytest.mark.slow
+def test_nothing_in_a_report_is_wider_than_its_box(table):
+    trimesh = pytest.importorskip("trimesh")
+    header, *rows = INVENTORY.splitlines()
+    long = rows[0].replace("check; soon", "check; soon: " + 12 * "the_base_has_a_crack ")
+    table.write_text("\n".join([header, long, *rows[1:3]]) + "\n")
+    mesh, report = table.with_name(f"{'a_long_name_of_a_mesh' * 3}.stl"), table.with_name("report.html")
+    trimesh.creation.box((0.5, 0.3, 1.6)).export(mesh)
+    times = 0.05 * np.arange(60)
+    for name, values in (("x", np.sin(4 * times)), ("y", np.cos(3 * times))):
+        lines = np.column_stack([times, 4.0 * values])
+        np.savetxt(table.with_name(f"{name}.csv"), lines, fmt="%.6f", delimiter=",")
+    pair = f"{table.with_name('x.csv')},{table.with_name('y.csv')}"
+    site = ["--pga", "0.3g", "--pgv", "0.3m/s"]
+    periods = ["--pga", "0.3g", "--period-min", "0.2s", "--period-max", "1s", "--no-sensitivity"]
+    everything = ["--standards", "all", "--detail", "all", "--samples", "10"]
+    for options in (
+        [str(table), *site, "--standards", "all"],
+        ["--mesh", str(mesh), *site, "--standards", "all"],
+        [str(table), *site, *everything],
+        [str(table), "--pair", pair, "--unit", "m/s2", "--standards", "all", "--no-sensitivity"],
+        [str(table), *periods],
+    ):
+        run("assess", *options, "--report", str(report))
+        assert overflowing(report) == "", options
+        assert Page(report.read_text()).text.count("0.2 s of 0.2 s") == 0
+    assert "room: 3" in Page(report.read_text()).text.partition("All objects")[2].partition("No.:")[0]
+
+
+def test_the_report_of_one_object_has_no_blank_pages(table):
+    table.write_text("object,width [cm],depth [cm],height [cm]\nbust,40,30,160\n")
+    report = table.with_name("report.html")
+    run("assess", str(table), *SITE, "--report", str(report))
+    assert pages_of(report) <= 3
+
+
+def test_the_report_of_thirty_objects_is_short_and_nothing_in_it_is_cut(tmp_path):
+    file = tmp_path / "report.html"
+    shown = run("assess", str(COLLECTION), "--pga", "0.3g", "--pgv", "0.3m/s", "--report", str(file))
+    guide = COLLECTION.with_name("assess.md").read_text()
+    assert shown.startswith(re.search(r"```text\n(inventory number  .*?)```", guide, re.DOTALL)[1])
+    assert len(file.read_text()) < 300_000
+    assert pages_of(file) <= 15
+    assert overflowing(file) == ""

@@ -9,7 +9,9 @@ import xarray as xr
 from rocking_assessment._evidence.old_rocks import survival, unexceeded
 
 import rocking
+from benchmarks.accuracy.unexceeded import SUITES, coverage, library
 from rocking._base.errors import InvalidArgumentError
+from tests.sampling import but_long, number
 from tests.suites.motions import noise
 
 STEP = xr.Dataset({"median_intensity": ("model", [4.0]), "dispersion": ("model", [0.0])}, {"model": ["lognormal"]})
@@ -44,18 +46,57 @@ def test_hazard_files_are_branches(tmp_path):
     np.testing.assert_allclose(site.hazard, (x, rates[1]))
 
 
-def test_pairs_that_overturn_are_those_of_the_thresholds():
-    block = rocking.Block(0.4, 1.6)
+BLOCK = rocking.Block(0.4, 1.6)
+
+
+@pytest.fixture(scope="module")
+def records():
+    """Records and their outcomes at factors 5 % apart; the long run has those of the benchmark."""
+    return library(rocking.Block(0.6, 2.0), number(120, 1200), number(0.05, 0.02))
+
+
+def line_of(pairs, ratio):
+    """ln PGA of the pairs at ln(PGV/PGA)."""
+    return pairs["intercept"].item() + pairs["slope"].item() * ratio + pairs["margin"].item()
+
+
+def test_pairs_of_a_few_records():
     motions = [noise(k) for k in range(5)]
-    found = unexceeded(block, motions, probability=0.5)
-    first = block.response(motions[0]).thresholds.value[0]
-    assert found["overturning_acceleration"][0].item() == pytest.approx(first * motions[0].peak_acceleration)
-    assert np.log(found["overturning_acceleration"]).mean().item() == pytest.approx(
-        np.log(found["unexceeded_acceleration"]).mean().item()
-    )
-    more = unexceeded(block, motions, probability=0.95)
-    ratio = np.log(more["unexceeded_velocity"] / found["unexceeded_velocity"])
-    np.testing.assert_allclose(ratio, 1.6448536 * found["dispersion"], rtol=1e-6)
+    found, more = (unexceeded(BLOCK, motions, probability=share, resolution=0.02) for share in (0.5, 0.9))
+    first = BLOCK.response(motions[0]).thresholds.value[0]
+    assert found["overturning_acceleration"][0].item() == pytest.approx(first * motions[0].peak_acceleration, rel=1e-2)
+    ratio = np.array([motion.peak_velocity / motion.peak_acceleration for motion in motions])
+    for pairs in (found, more):
+        level = np.exp(line_of(pairs, np.log(ratio)))
+        tried = level <= 10.0 * BLOCK.uplift_acceleration
+        np.testing.assert_allclose(pairs["unexceeded_acceleration"], np.where(tried, level, np.nan))
+        np.testing.assert_allclose(pairs["unexceeded_velocity"], pairs["unexceeded_acceleration"] * ratio)
+    assert found["margin"].item() == pytest.approx(0.0, abs=1e-12)
+    student, prediction = 1.6377444, math.sqrt(5.0 / 3.0 * (1.2 + 1.2 / 2.0))  # of 0.9 with 3 degrees of freedom
+    assert more["margin"] == pytest.approx(1.2 * more["dispersion"].item() * student * prediction, rel=1e-6)
+
+
+def test_a_rock_that_survives_above_the_lowest_factor_has_not_overturned():
+    """The line is that of the outcomes: it is above the lowest factors, half of whose records survive just above."""
+    motions = [noise(k) for k in range(12)]
+    found = unexceeded(BLOCK, motions, probability=0.5, resolution=0.02)
+    ratio = np.log([motion.peak_velocity / motion.peak_acceleration for motion in motions])
+    line = line_of(found, ratio)
+    lowest = np.log(found["overturning_acceleration"].values)
+    assert (line - lowest).mean() > 0.1
+    overturned = 0
+    for motion, level in zip(motions, np.exp(line), strict=True):
+        scaled = rocking.Record(motion.acceleration * level / motion.peak_acceleration, motion.time_step, "m/s2")
+        overturned += BLOCK.response(scaled).overturned
+    assert 4 <= overturned <= 9
+
+
+@pytest.mark.parametrize("size", but_long([5, 8, 12, 20, 30, 60, 100, 500], 5, 20))
+@pytest.mark.parametrize("share", but_long([0.8, 0.95], 0.95))
+def test_held_out_records_overturn_with_the_stated_probability(records, size, share):
+    found = coverage(records, size, number(60, SUITES[size]), share)
+    assert found.overturned >= share - number(0.03, 0.015)
+    assert found.stated > 0.1
 
 
 def test_refusals():

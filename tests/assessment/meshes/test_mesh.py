@@ -12,6 +12,7 @@ import pytest
 import rocking_assessment
 from rocking_assessment._meshes.parts import MAX_PARTS, with_few_parts
 
+import rocking
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import rows_of_sheet
 from tests.sheets import xlsx_bytes
@@ -202,3 +203,22 @@ def test_materials_are_left_out_of_an_obj_file():
 def test_a_sheet_with_a_cell_far_out_is_refused(last):
     with pytest.raises(InvalidArgumentError, match="1000000 cells"):
         rows_of_sheet(xlsx_bytes([["object"]], last=last), "table")
+
+
+def test_vertices_just_above_the_ground_are_no_contact(tmp_path: Path) -> None:
+    """A body 1.7 m high on a base 0.4 m wide; its corners 0.25 m from the middle are 1.2 mm above the ground."""
+    corners = [
+        (x, y, z) for half, z in ((0.2, 0.0), (0.25, 0.0012), (0.25, 1.7)) for x in (-half, half) for y in (-half, half)
+    ]
+    trimesh.convex.convex_hull(np.array(corners)).export(tmp_path / "statue.ply")
+    found = rocking_assessment.body_from_mesh(tmp_path / "statue.ply")
+    assert float(found.parameters["right"]) == pytest.approx(0.2, rel=1e-3)
+    wide = rocking_assessment.body_from_mesh(tmp_path / "statue.ply", contact_tolerance=1e-3)
+    assert float(wide.parameters["right"]) == pytest.approx(0.25, rel=1e-3)
+    with pytest.raises(rocking.InvalidArgumentError, match="contact_tolerance"):
+        rocking_assessment.body_from_mesh(tmp_path / "statue.ply", contact_tolerance=0.2)
+    statue = rocking_assessment.Object.from_mesh(tmp_path / "statue.ply")
+    table = rocking_assessment.assess(statue, rocking_assessment.Site(3.0, 0.3, shapes=["sine"]), sensitivity=False)
+    assert table.columns["contact_tolerance"] == pytest.approx(1.7e-4, rel=1e-6)
+    assert statue.planes_around.keys() >= {15.0 * k for k in range(12)}  # all rows of the table count
+    assert np.nanmin(table.directions()["factor"]) == pytest.approx(np.nanmin(table.columns["factor"]), rel=1e-9)

@@ -41,7 +41,7 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
             overturning += row["factor"] is not None
             top = HIGHEST_FACTOR if row["factor"] is None else row["factor"]
             below = top * np.linspace(0.05, 0.997, 60)
-            tried = np.concatenate([below, below * 1.0025, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
+            tried = np.concatenate([below, below * 1.0021, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
             plane = one.planes[row["direction"]]
             width, offset = plane.base, plane.offset
             gyration = math.hypot(width, one.height) / math.sqrt(12.0)
@@ -51,7 +51,7 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
                 body = RigidBody(left=left, right=right, height=one.mass_height, gyration=gyration)
                 peaks = tried * motion.peak_acceleration
                 overturned = body.response(motion.motion, peak_acceleration=peaks, period=motion.period).overturned
-                # a range narrower than the nodes of the search, 0.05 to 0.23 %, may be missed
+                # a range narrower than the distance of the factors tried, 0.2 %, may be missed
                 assert not (overturned[:60] & overturned[60:120]).any(), (row, motion.name)
                 assert not overturned[120], (row, motion.name)
                 hit |= {motion.name} if overturned[121:].any() else set()  # the range above may be as thin
@@ -66,7 +66,7 @@ def test_rows_come_worst_first_with_verdicts_of_the_share() -> None:
     assert share[0] > 0.5
     assert share[-1] == 0.0
     for row in found.rows:
-        expected = 3 if row["share"] > 0.5 else 2 if row["share"] > 0.0 else int(row["uplifts"])
+        expected = 4 if row["share"] > 0.5 else 3 if row["share"] > 0.0 else int(row["uplifts"])
         assert row["verdict"] == VERDICTS[expected]
         assert (row["factor"] is not None and row["factor"] <= 1.0) == (row["share"] > 0.0)
         assert (row["rotation"] is None) == (row["share"] == 1.0)
@@ -100,7 +100,8 @@ def test_suite_of_records_with_hazard() -> None:
     assert worst["share_lower"] < worst["share"] <= worst["share_upper"]
     assert 1e-4 < worst["annual_rate"] < 0.1
     assert worst["annual_rate_lower"] == worst["annual_rate"] <= worst["annual_rate_upper"]
-    assert (best["annual_rate"], best["annual_rate_lower"], best["annual_rate_upper"]) == (None, 0.0, 1e-4)
+    assert (best["annual_rate"], best["annual_rate_lower"]) == (None, 0.0)
+    assert best["annual_rate_upper"] == pytest.approx(1e-4)
     assert "the annual rate of overturning is at least 0, at most 0.0001" in best["warnings"]
     body = rocking.Block(0.1, 0.8)
     hit = {one.name for one in records if body.response(one, scale=4.0 / one.peak_acceleration).overturned}
@@ -156,10 +157,11 @@ def test_an_object_that_the_vertical_component_presses_down_does_not_uplift() ->
     motion = rocking.Record(0.3 * ground, 0.1, "g", vertical=pressing)
     assert motion.peak_acceleration > 9.80665 * 0.25  # alone it would uplift the object
     assert rocking.Block(0.4, 1.6).response(motion).outcome == rocking.Outcome.NO_UPLIFT
-    found = assess(Object("one", width=0.4, height=1.6), Site(records=motion))
-    assert found.columns["verdict"].tolist() == ["stays"]
-    assert found.columns["uplifts"].tolist() == [False]
-    assert found == assess(Object("one", width=0.4, height=1.6), Site(records=[motion]))
+    one = Object("one", width=0.4, depth=0.4, height=1.6)
+    found = assess(one, Site(records=motion))
+    assert found.columns["verdict"].tolist() == ["stays", "stays"]
+    assert found.columns["uplifts"].tolist() == [False, False]
+    assert found == assess(one, Site(records=[motion]))
     with pytest.raises(InvalidArgumentError, match="row"):
         found.friction(0.5)
     assert found.friction(0.0).identical(found.friction(0))

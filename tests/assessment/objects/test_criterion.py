@@ -7,10 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rocking_assessment import annual_rate
 from rocking_assessment._objects.objects import Bodies
+from rocking_assessment._objects.report import Project, report_html
 from rocking_assessment._objects.search import factors_of, overturned_by
+from rocking_assessment._objects.summary import Line, counts_of, lines_of, number_of, rounded, table_of
+from scipy import stats
 
 import rocking
-from rocking._boundary.scan import RELATIVE_ERROR
+from rocking._boundary.scan import RELATIVE_ERROR, Lines
 from tests.sampling import number, sample
 from tests.suites.motions import noise
 
@@ -34,6 +37,38 @@ def test_no_pair_overturns_below_the_factor_in_other_scans() -> None:
         for tried in (start * (factor / start) ** share, start + (factor - start) * share):
             peaks = np.minimum(tried, factor * (1.0 - 3e-6)) * motion.peak_acceleration
             assert not overturned_by(body.column, motion, None, peaks).any()
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "pga", "period", "least", "most"),
+    [(0.5, 1.2, 5.9249, 0.8, 0.9144, 0.9155), (0.4, 1.0, 3.9227, 0.5, 4.458, 4.460)],
+)
+def test_a_narrow_range_under_a_pulse_of_many_cycles_is_met(
+    width: float, height: float, pga: float, period: float, least: float, most: float
+) -> None:
+    """By every 128th of the amplitudes of `rocking.thresholds` the factor was 1.358, and none up to 10."""
+    site = rocking.Site(pga=pga, periods=(period, period), shapes=["mavroeidis_papageorgiou(cycles=15, phase=90 deg)"])
+    body = Bodies.of([rocking.Object("one", width=width, height=height)]).scaled()
+    ((factor,),) = factors_of(body, site.motions)
+    assert least < factor < most
+    assert overturned_by(body, site.motions[0], None, factor * pga).all()
+
+
+def test_factors_on_a_coarse_record_are_solved_where_the_estimate_says_that_none_overturns(monkeypatch) -> None:
+    """A factor 10 % too high was stated for a record sampled at 0.05 to 0.1 s."""
+
+    def calm(_lines: Lines, line: np.ndarray, _strength: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros(line.size, bool), np.tile([1e9, 1e9, 0.0, 0.0], (line.size, 1))
+
+    body = Bodies.of([rocking.Object("one", width=0.25, height=0.8)]).scaled()
+    (motion,) = rocking.Site(records=[noise(5, 200, 0.08)]).motions
+    monkeypatch.setattr(Lines, "estimated", calm)
+    ((factor,),) = factors_of(body, [motion])
+    start = float(np.asarray(body.uplift_acceleration)[0]) / motion.peak_acceleration
+    tried = start * 1.005 ** np.arange(500)
+    overturned = overturned_by(body.column, motion, None, tried * motion.peak_acceleration)[0]
+    assert overturned.any()
+    assert tried[overturned.argmax() - 1] < factor <= tried[overturned.argmax()] * (1.0 + 1e-9)
 
 
 def test_the_search_ends_with_a_factor_that_is_enough() -> None:
@@ -130,8 +165,8 @@ def test_verdict_factor_shares_and_samples_agree(height: float, share: float, re
 def test_a_harsher_hazard_has_no_lower_rate_and_bounds_hold_the_rate() -> None:
     objects = [rocking_assessment.Object(f"{k}", width=w, height=1.0) for k, w in enumerate([0.12, 0.2, 0.3, 2.0])]
     x, rates = np.array([0.5, 2.0, 8.0, 20.0]), np.array([1e-2, 1e-3, 1e-4, 1e-6])
-    sites = [rocking_assessment.Site(2.5, records=RECORDS, hazard=(x, scale * rates)) for scale in (1.0, 3.0)]
-    mild, harsh = (rocking_assessment.assess(objects, site, sensitivity=False).columns for site in sites)
+    sites = [rocking.Site(2.5, records=RECORDS, hazard=(x, scale * rates)) for scale in (1.0, 3.0)]
+    mild, harsh = (rocking.assess(objects, site, sensitivity=False, resolution=0.05).columns for site in sites)
     for name in ("annual_rate", "annual_rate_lower", "annual_rate_upper"):
         known = ~np.isnan(mild[name])
         assert known.any()
@@ -140,9 +175,51 @@ def test_a_harsher_hazard_has_no_lower_rate_and_bounds_hold_the_rate() -> None:
         assert (mild["annual_rate_lower"] <= mild[name])[known].all()
 
 
+def test_the_annual_rate_is_the_sum_over_the_ranges_that_overturn() -> None:
+    """A lognormal curve through 12 levels was 70 % too high for a block of 0.5 x 2 m, its bounds equal."""
+    record, block = noise(1, 800, 0.02), rocking.Block(0.3, 1.5)
+    hazard = np.array([2.0, 5.0, 12.0, 50.0]), np.array([1e-2, 1e-3, 1e-4, 1e-7])
+    site = rocking.Site(records=[record], hazard=hazard)
+    (row,) = rocking.assess(rocking.Object("one", width=0.3, height=1.5), site, sensitivity=False).rows
+    edges = np.geomspace(2.0, 50.0, number(3000, 30000))
+    exceeded = np.exp(np.interp(np.log(edges), np.log(hazard[0]), np.log(hazard[1])))
+    overturned = block.response(record, scale=np.sqrt(edges[:-1] * edges[1:]) / record.peak_acceleration).overturned
+    assert (np.diff(overturned.astype(int)) < 0).sum() > 2
+    expected = -np.diff(exceeded) @ overturned
+    assert row["annual_rate_lower"] == row["annual_rate"] == pytest.approx(expected, rel=0.01)
+    assert row["annual_rate_upper"] == pytest.approx(row["annual_rate_lower"] + 1e-7)
+
+
+def test_strengths_at_which_the_vertical_acceleration_reaches_g_do_not_count_as_survived() -> None:
+    ground = noise(1, 800, 0.02)
+    upwards = np.roll(ground.acceleration, 7) * (9.80665 / 1.4 / np.abs(ground.acceleration).max())
+    upwards *= -np.sign(upwards[np.abs(upwards).argmax()])  # its largest value is downwards
+    record = rocking.Record(ground.acceleration, 0.02, "m/s2", "lifting", vertical=upwards)
+    hazard = np.array([1.0, 3.0, 9.0]), np.array([1e-2, 1e-3, 1e-4])
+    box = rocking.Object("box", width=1.0, height=1.2)
+    found = rocking.assess(box, rocking.Site(records=[record], hazard=hazard), sensitivity=False)
+    (row,) = found.rows
+    assert row["factor"] is None
+    assert found.highest_factor == 1.39
+    assert "up to 1.39 times" in repr(found)
+    assert table_of(found)["overturns from factor"] == ["> 1.39"]
+    lifts = "from there on the vertical acceleration of lifting reaches -g"
+    assert f"not all motions are searched above factor 1.39: {lifts}" in row["warnings"]
+    limit = 0.999 * 1.4 * record.peak_acceleration
+    exceeded = np.exp(np.interp(np.log(limit), np.log(hazard[0]), np.log(hazard[1])))
+    assert row["annual_rate"] is None
+    assert row["annual_rate_lower"] == 0.0
+    assert row["annual_rate_upper"] == pytest.approx(exceeded, rel=1e-6)
+    strong = rocking.Site(pga=1.5 * record.peak_acceleration, records=[record])
+    with pytest.raises(rocking.InvalidArgumentError, match="reaches -g"):
+        rocking.assess(box, strong, sensitivity=False)
+    with pytest.raises(rocking.InvalidArgumentError, match="reaches -g"):
+        rocking.overturning_probability(strong, width=stats.norm(1.0, 0.01), height=1.2, samples=64)
+
+
 @pytest.mark.parametrize(
     ("curve", "bounds"),
-    [(([0.05, 0.5], [1e-2, 1e-3]), (0.0, 1e-3)), (([50.0, 90.0], [1e-3, 1e-4]), (1e-3, np.inf))],
+    [(([0.05, 0.5], [1e-2, 1e-3]), (0.0, 1e-3)), (([50.0, 90.0], [1e-3, 1e-4]), (9e-4, np.inf))],
 )
 def test_a_hazard_curve_that_does_not_reach_far_enough_bounds_the_rate(curve, bounds) -> None:
     one = rocking_assessment.Object("one", width=0.25, height=1.0)
@@ -150,9 +227,10 @@ def test_a_hazard_curve_that_does_not_reach_far_enough_bounds_the_rate(curve, bo
         one, rocking_assessment.Site(2.5, records=[noise(4)], hazard=curve), sensitivity=False
     ).rows
     assert row["annual_rate"] is None
-    assert row["annual_rate_lower"] == pytest.approx(bounds[0])
+    assert row["annual_rate_lower"] == pytest.approx(bounds[0])  # without the stronger ones
     assert row["annual_rate_upper"] == (None if bounds[1] == np.inf else pytest.approx(bounds[1]))
     assert "hazard curve does not reach far enough" in row["warnings"]
+    bounds = (curve[1][0] if bounds[0] else 0.0), bounds[1]  # a curve stays at its last probability
     levels = np.geomspace(*curve[0], 5)
     block = rocking.Block(0.25, 1.0)
     found = rocking.fragility([noise(4), noise(5)], block, intensity=levels)
@@ -161,3 +239,54 @@ def test_a_hazard_curve_that_does_not_reach_far_enough_bounds_the_rate(curve, bo
     alive = rocking_assessment.survival(found, curve, years=100.0).sel(model="lognormal").squeeze()
     assert alive["survival_upper"].item() == pytest.approx(np.exp(-100.0 * bounds[0]))
     assert alive["survival_lower"].item() == pytest.approx(np.exp(-100.0 * bounds[1]))
+
+
+def test_an_object_that_rests_at_full_strength_but_not_below_says_both() -> None:
+    """Rigid, alpha 0.2 rad, R 1 m, sine of 0.5 s: overturns from 2.16378 times the uplift, not from 6.20125 on."""
+    width, height = 2.0 * np.sin(0.2), 2.0 * np.cos(0.2)
+    uplift = 9.80665 * np.tan(0.2)
+    one = rocking_assessment.Object("block", width=width, depth=10.0, height=height)
+    site = rocking_assessment.Site(6.35 * uplift, periods=(0.5, 0.5), shapes=["sine"])
+    found = rocking_assessment.assess(one, site, sensitivity=False)
+    row = found.rows[0]
+    assert not rocking.Block(width, height).response("sine", peak_acceleration=6.35 * uplift, period=0.5).overturned
+    assert row["factor"] == pytest.approx(2.16378 / 6.35, rel=1e-5)
+    assert (row["share"], row["share_at_full_strength"]) == (1.0, 0.0)
+    assert (row["overturned_by"], row["overturned_at_full_strength"]) == ("sine, 0.5 s", "")
+    assert "comes to rest at full strength" in row["warnings"]
+    assert "at full strength it comes to rest" in repr(found)
+    (line,) = lines_of(found)
+    assert line.at_full_strength == "0 of 1, 1 only below"
+    assert counts_of([line]) == "overturned at full strength: 0 of 1 objects; only at a lower factor: 1"
+    around = found.directions()
+    assert not around["at_full_strength"].sel(direction=0).item()
+    assert around["factor"].sel(direction=0).item() == pytest.approx(row["factor"])
+    # at 30 degrees the component 5.5 of the motion overturns at full strength
+    assert around["at_full_strength"].sel(direction=30).item()
+    report = report_html(found, Project("title", "", "", "", ""))
+    assert "at full strength by 0 of 1, 1 only below" in report
+
+
+def test_numbers_are_rounded_so_that_they_do_not_contradict_the_verdict() -> None:
+    assert [number_of(x) for x in (1.0035, 0.9996, 1.0, 0.6157913, 1.0 + 1e-9)] == [
+        "1.004", "0.9996", "1", "0.616", "1.000000001",
+    ]  # fmt: skip
+    assert rounded(0.0007654, "m") == 0.08
+    uplift = 9.80665 * np.tan(0.2)
+    one = rocking_assessment.Object("block", width=2.0 * np.sin(0.2), depth=10.0, height=2.0 * np.cos(0.2))
+    site = rocking_assessment.Site(2.16378 / 1.0032 * uplift, periods=(0.5, 0.5), shapes=["sine"])
+    found = rocking_assessment.assess(one, site)
+    table = table_of(found)
+    assert (table["verdict"], table["overturns from factor"]) == (["rocks"], [1.003])
+    assert table["PGA [g]"] == [round(2.16378 * np.tan(0.2), 4)]
+    assert "not overturned below factor 1.003" in found.rows[0]["warnings"]
+    assert "from 1.003 times" in repr(found)
+    needed = found.rows[0]["smallest_width"]
+    assert needed <= lines_of(found)[0].base_needed < needed * 1.01
+
+
+@pytest.mark.parametrize(("movement", "text"), [(0.000765, "0.1 cm"), (0.0512, "5.2 cm"), (0.151, "16 cm")])
+def test_a_clearance_is_rounded_up(movement: float, text: str) -> None:
+    one = rocking_assessment.Object("one", width=0.3, depth=0.3, height=1.0)
+    row = {"share": 0.0, "factor": 3.0, "sliding": None, "displacement": movement}
+    assert Line(one, [0], 0, row, None, 0.3, 1).first_step == f"keep {text} clear"

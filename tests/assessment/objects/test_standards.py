@@ -41,12 +41,39 @@ def test_ratios_are_those_of_the_clauses_with_the_nearer_edge(found):
 
     demand = spectral(standards.circolare2009_secant_period(b, h), 0.05).displacement.item()
     assert row["circolare_nonlinear_ratio"] == pytest.approx(demand / (0.4 * b))
+    periods = np.linspace(0.05, float(standards.circolare2019_period(b, h)), 200)
+    demand = spectral(periods, 0.08).displacement.max().item()
+    assert row["circolare2019_nonlinear_ratio"] == pytest.approx(min(tilt, demand / (0.4 * b)), rel=1e-3)
     alpha, damping = np.arctan2(b, h), standards.asce43_effective_damping(b, h, r)
     period = 1 / standards.asce43_effective_frequency(alpha, b, h, r)
     across = spectral(period, damping).pseudo_acceleration.item()
     up = spectral(period, damping, "vertical").pseudo_acceleration.item()
     expected = across / standards.asce43_capacity(alpha, b, h, up / across)
     assert row["asce43_ratio"] == pytest.approx(min(tilt, expected))
+
+
+def test_by_the_circolare_a_body_on_a_floor_passes_at_the_ground_too():
+    """The first mode has a node at this floor, which isolates it from half of the motion."""
+    names = ["circolare_linear", "circolare_nonlinear", "circolare2019_nonlinear"]
+    floor = rocking_assessment.Site(pga=4.0, records=[RECORD], floor_periods=3.0, floor_participation=0.8)
+    ground = rocking_assessment.Site(pga=4.0, records=[RECORD])
+    on_floor, at_ground = (
+        rocking_assessment.assess(OBJECT, site, sensitivity=False, standards=["static", *names]).rows[0]
+        for site in (floor, ground)
+    )
+    assert on_floor["static_ratio"] < 0.7 * at_ground["static_ratio"]
+    for name in names:
+        assert on_floor[f"{name}_ratio"] >= at_ground[f"{name}_ratio"]
+    assert on_floor["circolare_linear_ratio"] == at_ground["circolare_linear_ratio"]
+
+
+def test_the_largest_spectral_displacement_does_not_depend_on_the_other_objects():
+    small = rocking_assessment.Object("cup", width=0.05, height=0.12)
+    alone = rocking_assessment.assess(small, SITE, sensitivity=False, standards="circolare2019_nonlinear").rows[0]
+    among = rocking_assessment.assess(
+        [OBJECT, small], SITE, sensitivity=False, standards="circolare2019_nonlinear"
+    ).rows
+    assert among[-1]["circolare2019_nonlinear_ratio"] == alone["circolare2019_nonlinear_ratio"]
 
 
 def test_only_what_is_asked_for_is_stated():

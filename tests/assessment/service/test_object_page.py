@@ -66,8 +66,24 @@ def test_factors_are_those_of_the_package_and_the_worst_is_marked(client):
     (worst,) = worst_directions(found)
     assert f"Worst direction: {worst:g}°" in re.search(r'id="worst">(.*?)<', text)[1]
     assert text.count('class="diamond"') == 1
+    full = found["at_full_strength"].sel(direction=worst).item()
+    assert ("overturns it at full strength" in text) == full
     assert "&lt;b&gt;bust&lt;/b&gt; at 0.3 g" in text
     assert "<b>" not in text
+
+
+def test_a_missing_depth_is_said(client):
+    asked = {"shape": "rectangle", "width": "85", "height": "170"}
+    assert "Depth missing: measure the depth." in client.get("/object", params=asked | SITE).text
+    assert "Depth missing" not in client.get("/object", params=asked | {"depth": "60"} | SITE).text
+    table = "object,width [m],height [m]\nshelf,0.85,1.7\n"
+    text = client.post("/objects", data={"table": table, **SITE}).text
+    assert re.search(r'verdict-2">depth missing<', text)
+    assert ">measure the depth<" in text
+    headers = {"Content-Type": "text/csv"}
+    asked = {"pga": 3.0, "pgv": 0.3, "format": "json"}
+    answer = client.post("/v1/assess", params=asked, content=table, headers=headers).json()
+    assert answer["rows"][0]["verdict"] == "depth missing"
 
 
 def test_round_bases_and_outlines(client):

@@ -12,6 +12,7 @@ import pytest
 import rocking_assessment
 from rocking_api.routers import objects_page
 from rocking_assessment._objects.columns import VERDICTS
+from rocking_assessment._objects.summary import _rounded_up
 from rocking_assessment._objects.tables import SCHEMA
 
 from rocking._dimensional.table_reader import rows_of_csv
@@ -41,7 +42,9 @@ def found():
 
 def cell(row, name, scale):
     label = {"factor": "Overturns from factor", "smallest_width": "Base needed [cm]"}[name]
-    return f'<td data-value="{row[name]}" data-label="{label}">{scale * row[name]:.3g}'
+    start = f'<td data-value="{row[name]}" data-label="{label}">'
+    shown = f"{scale * row[name]:.3g}" if name == "factor" else f"{_rounded_up(row[name]) * scale:.3g}"
+    return start + shown
 
 
 def test_rows_are_those_of_the_package_the_worst_first(text, found):

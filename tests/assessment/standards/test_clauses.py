@@ -102,11 +102,75 @@ def test_circolare_follows_the_linear_capacity_curve() -> None:
     limit = 2 * G * b / h
     assert standards.circolare2009_linear_check([0.99 * limit, 1.01 * limit], b, h).tolist() == [True, False]
     assert not standards.circolare2009_linear_check(0.99 * limit, b, h, confidence_factor=1.2)
-    demand = standards.circolare2009_floor_acceleration(3.0, 0.5, [1, 1000])  # one storey: gamma = 1
-    assert demand == pytest.approx([1.5, 1.5 * 3000 / 2001])
-    resonant, stiff = standards.circolare2009_floor_displacement(0.1, 0.5, [0.5, 1e-3], 1.0, 1)
+    demand = standards.circolare2009_floor_acceleration(3.0, 0.5, [1, 1000], ground_acceleration=0.5)
+    assert demand == pytest.approx([1.5, 1.5 * 3000 / 2001])  # one storey: gamma = 1
+    floor = {"displacement": 0.1, "period": 0.5, "height_ratio": 1.0, "storeys": 1}
+    resonant = standards.circolare2009_floor_displacement(**floor, secant_period=0.5, ground_displacement=0.1)
+    stiff = standards.circolare2009_floor_displacement(**floor, secant_period=1e-3, ground_displacement=0.0)
     assert resonant == pytest.approx(0.1 / np.sqrt(0.02))
     assert stiff == pytest.approx(0.1 * (1e-3 / 0.5) ** 2, rel=0.01)  # follows the floor
+
+
+def test_a_body_on_a_floor_passes_the_check_at_the_ground_too() -> None:
+    """On the lowest floor, height 0, the shape of the first mode is 0 and the demand is that of the ground."""
+    assert standards.circolare2009_floor_acceleration(3.0, 0.0, 2, ground_acceleration=1.2) == pytest.approx(1.2)
+    floor = {"displacement": 0.1, "period": 0.5, "height_ratio": 0.0, "storeys": 2}
+    lowest = standards.circolare2009_floor_displacement(**floor, secant_period=2.0, ground_displacement=0.07)
+    assert lowest == pytest.approx(0.07)
+    spectrum = standards.circolare2019_floor_spectrum(0.0, [0.4, 0.6], 0.5, ground_acceleration=1.3)
+    assert spectrum == pytest.approx([0.0, 1.3])  # (C7.2.5): beyond T_1
+
+
+@pytest.mark.parametrize(("b", "h"), [(0.2, 0.8), (0.5, 0.9)])
+def test_circolare2019_follows_the_statics_of_the_displaced_block(b: float, h: float) -> None:
+    """Moments about the edge in the rotated position; periods from the secant at the limit displacement."""
+    for theta in np.array([0.0, 0.2, 0.5, 0.9]) * np.arctan2(b, h):
+        turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
+        x, y = turn @ [-b, h]  # centre of mass from the edge, after a rotation towards it
+        found = standards.circolare2019_capacity(x + b, b, h, confidence_factor=1.35)
+        assert found == pytest.approx(G * -x / y / 1.35, rel=1e-12)
+    assert standards.circolare2019_activation(b, h) == pytest.approx(standards.circolare2019_capacity(0.0, b, h))
+    for state, share, factor in (("SLV", 0.4, 0.84), ("SLC", 0.6, 0.78)):
+        limit = standards.circolare2019_displacement_capacity(b, state)
+        assert limit == pytest.approx(share * b)
+        secant = 2 * np.pi * np.sqrt(limit / standards.circolare2019_capacity(limit, b, h))
+        assert standards.circolare2019_period(b, h, state) == pytest.approx(factor * secant, rel=1e-12)
+        assert standards.circolare2019_nonlinear_check([0.99 * limit, 1.01 * limit], b, state).tolist() == [True, False]
+    with pytest.raises(rocking.InvalidArgumentError, match="limit_state"):
+        standards.circolare2019_period(b, h, "SLD")
+
+
+def test_circolare2019_agrees_with_a_computation_by_hand() -> None:
+    """Block 0.4 m by 1.6 m: a(0.08 m) = 9.80665 0.12/0.81584 = 1.44243 m/s2, a(0.12 m) = 9.80665 0.08/0.82073."""
+    assert standards.circolare2019_capacity([0.08, 0.12, 0.3], 0.2, 0.8) == pytest.approx(
+        [1.442432, 0.955894, 0.0], rel=1e-6
+    )
+    assert standards.circolare2019_period(0.2, 0.8) == pytest.approx(1.242958, rel=1e-6)  # 5.277876 sqrt(0.055462)
+    assert standards.circolare2019_period(0.2, 0.8, "SLC") == pytest.approx(1.736442, rel=1e-6)
+    assert standards.circolare2019_linear_check([4.90, 4.91], 0.2, 0.8).tolist() == [True, False]
+    # a parapet 1 m by 0.3 m of 18 kN/m3 and 1 GPa: 6.2 3.3333 1 sqrt(18e3/(1e9 9.80665))
+    period = standards.circolare2019_elastic_period(1.0, 0.3, 18e3, 1e9)
+    assert period == pytest.approx(0.0279992, rel=1e-5)
+    # its branch (2 pi/0.028)^2 d is below the curve of the rigid block up to some 0.06 mm
+    curve = standards.circolare2019_capacity([2e-5, 1e-3], 0.15, 0.5, elastic_period=period)
+    assert curve == pytest.approx([1.007157, 2.920636], rel=1e-5)
+
+
+def test_circolare2019_floors_agree_with_a_computation_by_hand() -> None:
+    """Three storeys, T_1 = 0.4 s, damping 10 %, S_e(T_1) = 5 m/s2: a_Z = 5 9/7 0.8 sqrt(1.04) = 5.244706 m/s2."""
+    peak = standards.circolare2019_floor_acceleration(5.0, 0.8, 3, 0.1)
+    assert peak == pytest.approx(5.244706, rel=1e-6)
+    # eta(8 %) = 0.877058; 1.1 0.877058/sqrt(0.1) = 3.050851: largest from 0.32 to 0.44 s
+    periods, dampings = [1e-6, 0.16, 0.35, 1.2], {"damping": 0.08, "first_damping": 0.1}
+    spectrum = standards.circolare2019_floor_spectrum(peak, periods, 0.4, 0.0, **dampings)
+    below, above = 1 + 2.050851 * 0.5**1.6, 1 + 2.050851 * (1.2 / 0.44 - 1) ** 1.2
+    assert spectrum == pytest.approx([5.244706, 16.00082 / below, 16.00082, 16.00082 / above], rel=1e-4)
+    demand = standards.circolare2019_floor_displacement(peak, [0.35, 1.2], 0.4, 0.0, **dampings)
+    assert demand == pytest.approx([16.00082 * 0.35**2 / 39.478418, 16.00082 / above * 1.44 / 39.478418], rel=1e-5)
+    # where the spectrum falls faster than 1/T^2 grows, the displacement stays that at 1.1 T_1
+    stays = standards.circolare2019_floor_displacement(peak, 0.45, 0.4, 0.0, damping=0.08, first_damping=1e-6)
+    factor = 1.1 * 0.877058 / 1e-3
+    assert stays == pytest.approx(factor * peak * 0.44**2 / 39.478418, rel=1e-5)
 
 
 def test_the_page_lists_each_function_once_with_a_test() -> None:

@@ -86,15 +86,19 @@ function similar({ width, height, ...rest }) {
 function showVerdict({ rows: [row], motions, highest_factor: highest }) {
   verdict = row;
   const where = `at ${acceleration(site.pga)} and ${velocity(site.pgv)}`;
-  const count = row.overturned_by ? row.overturned_by.split("; ").length : 0;
-  const words = count
-    ? `It overturns under ${count} of ${motions.length} pulse shapes ${where}.`
-    : `None of ${motions.length} pulse shapes overturns it ${where}.`;
+  const count = Math.round(row.share * motions.length);
+  const words = overturningWords(Math.round(row.share_at_full_strength * motions.length), count, motions.length, where);
   const lines = [element("p", words, { class: `headline ${count ? "overturns" : ""}` }), element("p", changeOf(row, highest))];
   if (row.smallest_width) lines.push(element("p", `With a base of ${length(row.smallest_width, upwards)} or more at this height, none of them does.`));
   if (row.warnings) lines.push(element("p", `In doubt: ${row.warnings}.`, { class: "small" }));
   answer.replaceChildren(...lines);
   answer.dataset.verdict = row.verdict;
+}
+
+/** Under how many pulses the block overturns at full strength, and under how many only at a lower factor. */
+function overturningWords(full, count, total, where) {
+  if (count > full) return `At full strength it overturns under ${full} of ${total} pulse shapes ${where}, under ${count - full} more only at a lower factor.`;
+  return full ? `It overturns under ${full} of ${total} pulse shapes ${where}.` : `None of ${total} pulse shapes overturns it ${where}.`;
 }
 
 const upwards = (value, digits = 3) => threshold(value, false, digits);
