@@ -2,6 +2,7 @@
 
 import contextlib
 import gc
+import importlib.util
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -42,6 +43,17 @@ FIRST = (
     "tests/solver/test_stages.py",
 )
 """Beginnings of the names of files that run first: long ones, so that no process is left idle by one at the end."""
+
+
+ASSESSMENT = importlib.util.find_spec("trimesh") is not None
+"""Whether the extra `assessment` is installed."""
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """Leave out the files that use the assessment where its extra is not installed."""
+    if ASSESSMENT or collection_path.suffix != ".py":
+        return None
+    return True if "rocking_assessment" in collection_path.read_text(encoding="utf-8") else None
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -13,7 +13,6 @@ from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 from rocking_api.app import create_app
 from rocking_api.settings import EXAMPLE, Settings
-from rocking_assessment._hazard.rates import annual_rate
 
 import rocking
 from rocking._boundary.tracing import overturning_boundary
@@ -87,8 +86,7 @@ def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", titl
     suite = check_suite(motions, blocks, np.geomspace(1.0, 40.0, 12), "pga", "momentum")
     outcomes = with_margins(suite_outcomes(suite), suite)
     fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
-    rate = annual_rate(fragility, ([1.0, 10.0], [1e-2, 1e-4]))
-    fragility = fragility.assign(rate.data_vars).assign_attrs(title=title, confidence=0.95)
+    fragility = fragility.assign_attrs(title=title, confidence=0.95)
     sensitivity = suite_sensitivity(motions, blocks, intensity=[4.0, 9.0])
     for name, dataset in (("outcomes", outcomes), ("fragility", fragility), ("sensitivity", sensitivity)):
         write_dataset(describe(dataset), folder / "suites" / suite_name / f"{name}.nc")

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from rocking_api import suite_reader
-from rocking_assessment._hazard.nrml import write_nrml
 
 import rocking
 from rocking._datasets.cube import read_dataset, write_dataset
@@ -65,7 +64,7 @@ def test_counts_and_curves_are_those_of_the_data_set(suite, files):
                 one = found.sel(model=curve["model"])
                 assert curve["fit_status"] == meanings[int(one["fit_status"])]
                 assert curve["fit_meaning"]
-                for name in ("median_intensity", "dispersion", "dispersion_upper", "annual_rate"):
+                for name in ("median_intensity", "dispersion", "dispersion_upper"):
                     assert curve[name] == listed(one[name].values)
 
 
@@ -137,14 +136,6 @@ def test_a_damaged_suite_is_refused(own_results):
     with client_of(own_results) as own:
         assert_problem(own.get(NAME), 503)
         assert own.get("/v1/suites").json()["suites"] == []
-
-
-def test_fragility_as_nrml_is_that_of_the_library(client, files, tmp_path):
-    for curves in ("discrete", "lognormal"):
-        write_nrml(files[1], tmp_path / "own.xml", format=curves, description="demonstration")
-        response = client.get(f"{NAME}/nrml", params={"curves": curves})
-        assert response.content == (tmp_path / "own.xml").read_bytes()
-        assert response.headers["content-type"].startswith("application/xml")
 
 
 def test_fragility_as_csv_has_the_counts_of_the_data_set(client, files):

@@ -1,13 +1,9 @@
 """Bodies by their descriptions: one declared union for Python, options, tables and configurations."""
 
-import json
 import math
 
 import numpy as np
 import pytest
-import rocking_assessment
-from rocking_assessment._objects.objects import Bodies
-from rocking_assessment._objects.tables import objects_of_csv, objects_of_json
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
@@ -72,45 +68,3 @@ def test_gyration_of_parts_is_that_of_the_whole():
 def test_what_is_no_description_is_refused_by_its_parameter(text, parameter):
     with pytest.raises(InvalidArgumentError, match=f"`{parameter}`"):
         body(text)
-
-
-def test_an_object_of_a_table_is_of_any_rigid_kind():
-    text = (
-        "name;body;width [cm];diameter (cm);height [cm];wall [mm];left;mass height;right;gyration [cm];notes\n"
-        "box;;40;;160;;;;;;oak\n"
-        "case;;40;;160;20;;;;;\n"
-        "same case;hollow(width=40cm, height=1.6m, wall=2cm);;;;;;;;;\n"
-        "column;;;40;160;;;;;;\n"
-        "statue;;;;;;12 cm;40 cm;18 cm;;\n"
-        "known;offset_mass;40;;160;;;;;50;\n"
-        "cone;cone;40;;160;;;;;;\n"
-    )
-    table = objects_of_csv(text)
-    found = {one.name: one for one in table.objects}
-    assert [(bad.row, bad.column) for bad in table.bad_rows] == [(8, "body")]
-    assert type(found["box"]) is rocking_assessment.Object
-    assert found["case"].planes == found["same case"].planes
-    expected = {
-        "case": "hollow(width=40cm, height=1.6m, wall=2cm)",
-        "statue": "two_edges(left=12cm, right=18cm, mass_height=40cm)",
-        "known": "offset_mass(width=40cm, height=160cm, gyration=50cm)",
-    }
-    for name, said in expected.items():
-        made, one = Bodies.of([found[name]]).scaled().rigid, body(said)
-        for edge, other in ((made.right, one.right), (made.left, one.left)):
-            np.testing.assert_allclose(edge.alpha, other.alpha, rtol=1e-12)
-            np.testing.assert_allclose(edge.frequency_parameter, other.frequency_parameter, rtol=1e-12)
-    json = '[{"name": "a", "width": "40 cm", "height": 1.6, "wall": 0.02}]'
-    assert objects_of_json(json).objects[0].planes == found["case"].planes
-    assert rocking_assessment.Object.from_body(expected["case"]).planes == found["case"].planes
-    with pytest.raises(InvalidArgumentError, match="one rigid body"):
-        rocking_assessment.Object.from_body("frame(width=1m, height=4m, mass_ratio=1)")
-
-
-@pytest.mark.parametrize("kind", ["mesh(path=/etc/hostname)", "mesh"])
-def test_a_table_of_objects_names_no_file(kind):
-    for table in (
-        objects_of_json(json.dumps([{"name": "a", "body": kind}])),
-        objects_of_csv(f"name;width;height;body\na;40 cm;1.6 m;{kind}\n"),
-    ):
-        assert [one.column for one in table.bad_rows] == ["body"]

@@ -4,8 +4,6 @@ import json
 
 import numpy as np
 import pytest
-import rocking_assessment
-from rocking_assessment._objects.objects import Bodies
 from typer.testing import CliRunner
 
 import rocking
@@ -39,11 +37,9 @@ def test_each_entry_takes_the_number_that_momentum_gives(width, height, k):
     groups = {"slenderness": 0.4, "frequency_ratio": 5.0, "alpha": block.alpha}
     named, stated = (rocking.peak_response("ricker", **groups, restitution=one) for one in (text, eta))
     assert named.peak_rotation == pytest.approx(stated.peak_rotation, rel=1e-9, nan_ok=True)
-    own = Bodies.of([rocking_assessment.Object("a", width=width, height=height, restitution=text)]).scaled()
-    assert own.right.restitution == own.left.restitution == pytest.approx(eta)
 
 
-def test_thresholds_fragility_and_assessments_follow():
+def test_thresholds_and_fragility_follow():
     """The same as with the number; k = 1 is momentum to the last digit."""
     block, texts = rocking.Block(0.3, 1.2), (TEXT, by_momentum(0.15, 0.6, np.hypot(0.15, 0.6) / np.sqrt(3), 0.7))
     lowest = [block.thresholds("sine", period=0.5, restitution=one).lowest for one in texts]
@@ -51,38 +47,24 @@ def test_thresholds_fragility_and_assessments_follow():
     record = rocking.Record(5 * np.sin(7 * 0.01 * np.arange(300)), 0.01, "m/s2")
     found = [rocking.fragility([record], block, intensity=[3.0, 6.0, 9.0], restitution=one) for one in texts]
     np.testing.assert_allclose(*(one["peak_rotation"] for one in found), rtol=1e-9)
-    site = rocking_assessment.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker"])
-    objects = [
-        rocking_assessment.Object("a", 0.3, 1.2, restitution=one) for one in (*texts, "kalliontzis(k=1)", "momentum")
-    ]
-    rows = [rocking_assessment.assess(one, site, sensitivity=False).rows for one in objects]
-    assert rows[0][0]["factor"] == pytest.approx(rows[1][0]["factor"], rel=1e-9)
-    assert rows[2] == rows[3]
 
 
-def test_command_and_table_take_the_text(tmp_path):
+def test_command_takes_the_text():
     given = ["--pulse=sine", "--width=0.3m", "--height=1.2m", "--peak-acceleration=4m/s2", "--period=0.5s"]
     printed = CliRunner().invoke(app, ["response", *given, "--restitution", TEXT, "--format=json"]).stdout
     found = json.loads(printed)
     expected = rocking.Block(0.3, 1.2).response(**MOTION, restitution=TEXT)
     assert found["restitution"] == pytest.approx(by_momentum(0.15, 0.6, np.hypot(0.15, 0.6) / np.sqrt(3), 0.7))
     assert found["overturned"] == bool(expected.overturned)
-    table = tmp_path / "table.csv"
-    table.write_text(f"name,width [m],height [m],restitution\na,0.3,1.2,{TEXT}\n")
-    assert rocking_assessment.read_objects(table).objects[0].restitution == TEXT
 
 
 @pytest.mark.parametrize("wrong", ["kalliontzis", "kalliontzis(0.8)", "kalliontzis(k=0)", "kalliontzis(k=1.1)", "x"])
 def test_other_texts_are_refused(wrong):
     with pytest.raises(rocking.InvalidArgumentError, match="restitution"):
         rocking.Block(0.3, 1.2).response(**MOTION, restitution=wrong)
-    with pytest.raises(rocking.InvalidArgumentError, match="restitution"):
-        rocking_assessment.Object("a", width=0.3, height=1.2, restitution=wrong)
 
 
 def test_bodies_with_two_different_edges_need_another():
     for edges in ({"left": 0.1, "right": 0.2}, {"left": 0.1, "right": 0.1, "sides": "right"}):
         with pytest.raises(rocking.InvalidArgumentError, match="different edges"):
             rocking.RigidBody(**edges, height=0.6).response(**MOTION, restitution=TEXT)
-    with pytest.raises(rocking.InvalidArgumentError, match="not in the middle"):
-        rocking_assessment.Object("a", width=0.3, height=1.2, offset_width=0.01, restitution=TEXT)

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import rocking_assessment
 import xarray as xr
 from scipy.stats import norm
 
@@ -223,18 +222,6 @@ def test_bodies_with_two_different_edges_count_each_record_and_its_mirror_image(
     low, high = binomial_interval(0.5 * found.exceedances.values, 3, 0.95)  # of three independent records
     np.testing.assert_array_equal((found.fraction_lower, found.fraction_upper), (low, high))
     assert found.uplift_acceleration.values.tolist() == body.uplift_acceleration.tolist()
-
-
-def test_an_object_has_the_fragility_of_each_of_its_directions(noisy):
-    motions, levels = noisy[:3], [2.0, 6.0, 18.0]
-    box = rocking_assessment.Object("box", width=0.4, depth=0.6, height=1.6, restitution=0.8)
-    found = rocking.fragility(motions, box, intensity=levels)
-    assert found.direction.values.tolist() == ["width", "depth"]
-    for direction, width in (("width", 0.4), ("depth", 0.6)):
-        block = rocking.fragility(motions, rocking.Block(width, 1.6), intensity=levels, restitution=0.8)
-        np.testing.assert_array_equal(found.overturned.sel(direction=direction), block.overturned)
-    leaning = rocking_assessment.Object("box", width=0.4, height=1.6, offset_width=0.05)
-    assert rocking.fragility(motions, leaning, intensity=levels).sizes["record"] == 6
 
 
 MOTIONS = [noise(seed) for seed in range(3)]

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import rocking_assessment
 import yaml
 
 import rocking
@@ -77,7 +76,7 @@ def test_the_shorter_configuration_of_the_guide_is_enough(tmp_path: Path) -> Non
     suite = suite_configuration(given, tmp_path)
     assert len(suite.motions()) == 5
     assert (suite.restitution, suite.demand, suite.confidence) == ("momentum", ("overturning",), 0.95)
-    assert (suite.map, suite.hazard, suite.sensitivity) == (None, None, None)
+    assert (suite.map, suite.sensitivity) == (None, None)
     described = set(re.findall(r"`suite\.([\w.]+)`", page))
     sections = {name.partition(".")[0] for name in described}
     assert sections == {*SuiteConfiguration.__annotations__}
@@ -94,8 +93,6 @@ def test_products_are_those_of_the_library(products: Path, suite: SuiteConfigura
         np.testing.assert_array_equal(fragility[name], direct[name])
     assert outcomes.record.values.tolist() == list(RECORDS)
     assert outcomes.digest.values.tolist() == [motion.digest for motion in suite.motions()]
-    rate = rocking_assessment.annual_rate(direct, suite.hazard)
-    np.testing.assert_allclose(fragility.annual_rate, rate.annual_rate)
 
 
 def test_friction_restitution_and_sampling_are_those_of_the_library(products: Path, suite: SuiteConfiguration) -> None:
@@ -191,7 +188,6 @@ def test_sizes_of_blocks_are_in_metres_or_with_units() -> None:
         ("demand", ["sliding"], "suite.demand = 'sliding': allowed: overturning, alpha"),
         ("confidence", 1.0, "suite.confidence = 1.0: allowed: (0, 1)"),
         ("map/alpha_deg", [95.0], "suite.map.alpha_deg = 95.0: allowed: (0, 89] [deg]"),
-        ("hazard/annual_rate", [1.0], "suite.hazard"),
         ("sensitivity/intensity", [-1.0], "suite.sensitivity.intensity = -1.0"),
         ("sensitivity", {"intensity": [1.0]}, "suite.sensitivity = 'no restitution_step': allowed: exactly the keys"),
     ],

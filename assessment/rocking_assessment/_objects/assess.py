@@ -256,7 +256,7 @@ def _event_rates(
     component reaches -g; there is no bound where a weaker one overturns it. `lowest`: factors below which none does
     (bodies,).
     """
-    from rocking.suites.hazard import exceedance_rates  # noqa: PLC0415  (xarray takes longer to load)
+    from rocking_assessment._hazard.rates import exceedance_rates  # noqa: PLC0415  (xarray takes longer to load)
 
     hazard: Any = site.hazard  # checked arrays, see `Site`
     intensity, rates = hazard

@@ -47,8 +47,10 @@ def test_a_narrow_range_under_a_pulse_of_many_cycles_is_met(
     width: float, height: float, pga: float, period: float, least: float, most: float
 ) -> None:
     """By every 128th of the amplitudes of `rocking.thresholds` the factor was 1.358, and none up to 10."""
-    site = rocking.Site(pga=pga, periods=(period, period), shapes=["mavroeidis_papageorgiou(cycles=15, phase=90 deg)"])
-    body = Bodies.of([rocking.Object("one", width=width, height=height)]).scaled()
+    site = rocking_assessment.Site(
+        pga=pga, periods=(period, period), shapes=["mavroeidis_papageorgiou(cycles=15, phase=90 deg)"]
+    )
+    body = Bodies.of([rocking_assessment.Object("one", width=width, height=height)]).scaled()
     ((factor,),) = factors_of(body, site.motions)
     assert least < factor < most
     assert overturned_by(body, site.motions[0], None, factor * pga).all()
@@ -60,8 +62,8 @@ def test_factors_on_a_coarse_record_are_solved_where_the_estimate_says_that_none
     def calm(_lines: Lines, line: np.ndarray, _strength: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros(line.size, bool), np.tile([1e9, 1e9, 0.0, 0.0], (line.size, 1))
 
-    body = Bodies.of([rocking.Object("one", width=0.25, height=0.8)]).scaled()
-    (motion,) = rocking.Site(records=[noise(5, 200, 0.08)]).motions
+    body = Bodies.of([rocking_assessment.Object("one", width=0.25, height=0.8)]).scaled()
+    (motion,) = rocking_assessment.Site(records=[noise(5, 200, 0.08)]).motions
     monkeypatch.setattr(Lines, "estimated", calm)
     ((factor,),) = factors_of(body, [motion])
     start = float(np.asarray(body.uplift_acceleration)[0]) / motion.peak_acceleration
@@ -165,8 +167,10 @@ def test_verdict_factor_shares_and_samples_agree(height: float, share: float, re
 def test_a_harsher_hazard_has_no_lower_rate_and_bounds_hold_the_rate() -> None:
     objects = [rocking_assessment.Object(f"{k}", width=w, height=1.0) for k, w in enumerate([0.12, 0.2, 0.3, 2.0])]
     x, rates = np.array([0.5, 2.0, 8.0, 20.0]), np.array([1e-2, 1e-3, 1e-4, 1e-6])
-    sites = [rocking.Site(2.5, records=RECORDS, hazard=(x, scale * rates)) for scale in (1.0, 3.0)]
-    mild, harsh = (rocking.assess(objects, site, sensitivity=False, resolution=0.05).columns for site in sites)
+    sites = [rocking_assessment.Site(2.5, records=RECORDS, hazard=(x, scale * rates)) for scale in (1.0, 3.0)]
+    mild, harsh = (
+        rocking_assessment.assess(objects, site, sensitivity=False, resolution=0.05).columns for site in sites
+    )
     for name in ("annual_rate", "annual_rate_lower", "annual_rate_upper"):
         known = ~np.isnan(mild[name])
         assert known.any()
@@ -179,8 +183,10 @@ def test_the_annual_rate_is_the_sum_over_the_ranges_that_overturn() -> None:
     """A lognormal curve through 12 levels was 70 % too high for a block of 0.5 x 2 m, its bounds equal."""
     record, block = noise(1, 800, 0.02), rocking.Block(0.3, 1.5)
     hazard = np.array([2.0, 5.0, 12.0, 50.0]), np.array([1e-2, 1e-3, 1e-4, 1e-7])
-    site = rocking.Site(records=[record], hazard=hazard)
-    (row,) = rocking.assess(rocking.Object("one", width=0.3, height=1.5), site, sensitivity=False).rows
+    site = rocking_assessment.Site(records=[record], hazard=hazard)
+    (row,) = rocking_assessment.assess(
+        rocking_assessment.Object("one", width=0.3, height=1.5), site, sensitivity=False
+    ).rows
     edges = np.geomspace(2.0, 50.0, number(3000, 30000))
     exceeded = np.exp(np.interp(np.log(edges), np.log(hazard[0]), np.log(hazard[1])))
     overturned = block.response(record, scale=np.sqrt(edges[:-1] * edges[1:]) / record.peak_acceleration).overturned
@@ -196,8 +202,8 @@ def test_strengths_at_which_the_vertical_acceleration_reaches_g_do_not_count_as_
     upwards *= -np.sign(upwards[np.abs(upwards).argmax()])  # its largest value is downwards
     record = rocking.Record(ground.acceleration, 0.02, "m/s2", "lifting", vertical=upwards)
     hazard = np.array([1.0, 3.0, 9.0]), np.array([1e-2, 1e-3, 1e-4])
-    box = rocking.Object("box", width=1.0, height=1.2)
-    found = rocking.assess(box, rocking.Site(records=[record], hazard=hazard), sensitivity=False)
+    box = rocking_assessment.Object("box", width=1.0, height=1.2)
+    found = rocking_assessment.assess(box, rocking_assessment.Site(records=[record], hazard=hazard), sensitivity=False)
     (row,) = found.rows
     assert row["factor"] is None
     assert found.highest_factor == 1.39
@@ -210,11 +216,11 @@ def test_strengths_at_which_the_vertical_acceleration_reaches_g_do_not_count_as_
     assert row["annual_rate"] is None
     assert row["annual_rate_lower"] == 0.0
     assert row["annual_rate_upper"] == pytest.approx(exceeded, rel=1e-6)
-    strong = rocking.Site(pga=1.5 * record.peak_acceleration, records=[record])
+    strong = rocking_assessment.Site(pga=1.5 * record.peak_acceleration, records=[record])
     with pytest.raises(rocking.InvalidArgumentError, match="reaches -g"):
-        rocking.assess(box, strong, sensitivity=False)
+        rocking_assessment.assess(box, strong, sensitivity=False)
     with pytest.raises(rocking.InvalidArgumentError, match="reaches -g"):
-        rocking.overturning_probability(strong, width=stats.norm(1.0, 0.01), height=1.2, samples=64)
+        rocking_assessment.overturning_probability(strong, width=stats.norm(1.0, 0.01), height=1.2, samples=64)
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,7 @@
-"""A fragility in files: CSV, JSON, NRML 0.5 by the rules of OpenQuake's reader, components of pelicun."""
+"""A fragility for loss programs: NRML 0.5 by the rules of OpenQuake's reader, components of pelicun."""
 
 import csv
 import io
-import json
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -88,28 +87,8 @@ def test_below_the_lowest_level_a_probability_is_not_cut_off(found, tmp_path):
     assert curve(lowest) > 0.5
 
 
-def test_three_files_hold_the_fractions(found, tmp_path):
-    found = found.isel(block=1)
-    for ending in ("csv", "json", "xml"):
-        rocking.suites.write_fragility(found, tmp_path / f"curves.{ending}")
-    expected = found["fraction"].values
-    with (tmp_path / "curves.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert [float(row["fraction"]) for row in rows] == expected.tolist()
-    assert {float(row["width"]) for row in rows} == {0.3}
-    content = json.loads((tmp_path / "curves.json").read_text(), parse_constant=pytest.fail)
-    assert content["levels"]["fraction"] == expected.tolist()
-    assert (content["measure"], content["unit"]) == ("pga", "m s-2")
-    assert content["curves"]["median_intensity"] == found["median_intensity"].values.tolist()
-    mild = rocking.fragility(noise(1), BLOCKS[1], intensity=[0.1, 0.2])
-    rocking.suites.write_fragility(mild, tmp_path / "mild.json")  # a curve that does not exist is null
-    assert json.loads((tmp_path / "mild.json").read_text())["curves"]["median_intensity"] == [None, None]
-    (curves,) = read(tmp_path / "curves.xml").values()
-    np.testing.assert_allclose(curves["overturns"](LEVELS / 9.80665), expected, atol=1e-8)
-
-
 def test_components_of_pelicun_are_the_fits_over_g(found, tmp_path):
-    rocking.suites.write_fragility(found, tmp_path / "blocks.pelicun.csv")
+    rocking_assessment.write_pelicun(found, tmp_path / "blocks.pelicun.csv")
     with (tmp_path / "blocks.pelicun.csv").open(newline="") as text:
         rows = list(csv.DictReader(text))
     fits = found["median_intensity"].sel(model="lognormal").values.ravel() / 9.80665
@@ -129,8 +108,6 @@ def test_refusals(found, tmp_path):
     for write in (write_nrml, rocking_assessment.write_pelicun):
         with pytest.raises(InvalidArgumentError, match="pga or pgv"):
             write(found.assign_attrs(measure="pga_ratio"), tmp_path / "model.xml")
-    with pytest.raises(InvalidArgumentError, match=r"\.csv"):
-        rocking.suites.write_fragility(found, tmp_path / "curves.txt")
     with pytest.raises(InvalidArgumentError, match="format"):
         write_nrml(found, tmp_path / "model.xml", format="logistic")
 
