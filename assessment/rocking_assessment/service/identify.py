@@ -39,8 +39,8 @@ class IdentifyParams(Params):
 class Trace(IdentifyParams):
     """A trace in a JSON body, and how it is read and fitted."""
 
-    time: Samples = said("times, ascending", unit="s")
-    rotation: Samples = said("rotation; positive values turn on the right edge", unit="rad")
+    time: Samples = said("times, ascending", unit="s", exclude=True)
+    rotation: Samples = said("rotation; positive values turn on the right edge", unit="rad", exclude=True)
 
 
 class IdentifyResponse(InGroups[IdentifyParams]):

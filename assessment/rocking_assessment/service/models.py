@@ -160,9 +160,11 @@ class HazardBody(BaseModel):
 class AssessBody(AssessParams):
     """Objects, a site, and its records and hazard curve, if it has any."""
 
-    objects: list[dict[str, Any]] = said("one a row, with the columns of `rocking.Object`", max_length=MAX_OBJECTS)
-    records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS)
-    hazard: HazardBody | None = said("hazard curve of the site, with records", None)
+    objects: list[dict[str, Any]] = said(
+        "one a row, with the columns of `rocking_assessment.Object`", max_length=MAX_OBJECTS, exclude=True
+    )
+    records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS, exclude=True)
+    hazard: HazardBody | None = said("hazard curve of the site, with records", None, exclude=True)
 
     @model_validator(mode="before")
     @classmethod
