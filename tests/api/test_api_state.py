@@ -245,7 +245,7 @@ def test_the_type_of_an_error_is_explained(client):
     page = client.get("/problems").text
     found = {
         client.get("/v1/response?pulse=sine").json()["type"],
-        client.post("/v1/response", content="{").json()["type"],
+        client.post("/v1/response", content="{", headers={"content-type": "application/json"}).json()["type"],
         client.post("/v1/response", content="a", headers={"content-type": "text/html"}).json()["type"],
         client.get("/v1/datasets/no/such").json()["type"],
         client.get("/nowhere").json()["type"],

@@ -18,6 +18,7 @@ from rocking_assessment._objects.directions import factors_by_direction
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.search import HIGHEST_FACTOR
 from rocking_assessment._objects.site import Site
+from rocking_assessment._objects.summary import number_of
 from rocking_assessment.service.dial import dial_of, worst_directions
 from rocking_assessment.service.mesh_reader import ENDINGS, read_mesh
 from rocking_assessment.service.models import modes_of
@@ -229,6 +230,7 @@ def page_of(
         worst=worst,
         dial=dial_of(found, footprint) if worst and found is not None and footprint is not None else None,
         highest=HIGHEST_FACTOR,
+        number_of=number_of,
         notes=notes or [],
         depth_missing=given["shape"] == "rectangle" and not given["depth"].strip(),
     )
