@@ -4,7 +4,7 @@
 
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := help
-.PHONY: help reproduce atlas atlas-small verify deposit test test-all browser serve docs bench stress slurm mutants oldest newest wheel lock environment FORCE
+.PHONY: help reproduce atlas atlas-small verify deposit test test-core test-all browser serve docs bench stress slurm mutants oldest newest wheel lock environment FORCE
 
 HOST ?= 127.0.0.1
 PORT ?= 8000
@@ -24,18 +24,20 @@ UV := $(or $(shell command -v uv),build/uv/bin/uv)
 unexport VIRTUAL_ENV PYTHONPATH PYTHONHOME PYTHONDONTWRITEBYTECODE
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-# A run ends when the make that started it ends.
-RUN := ROCKING_RUN=$$PPID python -m workflow.run
+# One run at a time, by a lock of a file. The system releases it when the run ends, also when it is killed; Snakemake's own
+# lock, which is used where there is no flock (util-linux), would stay.
+FLOCK := $(shell command -v flock)
+run = $(if $(FLOCK),flock $(1) snakemake --nolock,snakemake)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 18
 
 reproduce: .venv/project ## make data sets, figures and claims of the paper in results/ (CONFIG=FILE: another configuration)
-	$(RUN) $(if $(CONFIG),--configfile '$(CONFIG)')
+	$(call run,Snakefile) $(if $(CONFIG),--configfile '$(CONFIG)')
 
 # Data sets of all pulses lie in folders of their own: `make serve RESULTS=atlas-small/results`.
 atlas-small atlas: .venv/project
-	$(RUN) --directory $@ --configfile workflow/config/$@.yaml
+	$(call run,workflow/config/$@.yaml) --directory $@ --configfile workflow/config/$@.yaml
 
 atlas-small: ## make data sets of all nine pulses in atlas-small/results, ten minutes
 atlas: ## the same on a fine grid, 27 restitutions and 10 angles, in atlas/results, some hours; it may be interrupted
@@ -52,6 +54,14 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 	snakefmt --check Snakefile workflow
 	@echo 'of long tests and enumerations a part is run: make test-all runs all'
 	$(PYTEST)
+
+# The locked packages without those that only the extra `assessment` has.
+test-core: $(UV) ## run the tests of the core where the extra `assessment` is not installed
+	$(UV) venv --quiet --clear --python $(PYTHON) build/core
+	$(UV) pip install --quiet --python build/core --require-hashes --requirement environment.lock
+	$(UV) pip uninstall --quiet --python build/core trimesh
+	$(UV) pip install --quiet --python build/core --no-deps --no-build-isolation --editable .
+	PATH=$(CURDIR)/build/core/bin:$$PATH NUMBA_CACHE_DIR=$(CURDIR)/build/core/kernels ROCKING_NO_BROWSER=1 $(PYTEST)
 
 build/clients/bin/openapi-python-client: | .venv/project
 	$(PYTHON) -m venv build/clients && build/clients/bin/pip install --quiet openapi-python-client datamodel-code-generator
@@ -72,7 +82,7 @@ docs: .venv/project | results/manifest.json ## build the guide in build/docs; it
 	@echo 'open build/docs/index.html, or make serve and http://$(HOST):$(PORT)/guide/'
 
 bench: .venv/project ## run the benchmarks: run time, error, first call, records, service; about ten minutes
-	$(RUN) $(if $(CONFIG),--configfile '$(CONFIG)' --) bench
+	$(call run,Snakefile) $(if $(CONFIG),--configfile '$(CONFIG)' --) bench
 
 stress: .venv/project ## compare 3,800 hard cases with 192-bit references; one to two minutes
 	python -m stress

@@ -1,5 +1,4 @@
-# Builds every product of the paper's reproduction. `make reproduce` (workflow/run.py) also makes again what is not as
-# recorded; `snakemake` in this folder makes what is missing or out of date. Another configuration:
+# Builds every product of the paper's reproduction: `snakemake`, or `make reproduce`. Another configuration:
 # `--configfile workflow/config/smoke.yaml`; another place: `--directory DIR`.
 from snakemake.utils import min_version
 
@@ -28,25 +27,22 @@ else:
 
         include: "workflow/rules/figures.smk"
         include: "workflow/rules/claims.smk"
-    include: "workflow/rules/report.smk"
+    include: "workflow/rules/checks.smk"
+
+
+include: "workflow/rules/manifest.smk"
+
+
+if "suite" not in config:
+
     include: "workflow/rules/benchmarks.smk"
-
-
-records.date_back_outdated(Path.cwd(), JOBS.values())
 
 
 rule all:
     default_target: True
     input:
-        FINISHED,
+        list(PRODUCTS),
+        rules.manifest.output,
+        CHECKED,
     message:
         "All products are made, and listed in the manifest"
-
-
-onstart:
-    try:
-        acquire(Path.cwd())
-    except RunningError as error:
-        raise WorkflowError(str(error)) from None
-    if not workflow.executor_plugin.common_settings.non_local_exec:
-        job_server.start()

@@ -17,7 +17,7 @@ GUIDE_URL = os.environ.get("GUIDE_URL", "").rstrip("/")
 
 from rocking_api.routers.pages import PAGES  # noqa: E402  (from this tree)
 
-from rocking._base.version import __version__  # noqa: E402
+from rocking._base.installation import __version__  # noqa: E402
 
 project = "rocking"
 author = project_copyright = "The rocking developers"

@@ -4,7 +4,7 @@ from . import suites as suites
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RockingError as RockingError
 from ._base.errors import StoppedError as StoppedError
-from ._base.version import __version__ as __version__
+from ._base.installation import __version__ as __version__
 from ._boundary.amplitude import thresholds as thresholds
 from ._boundary.tracing import overturning_boundary as overturning_boundary
 from ._dimensional.block import Block as Block

@@ -4,7 +4,6 @@ from ._base.arrays import Index as Index
 from ._base.cells import name_and_unit as name_and_unit
 from ._base.cells import named as named
 from ._base.cells import plain_name as plain_name
-from ._base.constants import STANDARD_GRAVITY as STANDARD_GRAVITY
 from ._base.equality import EqualByValue as EqualByValue
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import UnreadableFileError as UnreadableFileError
@@ -17,7 +16,8 @@ from ._base.errors import number as number
 from ._base.errors import one_of as one_of
 from ._base.errors import plain_numbers as plain_numbers
 from ._base.errors import positive as positive
-from ._base.extras import require_extra as require_extra
+from ._base.installation import __version__ as __version__
+from ._base.installation import require_extra as require_extra
 from ._base.output_file import output_errors as output_errors
 from ._base.output_file import write_output as write_output
 from ._base.quantities import DEPTH as DEPTH
@@ -47,11 +47,11 @@ from ._base.quantities import TIME_STEP as TIME_STEP
 from ._base.quantities import TOLERANCE as TOLERANCE
 from ._base.quantities import WIDTH as WIDTH
 from ._base.quantity import Quantity as Quantity
+from ._base.units import STANDARD_GRAVITY as STANDARD_GRAVITY
 from ._base.units import UNITS as UNITS
 from ._base.units import Scalar as Scalar
 from ._base.units import Values as Values
 from ._base.units import unit_name as unit_name
-from ._base.version import __version__ as __version__
 from ._boundary.scan import RESOLUTION as RESOLUTION
 from ._boundary.scan import RESOLUTIONS as RESOLUTIONS
 from ._boundary.scan import checked_resolution as checked_resolution

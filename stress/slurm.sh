@@ -57,7 +57,7 @@ fi
 export PYTHONPATH=$PWD/build/slurm${PYTHONPATH:+:$PYTHONPATH}
 make_in() {
     local begin=$SECONDS directory=$1
-    python -m workflow.run "${@:2}" --configfile "$configuration" --directory "$directory" --nocolor -- "${targets[@]}"
+    snakemake "${@:2}" --configfile "$configuration" --directory "$directory" --nocolor -- "${targets[@]}"
     echo "$(basename "$directory"): $((SECONDS - begin)) s"
 }
 make_in "$folder/slurm" --workflow-profile profiles/slurm --slurm-no-account --slurm-status-command squeue

@@ -3,7 +3,7 @@
 import numpy as np
 
 from benchmarks.accuracy.lookup import compare_with_solver
-from rocking._boundary.cells import crossed_cells
+from rocking._boundary.curves import crossed_cells
 from rocking._boundary.tracing import overturning_boundary
 from rocking._lookup.cube import Points
 

@@ -20,20 +20,15 @@ def snakemake(
     *arguments: str,
     configuration: Path = SMOKE,
     project: Path = PROJECT,
-    module: str = "snakemake",
 ) -> subprocess.CompletedProcess[str]:
     """Run the workflow of `project` in `directory` as a user would; stderr is included in stdout."""
     command: Sequence[str | Path] = (
-        sys.executable, "-m", module, "--snakefile", project / "Snakefile", "--directory", directory,
+        sys.executable, "-m", "snakemake", "--snakefile", project / "Snakefile", "--directory", directory,
         "--configfile", configuration, "--nocolor", *arguments,
     )  # fmt: skip
     return subprocess.run(
         command, cwd=project, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=1200, check=False
     )
-
-
-def reproduce(directory: Path) -> subprocess.CompletedProcess[str]:
-    return snakemake(directory, module="workflow.run")
 
 
 def rules_to_run(output: str) -> set[str]:
@@ -48,7 +43,7 @@ def smoke_run(once: Callable[[str, Callable[[Path], None]], Path]) -> Path:
         return Path(made)
 
     def make(folder: Path) -> None:
-        finished = reproduce(folder)
+        finished = snakemake(folder)
         assert finished.returncode == 0, finished.stdout
 
     return once("smoke", make)

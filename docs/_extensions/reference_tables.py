@@ -15,7 +15,7 @@ from rocking_api.settings import Settings
 from typer.cli import get_docs_for_click
 
 from rocking._cli.app import app as command_line
-from rocking._datasets.cube import AXES, VARIABLES
+from rocking._datasets.cube import AXES, RESTITUTION_ERROR, VARIABLES
 
 
 @cache
@@ -140,7 +140,7 @@ class CubeFields(Generated):
 
         text = ["| variable | type | unit | equation | meaning |", "|---|---|---|---|---|"]
         fields = [(name, "f8", about) for name, about in AXES.items()]
-        fields += [(name, kind, about) for name, (kind, about) in VARIABLES.items()]
+        fields += [(name, kind, about) for name, (kind, about) in (VARIABLES | RESTITUTION_ERROR).items()]
         for name, kind, about in fields:
             unit, equation = about.get("units", "1"), about.get("equation", "")
             meaning = "; ".join(str(about[key]) for key in ("long_name", "comment", "flag_meanings") if key in about)

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import needed, number, reject_given
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION
-from rocking._base.units import Scalar
+from rocking._base.units import STANDARD_GRAVITY, Scalar
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.scan import Index, Lines, checked_resolution, outcome_changes
 from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
@@ -27,7 +26,7 @@ from rocking._excitation.records.vertical import (
 from rocking._model.checks import check_one_alpha, known_restitution
 from rocking._model.fields import IMPACTS, OUTCOME
 from rocking._model.labelled import variable
-from rocking._model.outcome_code import SURVIVES, decode_outcomes
+from rocking._model.outcome import SURVIVES, decode_outcomes
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import frequency_parameter_range, record_cells, record_response

@@ -17,7 +17,7 @@ from rocking._base.units import Scalar
 from rocking._boundary.search import Floats, block_solver, classifier, counted_code, outcomes_along
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.checks import check_ends, check_one_alpha
-from rocking._model.outcome_code import SURVIVES
+from rocking._model.outcome import SURVIVES
 from rocking._numba.cancellation import StopFlag
 
 NODES_PER_DECADE = 1000  # nodes on which outcomes are first computed, before their changes are refined [-]

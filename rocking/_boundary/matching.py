@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rocking._boundary.columns import Column
 from rocking._boundary.search import UNCOUNTED
-from rocking._model.outcome_code import SURVIVES
+from rocking._model.outcome import SURVIVES
 from rocking._numba.compilation import FloatArray, array_entry, array_kernel
 
 SECANT, STEP, CURVATURE, SPAN = range(4)  # indices of the numbers of a trend

@@ -14,7 +14,7 @@ import numpy as np
 from rocking._boundary.columns import THINNEST, Column, Index
 from rocking._boundary.matching import Pairs, Side, follow_trends
 from rocking._boundary.search import UNCOUNTED, Codes, Floats
-from rocking._model.outcome_code import SURVIVES
+from rocking._model.outcome import SURVIVES
 
 PROBES = 81  # most points for one region in one column [-]
 ACROSS = np.linspace(0.02, 0.98, 9)  # nodes of a column within a panel, as shares of its height [-]

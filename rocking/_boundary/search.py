@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._excitation.pulses import AbstractPulse
 from rocking._model.energy import outcome_margin
-from rocking._model.outcome_code import SURVIVES, impacts_of_code, outcome_codes
+from rocking._model.outcome import SURVIVES, impacts_of_code, outcome_codes
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import solve_cells
 from rocking._solver.state import FULL_PRECISION

@@ -13,7 +13,7 @@ from rocking._boundary.columns import THINNEST, Column, Index, Lines
 from rocking._boundary.matching import Side, join_sides, learn_slopes, learn_smooth_slopes, match_thresholds
 from rocking._boundary.panels import Panel, probes_for_lost_regions
 from rocking._boundary.search import UNCOUNTED, Classify, Codes, Floats, Nodes, Work, without_layers
-from rocking._model.outcome_code import impacts_of_code
+from rocking._model.outcome import impacts_of_code
 
 BATCH_SIZE = 500_000  # blocks that are solved in one call, about: a hundred megabytes [-]
 END = 1e-4  # distance in log omega within which the end of a region is known [-]

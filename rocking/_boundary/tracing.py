@@ -24,7 +24,7 @@ from rocking._boundary.tracer import CHORD, END, Tracer
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._model.checks import check_ends, check_one_alpha, known_restitution
 from rocking._model.labelled import variable
-from rocking._model.outcome_code import decode_outcomes
+from rocking._model.outcome import decode_outcomes
 from rocking._numba.cancellation import StopFlag
 
 if TYPE_CHECKING:

@@ -115,7 +115,7 @@ app = typer.Typer(
 
 def _print_version(given: bool) -> None:
     if given:
-        from rocking._base.version import __version__
+        from rocking._base.installation import __version__
 
         typer.echo(__version__)
         raise typer.Exit

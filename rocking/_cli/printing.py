@@ -18,7 +18,7 @@ from rocking._cli.options import HistoryOptions, OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
 from rocking._dimensional.fields import CONTACT_FORCES, FIELDS, JUDGED
-from rocking._dimensional.threshold import Threshold, threshold_text
+from rocking._dimensional.thresholds import Threshold, threshold_text
 from rocking._model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
 from rocking._model.outcome import Outcome
 from rocking._solver.bounded_response import BoundedResponse, solve_with_bound

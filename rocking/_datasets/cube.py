@@ -2,15 +2,16 @@
 
 A spectrum cube (`results/spectra/PULSE/eta-0.85.nc`) has dimensions (alpha, slenderness, frequency_ratio), the
 variables `VARIABLES`, which say what they hold, scalar coordinates `pulse` and `restitution`, the attribute
-`IMPACTS_BEFORE_REST`, and derived fields of the nodes where they were asked for (`OPTIONAL_VARIABLES`). alpha = 0
-stands for the slender limit. Values of a cell are stored at its lower corner. A file of a pulse given by samples holds
-these, `pulse_phase` and `pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of creation, so equal
-content gives equal bytes, and a digest of their values.
+`IMPACTS_BEFORE_REST`, and derived fields of the nodes where they were asked for (`OPTIONAL_VARIABLES`). The errors
+between the cubes of a pulse are in a file beside them (`RESTITUTION_ERROR`). alpha = 0 stands for the slender limit.
+Values of a cell are stored at its lower corner. A file of a pulse given by samples holds these, `pulse_phase` and
+`pulse_shape`. Files follow CF-1.11 and ACDD-1.3. They contain no time of creation, so equal content gives equal
+bytes, and a digest of their values.
 """
 
 import hashlib
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -20,11 +21,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import DatasetError, RockingError
+from rocking._base.installation import AUTHORS, __version__
 from rocking._base.output_file import replacement_of
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
-from rocking._base.version import AUTHORS, __version__
-from rocking._datasets.checksum import append_checksum, find_damage
-from rocking._datasets.netcdf import open_netcdf, write_netcdf
+from rocking._datasets.netcdf import append_checksum, find_damage, open_netcdf, write_netcdf
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
@@ -76,14 +76,6 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
                     "the solver, in the cell and those around it, at two points of each and at five where the "
                     "error exceeds 1e-6; 0 where all overturn in the same way, missing where no bound is known"},
     ),
-    "restitution_error": (
-        "f4",
-        {"long_name": "error between restitutions",
-         "equation": "3.2",
-         "comment": "largest measured error of peak_rotation interpolated before the next restitution: four-point "
-                    "Lagrange over the nearest restitution_slices, measured halfway at the centres of the "
-                    "cell above the node and of those around it; missing where no bound is known"},
-    ),
     "alpha_error": (
         "f4",
         {"long_name": "error between angles", "equation": "3.2",
@@ -92,6 +84,18 @@ VARIABLES: dict[str, tuple[str, dict[str, Any]]] = {
     ),
 }  # fmt: skip
 """Type and attributes of each variable of a spectrum cube; fields of a response derive from `rocking._model.fields`."""
+
+RESTITUTION_ERROR: dict[str, tuple[str, dict[str, Any]]] = {
+    "restitution_error": (
+        "f4",
+        {"long_name": "error between restitutions",
+         "equation": "3.2",
+         "comment": "largest measured error of peak_rotation interpolated before the next restitution: four-point "
+                    "Lagrange over the two restitutions on either side, or the four outermost, measured halfway at "
+                    "the centres of the cell above the node and of those around it; missing where no bound is known"},
+    ),
+}  # fmt: skip
+"""Variable of the errors between the cubes of a pulse, in a file of their own, or in cubes that were made together."""
 
 OPTIONAL_VARIABLES = {field.name: (field.file_dtype, field.attributes) for field in DERIVED_FIELDS}
 """Variables that a spectrum cube has if they were asked for, at its nodes; they are not interpolated."""
@@ -130,7 +134,7 @@ def build_spectrum_dataset(
     cube = xr.Dataset(
         {
             key: (DIMENSIONS, np.asarray(variables[key], dtype=dtype), {**MODEL_RESULT, **attributes})
-            for key, (dtype, attributes) in (VARIABLES | OPTIONAL_VARIABLES).items()
+            for key, (dtype, attributes) in (VARIABLES | RESTITUTION_ERROR | OPTIONAL_VARIABLES).items()
             if key in variables
         },
         coords={key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS},
@@ -142,6 +146,39 @@ def build_spectrum_dataset(
         "ratio, solved event by event, with the measured error of interpolating between the nodes.",
         history="rocking._spectra.cubes.spectrum",
         id=f"spectra/{name}/eta-{restitution:.2f}",
+    )
+
+
+def build_errors_dataset(
+    errors: ArrayLike,
+    *,
+    pulse: str | SampledPulse,
+    restitution: ArrayLike,
+    axes: Mapping[str, ArrayLike],
+    digests: Sequence[str],
+) -> xr.Dataset:
+    """Assemble the errors between the cubes of a pulse, (restitution, alpha, slenderness, frequency_ratio).
+
+    `restitution`: eta of the cubes [-], ascending; `axes`: as for `build_spectrum_dataset`; `digests`: `content_sha256`
+    of the cubes.
+    """
+    name = as_pulse(pulse).name
+    dtype, attributes = RESTITUTION_ERROR["restitution_error"]
+    values = np.asarray(errors, dtype=dtype)
+    scalars = scalar_coordinates(pulse, 0.0)
+    eta = xr.Variable("restitution", np.asarray(restitution, dtype="f8"), scalars.pop("restitution").attrs)
+    dataset = xr.Dataset(
+        {"restitution_error": (("restitution", *DIMENSIONS), values, {**MODEL_RESULT, **attributes})},
+        coords={key: (key, np.asarray(axes[key], dtype="f8"), AXES[key]) for key in DIMENSIONS} | {"restitution": eta},
+    )
+    return describe(
+        dataset.assign_coords(scalars),
+        title=f"Errors of interpolation between the restitutions of the {name} pulse",
+        summary="Measured errors of the peak rotation interpolated between the spectrum cubes of a pulse, from each "
+        "restitution to the next one.",
+        history="rocking._spectra.cubes.restitution_errors",
+        id=f"spectra/{name}/restitution-errors",
+        cubes_content_sha256=" ".join(digests),
     )
 
 

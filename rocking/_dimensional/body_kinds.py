@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
 
-from rocking._base.kinds import Kind, kind_with, split_kind
-from rocking._base.quantity import Quantity
+from rocking._base.quantity import Kind, Quantity, kind_with, split_kind
 from rocking._dimensional.bodies.composite import hollow, on_pedestal
 from rocking._dimensional.bodies.rigid import cylinder, offset_mass, outline, rectangle, two_edges, with_wall
 from rocking._dimensional.bodies.structures import arch, frame, on_pivots, structure

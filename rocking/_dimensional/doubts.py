@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.threshold import warnings_of_changes
+from rocking._dimensional.thresholds import warnings_of_changes
 from rocking._excitation.pulses import AbstractPulse
 from rocking._excitation.records.record import TIME_STEP, Record
 from rocking._excitation.records.vertical import highest_vertical_scale

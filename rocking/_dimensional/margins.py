@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.threshold import Threshold
+from rocking._dimensional.thresholds import Threshold
 from rocking._model.fields import ResponseField
 from rocking._numba.cancellation import StopFlag
 

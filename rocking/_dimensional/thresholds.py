@@ -20,7 +20,6 @@ from rocking._boundary.amplitude import amplitude_changes, thresholds
 from rocking._boundary.scan import RESOLUTION, Lines, checked_resolution, lowest_overturning, outcome_changes
 from rocking._dimensional.lowest_thresholds import record_lines, record_range
 from rocking._dimensional.problem import Problem, record_groups, restitution_of, search_range, uplift_scale
-from rocking._dimensional.threshold import Threshold, threshold_text
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.block import AbstractBlock
@@ -32,6 +31,54 @@ from rocking._solver.records.samples import motion_samples
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+
+from collections.abc import Iterable
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+
+from rocking._boundary.scan import RELATIVE_ERROR  # that of elastic blocks under pulses, too
+
+MARGIN = 0.05
+"""Relative distance of a change of outcome below which a warning is given [-]: ground motions are not known better."""
+
+DIGITS = 6  # significant digits of a threshold in texts [-]
+
+MAX_LISTED = 4  # changes of outcome that a warning lists; of more, it states the number and both ends
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """A value at which the outcome changes."""
+
+    value: float  # peak acceleration [m/s2], period [s], half-diagonal [m], or factor of a record [-]
+    overturns_above: bool  # true: the block overturns just above and survives just below; False: the reverse
+
+    def __str__(self) -> str:
+        """The outcome above the value in words, such as `overturns above 4.70006`."""
+        return f"{'overturns' if self.overturns_above else 'survives'} above {self.text()}"
+
+    def text(self, digits: int = DIGITS) -> str:
+        """The value with some significant digits, 1 to 15, on the safe side of itself and of its error."""
+        return threshold_text(self.value, digits, overturns_above=self.overturns_above)
+
+
+def threshold_text(value: float, digits: int = DIGITS, *, overturns_above: bool = True) -> str:
+    """A threshold > 0 as text: rounded down if the block overturns above it, rounded up if it survives there."""
+    error, rounding = (-RELATIVE_ERROR, ROUND_FLOOR) if overturns_above else (RELATIVE_ERROR, ROUND_CEILING)
+    rounded = Context(prec=digits, rounding=rounding).create_decimal_from_float(value * (1.0 + error))
+    return f"{float(rounded):.{digits}g}"
+
+
+def warnings_of_changes(given: float, changes: Iterable[Threshold], name: str, unit: str = "") -> list[str]:
+    """A warning that the outcome changes close to the given value."""
+    near = sorted((one for one in changes if abs(one.value / given - 1.0) < MARGIN), key=lambda one: one.value)
+    if not near:
+        return []
+    places = f"at {', '.join(one.text() for one in near)}"
+    if len(near) > MAX_LISTED:
+        places = f"{len(near)} times, from {near[0].text()} to {near[-1].text()}"
+    return [f"the outcome changes within {100 * MARGIN:g} % of this {name}: {places}{unit}"]
+
 
 HIGHEST = 100.0, 10.0  # largest strength searched over that of uplift [-]: of pulses, and of records
 BEYOND = 10.0, 2.0  # that for a block over its own strength [-], where it is larger

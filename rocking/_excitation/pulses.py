@@ -16,8 +16,7 @@ from functools import lru_cache
 from typing import Annotated
 
 from rocking._base.errors import InvalidArgumentError, one_of
-from rocking._base.kinds import Kind, split_kind
-from rocking._base.quantity import Quantity
+from rocking._base.quantity import Kind, Quantity, split_kind
 from rocking._base.units import Scalar
 from rocking._excitation.shapes import AbstractPulse
 from rocking._excitation.sinusoids import SinusoidalPulse

@@ -11,11 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.errors import DatasetError, number, one_of
-from rocking._datasets.catalogue import Catalogue, DataFile, UnknownDatasetError, VersionCache, version_of
+from rocking._datasets.catalogue import Catalogue, DataFile, FileVersion, UnknownDatasetError, VersionCache, version_of
 from rocking._datasets.cube import decode_dataset
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._lookup.cube import METHODS, Cube, Points, UnreadError
-from rocking._lookup.cube_slice import CubeSlice, check_slice, decode_slice
+from rocking._lookup.cube_slice import (
+    ERRORS_NAME,
+    CubeSlice,
+    RestitutionErrors,
+    check_slice,
+    decode_errors,
+    decode_slice,
+)
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 
@@ -32,7 +39,8 @@ class CubeCollection:
 
     def __init__(self, results: Path | str) -> None:
         self.catalogue = Catalogue(results)
-        self._slices = VersionCache[tuple[str, float], CubeSlice | DatasetError]()
+        self._slices = VersionCache[tuple[str, float, FileVersion | None], CubeSlice | DatasetError]()
+        self._errors = VersionCache[str, RestitutionErrors | DatasetError]()
         self._restitutions = VersionCache[str, list[float]]()
         self._problems = VersionCache[str, str | None]()
 
@@ -57,21 +65,39 @@ class CubeCollection:
         A mirrored pulse has the same peaks and outcomes, hence the same cube. Raises `DatasetError` if the file is
         damaged, cannot be read, or does not contain the cube that its name states; `UnreadError` if it has to be read.
         """
-        key = pulse.removeprefix("-"), restitution
+        name = pulse.removeprefix("-")
+        errors = self._errors_of(name, may_read)
+        key = name, restitution, None if errors is None else errors.version
         known = self._slices.current(key)
         if known is None:
             if not may_read:
                 raise UnreadError
             try:
                 # under the lock: another thread may read the same file, which is then read once
-                with self.catalogue.open(_cube_name(*key)) as file, self.catalogue.lock:
-                    known = self._slices.value(key, file, lambda file: self._open(file, *key))
+                with self.catalogue.open(_cube_name(name, restitution)) as file, self.catalogue.lock:
+                    known = self._slices.value(key, file, lambda file: self._open(file, name, restitution, errors))
                     self._limit_memory(key)
             except UnknownDatasetError:
                 return None
         if isinstance(known, DatasetError):
             raise known
         return known
+
+    def _errors_of(self, pulse: str, may_read: bool) -> RestitutionErrors | None:
+        """The errors between the cubes of a pulse; None if their file is missing or damaged."""
+        known = self._errors.current(pulse)
+        name = f"spectra/{pulse}/{ERRORS_NAME}"
+        if known is None:
+            if version_of(self.catalogue.results / f"{name}.nc") is None:
+                return None
+            if not may_read:
+                raise UnreadError
+            try:
+                with self.catalogue.open(name) as file, self.catalogue.lock:
+                    known = self._errors.value(pulse, file, _decoded_errors)
+            except DatasetError:  # deleted in the meantime, or not readable; `problems` says so
+                return None
+        return None if isinstance(known, DatasetError) else known
 
     def cube(self, pulse: str | AbstractPulse, method: str = "auto", may_read: bool = True) -> Cube:
         """The cubes of a pulse; each is read when first needed.
@@ -160,7 +186,7 @@ class CubeCollection:
         with self.catalogue.lock:
             return self._problems.value(file.name, file, lambda file: _problem_of(file.name, file.content()))
 
-    def _limit_memory(self, newest: tuple[str, float]) -> None:
+    def _limit_memory(self, newest: tuple[str, float, FileVersion | None]) -> None:
         """Forget the cubes that were not used for longest."""
         sizes = {key: 0 if isinstance(one, DatasetError) else one.layers.nbytes for key, one in self._slices.items()}
         excess = sum(sizes.values()) - MAX_BYTES
@@ -169,9 +195,11 @@ class CubeCollection:
                 self._slices.forget(key)
                 excess -= size
 
-    def _open(self, file: DataFile, pulse: str, restitution: float) -> CubeSlice | DatasetError:
+    def _open(
+        self, file: DataFile, pulse: str, restitution: float, errors: RestitutionErrors | None
+    ) -> CubeSlice | DatasetError:
         try:
-            cube = decode_slice(file.content(), file.name, file.path, file.version)
+            cube = decode_slice(file.content(), file.name, file.path, file.version, errors)
             sampled = None if isinstance(cube.pulse, str) else cube.pulse
             found = str(cube.pulse) if sampled is None else sampled.name
             _check_content(file.name, (found, cube.restitution), (pulse, restitution))
@@ -180,6 +208,13 @@ class CubeCollection:
         except DatasetError as error:
             return error
         return cube
+
+
+def _decoded_errors(file: DataFile) -> RestitutionErrors | DatasetError:
+    try:
+        return decode_errors(file.content(), file.name, file.path, file.version)
+    except DatasetError as error:
+        return error
 
 
 def _cube_name(pulse: str, restitution: float) -> str:
@@ -204,7 +239,9 @@ def _problem_of(name: str, content: bytes) -> str | None:
     """Description of the problem of a data set with these bytes, None if it is intact."""
     kind, *rest = name.split("/")
     try:
-        if kind == "spectra" and len(rest) == 2:
+        if kind == "spectra" and len(rest) == 2 and rest[1] == ERRORS_NAME:
+            decode_errors(content, name, Path(name), None)
+        elif kind == "spectra" and len(rest) == 2:
             _check_content(name, check_slice(content, name), (rest[0], _restitution_of(rest[1])))
         else:
             decode_dataset(content, name)

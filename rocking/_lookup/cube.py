@@ -29,7 +29,7 @@ from rocking._base.errors import (
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._interpolation.kernel import Found, interpolate_many, prepare
 from rocking._interpolation.slices import STENCIL_SIZE, slice_index, slice_window
-from rocking._lookup.cube_slice import CubeSlice, fetch_slice, open_slice
+from rocking._lookup.cube_slice import ERRORS_NAME, CubeSlice, fetch_slice, open_errors, open_slice
 from rocking._model.checks import check_groups
 from rocking._model.fields import DERIVED_FIELDS
 from rocking._numba.cancellation import StopFlag
@@ -297,7 +297,7 @@ class Cube:
         slices = []
         for eta in etas[first : first + count]:
             one = self.slice_at(places[eta]) if eta in places else None
-            if one is None or not one.fits(own):
+            if one is None or not one.fits(own) or not own.was_measured_with(one):
                 return None
             slices.append(one)
         return Window(slices, lower - first, np.array([one.restitution for one in slices]))
@@ -356,7 +356,8 @@ def open_cube(source: Path | str) -> Cube:
     if str(source).startswith(("http://", "https://")):
         slices = [fetch_slice(str(source))]
     elif Path(source).is_dir():
-        slices = [open_slice(path) for path in sorted(Path(source).glob("eta-?.??.nc"))]
+        errors = open_errors(Path(source) / f"{ERRORS_NAME}.nc")
+        slices = [open_slice(path, errors) for path in sorted(Path(source).glob("eta-?.??.nc"))]
         if not slices:
             raise DatasetError(f"{source}: holds no spectrum cubes; `make reproduce` builds them")
     else:

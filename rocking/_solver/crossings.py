@@ -5,7 +5,7 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import LANES, absolute, any_lane, load, maximum, minimum, select, splat, square_root, store
-from rocking._numba.simd_exponentials import arccosine
+from rocking._numba.simd_functions import arccosine
 from rocking._solver.excitation import shapes_and_slopes
 
 MAX_NEWTON_STEPS = 100  # steps after which the bracketed Newton iteration stops; bisection alone needs 55

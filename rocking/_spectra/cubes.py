@@ -16,13 +16,19 @@ from numpy.typing import ArrayLike, NDArray
 from rocking._base.arrays import Array
 from rocking._base.errors import one_of
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
-from rocking._datasets.cube import DIMENSIONS, IMPACTS_BEFORE_REST, OPTIONAL_VARIABLES, build_spectrum_dataset
+from rocking._datasets.cube import (
+    DIMENSIONS,
+    IMPACTS_BEFORE_REST,
+    OPTIONAL_VARIABLES,
+    build_errors_dataset,
+    build_spectrum_dataset,
+)
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.slices import windows_of
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, Mesh
 from rocking._model.checks import check_alpha
 from rocking._model.fields import CUBE_FIELDS
-from rocking._model.outcome_code import SURVIVES, outcome_codes
+from rocking._model.outcome import SURVIVES, outcome_codes
 from rocking._model.response import Response
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
@@ -93,12 +99,12 @@ def solve_cubes(
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Iterator[xr.Dataset]:
-    """The cubes without the errors of interpolation between restitutions, which `with_restitution_errors` adds.
+    """The cubes without the errors of interpolation between restitutions (`errors_between_cubes`).
 
     `pulse`: name of the pulse, or a pulse given by samples. `restitution` (l,): eta [-], [0, 1], ascending.
     `slenderness` (n,): 1/a [-], > 0, ascending. `frequency_ratio` (m,): omega [-], > 0, ascending. `alpha` (k,):
     slenderness angles [rad], ascending; 0 for the slender limit. `barred` (l, k, n - 1, m - 1): cells that are not
-    interpolated because overturning boundaries cross them (`rocking._boundary.cells`). `derived`: names of
+    interpolated because overturning boundaries cross them (`rocking._boundary.curves`). `derived`: names of
     `rocking._model.fields.DERIVED_FIELDS` that the cubes store too. `threads`: threads of the solver; by default all
     cores. `stop`: the computation ends with `StoppedError` soon after another thread sets it. Raises
     `InvalidArgumentError` if a value is out of range.
@@ -117,47 +123,77 @@ def solve_cubes(
         for k, eta in enumerate(etas[batch]):
             cube = _cube(pulse, float(eta), axes, layers[k], {name: error[k] for name, error in errors.items()})
             layers[k].clear()  # the caller may keep the cube
-            yield cube.assign({IMPACTS_BEFORE_REST: fewest[k]})
+            yield cube.assign_attrs({IMPACTS_BEFORE_REST: int(fewest[k])})
 
 
 def with_restitution_errors(
     pulse: str | SampledPulse,
     cubes: Sequence[xr.Dataset],
-    first: int = 0,
-    last: int | None = None,
     *,
     threads: int | None = None,
     stop: StopFlag | None = None,
 ) -> Iterator[xr.Dataset]:
-    """Some of the cubes of `solve_cubes` in turn, in memory, with the errors of interpolation up to the next one.
+    """The cubes of `solve_cubes` in turn, with the errors of interpolation up to the next one.
 
-    `pulse`: as for `solve_cubes`. `cubes`: cubes of ascending restitutions; the cubes of
-    `rocking._interpolation.slices.windows_of` (first, last) suffice. One angle at a time is read. `first`, `last`:
-    first of the cubes that are wanted, and the one after the last of them; by default all. `threads`, `stop`: as for
-    `solve_cubes`.
+    `pulse`, `threads`, `stop`: as for `solve_cubes`. `cubes`: of ascending restitutions.
+    """
+    errors = errors_between_cubes(pulse, cubes, threads=threads, stop=stop)
+    etas = [float(cube["restitution"]) for cube in cubes]
+    for k, cube in enumerate(cubes):
+        variables = {str(name): part.values for name, part in cube.data_vars.items()}
+        variables["restitution_error"] = errors[k]
+        axes = {name: cube[name].values for name in DIMENSIONS}
+        whole = build_spectrum_dataset(variables, pulse=pulse, restitution=etas[k], axes=axes)
+        window = slice(*windows_of(len(etas), k, k + 1))
+        yield whole.assign_attrs(
+            {"restitution_slices": np.array(etas[window]), IMPACTS_BEFORE_REST: cube.attrs[IMPACTS_BEFORE_REST]}
+        )
+
+
+def restitution_errors(
+    pulse: str | SampledPulse,
+    cubes: Sequence[xr.Dataset],
+    *,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> xr.Dataset:
+    """The errors of interpolation between the cubes of a pulse as a data set of its own.
+
+    Arguments as for `errors_between_cubes`; all cubes have a digest of their values, by which
+    `rocking._lookup.cube_slice` recognises the cubes that were measured.
+    """
+    etas = [float(cube["restitution"]) for cube in cubes]
+    errors = errors_between_cubes(pulse, cubes, threads=threads, stop=stop)
+    axes = {name: cubes[0][name].values for name in DIMENSIONS}
+    digests = [cube.attrs["content_sha256"] for cube in cubes]
+    return build_errors_dataset(errors, pulse=pulse, restitution=etas, axes=axes, digests=digests)
+
+
+def errors_between_cubes(
+    pulse: str | SampledPulse,
+    cubes: Sequence[xr.Dataset],
+    *,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+) -> NDArray[np.float32]:
+    """The errors of interpolation between each cube and the next one, at the lower nodes of the cells.
+
+    `pulse`, `threads`, `stop`: as for `solve_cubes`. `cubes`: cubes of ascending restitutions, which may be open files:
+    one angle at a time is read. Returns array (restitution, alpha, slenderness, frequency_ratio) [-], nan where no
+    bound is known, as above the last cube.
     """
     etas = np.array([float(cube["restitution"]) for cube in cubes])
-    own = slice(first, etas.size if last is None else last)
     rows, columns, angles = (cubes[0][name].values for name in ("slenderness", "frequency_ratio", "alpha"))
     grid = _Grid(pulse, Mesh.of(rows, columns), columns, threads, stop)
-    errors = grid.no_errors(etas[own], angles)
-    wanted = [k for k in _interval_starts(etas, MAX_SPACING["restitution"]) if own.start <= k < own.stop]
-    for a, angle in enumerate(angles if wanted else ()):
+    bounds = np.full((etas.size, angles.size, rows.size, columns.size), np.nan, np.float32)
+    lower = _interval_starts(etas, MAX_SPACING["restitution"])
+    for a, angle in enumerate(angles if lower else ()):
         layers = [GridLayer.stored(grid.mesh, cube.isel(alpha=a)) for cube in cubes]
         kinds = [layer.kinds() for layer in layers]
-        intervals = [LevelInterval.of(layers, kinds, etas, 1, k) for k in wanted]
-        for k, error in zip(wanted, grid.errors_between_restitutions(intervals, float(angle)), strict=True):
-            errors[k - own.start, a] = error
-    for k, error in enumerate(errors, own.start):
-        cube = cubes[k].compute()
-        variables = {str(name): part.values for name, part in cube.data_vars.items()}
-        variables["restitution_error"] = _bounds(error)
-        axes = {name: cube[name].values for name in DIMENSIONS}
-        whole = build_spectrum_dataset(variables, pulse=pulse, restitution=float(etas[k]), axes=axes)
-        window = slice(*windows_of(etas.size, k, k + 1))
-        yield whole.assign_attrs(
-            {"restitution_slices": etas[window], IMPACTS_BEFORE_REST: cube[IMPACTS_BEFORE_REST].item()}
-        )
+        intervals = [LevelInterval.of(layers, kinds, etas, 1, k) for k in lower]
+        for k, error in zip(lower, grid.errors_between_restitutions(intervals, float(angle)), strict=True):
+            bounds[k, a] = _bounds(error[None])[0]
+    return bounds
 
 
 def _layers(
@@ -170,7 +206,7 @@ def _layers(
     """
     layers: list[list[GridLayer]] = [[] for _ in etas]
     fewest = np.full(etas.size, IMPACT_LIMIT, np.int32)
-    inside, by_angle, by_eta = (grid.no_errors(etas, angles) for _ in range(3))
+    inside, by_angle = grid.no_errors(etas, angles), grid.no_errors(etas, angles)
     for a, angle in enumerate(angles):
         nodes = grid.nodes(etas, angle)
         further = {name: getattr(nodes, name) for name in derived}
@@ -184,7 +220,7 @@ def _layers(
         # the equation of motion depends on alpha through its square only
         intervals = [LevelInterval.of(*row, angles, 2, a) for row in zip(layers, kinds, strict=True)]
         by_angle[:, a] = grid.errors_between_angles(intervals, etas)
-    return layers, {"interpolation_error": inside, "restitution_error": by_eta, "alpha_error": by_angle}, fewest
+    return layers, {"interpolation_error": inside, "alpha_error": by_angle}, fewest
 
 
 def _interval_starts(slices: Array, spacing: float) -> list[int]:

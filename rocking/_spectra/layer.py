@@ -25,7 +25,7 @@ from rocking._interpolation.stencils import (
     interpolated_cells,
 )
 from rocking._model.fields import CUBE_FIELDS, IMPACTS, OUTCOME, PEAK_MODE
-from rocking._model.outcome_code import SURVIVES, outcome_codes
+from rocking._model.outcome import SURVIVES, outcome_codes
 from rocking._model.response import Outcome, Response
 from rocking._numba.compilation import contiguous_array
 
@@ -111,7 +111,7 @@ class GridLayer:
         return peak_of(self.at(cells, place), self.stencil[cells] == SQUARED)
 
     def kinds(self) -> NDArray[np.int64]:
-        """Kind of each cell: the code of its outcome (`rocking._model.outcome_code`), or `UNKNOWN`."""
+        """Kind of each cell: the code of its outcome (`rocking._model.outcome`), or `UNKNOWN`."""
         codes = outcome_codes(self.outcome, self.impacts)[:-1, :-1]
         return np.where(self.stencil == OVERTURNS, codes, np.where(self.smooth, SURVIVES, UNKNOWN))
 

@@ -77,7 +77,7 @@ def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", titl
         )
         write_dataset(cube, folder / "spectra" / pulse / f"eta-{eta:.2f}.nc")
     for pulse in {pulse for pulse, _ in cubes} - {"cosine"}:
-        write_pulse_store(sorted((folder / "spectra" / pulse).glob("*.nc")), folder / "zarr" / f"{pulse}.zarr")
+        write_pulse_store(sorted((folder / "spectra" / pulse).glob("eta-*.nc")), folder / "zarr" / f"{pulse}.zarr")
     curves = overturning_boundary("sine", restitution=0.85, nodes=101)
     curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))

@@ -8,7 +8,6 @@ import sys
 import httpx2
 import pytest
 
-import workflow.run
 from rocking._solver import chunks
 from tests.api.servers import ROOT, serving
 
@@ -38,13 +37,6 @@ def test_cores_are_those_of_the_machine_where_a_process_has_none_of_its_own(monk
     assert runpy.run_path(chunks.__file__)["AVAILABLE_CORES"] == 7
     monkeypatch.setattr(os, "cpu_count", lambda: None)
     assert runpy.run_path(chunks.__file__)["AVAILABLE_CORES"] == 1
-
-
-def test_the_memory_of_a_run_is_limited_where_the_system_tells_it(monkeypatch):
-    (limit,) = workflow.run._memory_limit([])
-    assert 0 < float(limit.removeprefix("--resources=mem_mb=")) < 1e9
-    monkeypatch.setattr(os, "sysconf_names", {})
-    assert workflow.run._memory_limit([]) == []
 
 
 @pytest.mark.long

@@ -9,9 +9,7 @@ from rocking._numba.simd import (
     load,
     store,
 )
-from rocking._numba.simd_error_function import scaled_erfc
-from rocking._numba.simd_exponentials import arccosine, cosh_minus_one_and_sinh, exponential
-from rocking._numba.simd_sines import sine_and_cosine
+from rocking._numba.simd_functions import arccosine, cosh_minus_one_and_sinh, exponential, scaled_erfc, sine_and_cosine
 
 
 @kernel

@@ -18,7 +18,7 @@ from rocking._boundary.search import (
     region_code,
 )
 from rocking._boundary.tracer import CHORD, END, UNCOUNTED_CHORD, UNCOUNTED_THINNEST
-from rocking._model.outcome_code import outcome_codes
+from rocking._model.outcome import outcome_codes
 from tests.sampling import but_long
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking._boundary.cells import crossed_cells
+from rocking._boundary.curves import crossed_cells
 from tests.sampling import but_long
 
 ROWS = np.sort(np.concatenate([np.linspace(0.1, 0.5, 9), np.linspace(0.52, 0.9, 21)]))  # of uneven spacing

@@ -12,8 +12,13 @@ from rocking._base.errors import StoppedError
 from rocking._dimensional import response
 from rocking._dimensional.lowest_thresholds import lowest_thresholds
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.threshold import Threshold, threshold_text, warnings_of_changes
-from rocking._dimensional.thresholds import BodyThresholds, overturning_scale
+from rocking._dimensional.thresholds import (
+    BodyThresholds,
+    Threshold,
+    overturning_scale,
+    threshold_text,
+    warnings_of_changes,
+)
 from rocking._excitation.pulses import as_pulse
 from rocking._numba.cancellation import StopFlag
 from tests.sampling import but_long

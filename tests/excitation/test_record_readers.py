@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import rocking
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
+from rocking._base.units import STANDARD_GRAVITY
 from rocking._excitation.records.readers import layout
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.lines import TextFile

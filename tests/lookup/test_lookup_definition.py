@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rocking._base.errors import InvalidArgumentError, StoppedError
-from rocking._datasets.cube import DIMENSIONS, VARIABLES, build_spectrum_dataset
+from rocking._datasets.cube import DIMENSIONS, RESTITUTION_ERROR, VARIABLES, build_spectrum_dataset
 from rocking._interpolation.slices import slice_window
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, SQUARED
 from rocking._lookup.cube import MIN_CHUNK, SAFETY, Cube, Points
@@ -21,6 +21,8 @@ ALPHAS = np.radians([0.0, 4.0, 10.0, 15.0, 22.0])
 COUNT = number(400, 2000)
 ROWS, COLUMNS = np.cumsum([0.1, *[0.02, 0.05, 0.1] * 5]), np.geomspace(0.5, 12.0, 22)
 
+NAMES = (*VARIABLES, *RESTITUTION_ERROR)
+
 
 def make_variables(rng):
     """Variables of a cube whose cells overturn in the upper rows, and are rarely without a stencil."""
@@ -32,7 +34,7 @@ def make_variables(rng):
     inner = np.zeros(shape, dtype=bool)
     inner[:, 1:-2, 1:-2] = True
     stencil[~inner & (stencil != OVERTURNS)] = NO_STENCIL
-    errors = {name: 10.0 ** rng.uniform(-8.0, -5.0, shape) for name in VARIABLES if name.endswith("_error")}
+    errors = {name: 10.0 ** rng.uniform(-8.0, -5.0, shape) for name in NAMES if name.endswith("_error")}
     for name in ("restitution_error", "alpha_error"):
         errors[name][rng.random(shape) < 0.03] = np.nan
     columns = np.arange(len(COLUMNS))
@@ -52,7 +54,7 @@ def cubes():
     found = []
     for eta in ETAS:
         made = make_variables(rng)
-        variables = {name: made.get(name, np.zeros_like(made["outcome"])) for name in VARIABLES}
+        variables = {name: made.get(name, np.zeros_like(made["outcome"])) for name in NAMES}
         cube = build_spectrum_dataset(variables, pulse="sine", restitution=eta, axes=axes)
         found.append(cube.assign_attrs(restitution_slices=ETAS, impacts_before_rest=11))
     return found
@@ -127,8 +129,8 @@ def expected(cubes, point, tolerance):
     j = min(np.searchsorted(COLUMNS, w, side="right") - 1, len(COLUMNS) - 2)
 
     def cell_at(e, a):
-        part = {name: cubes[e][name].values[a] for name in VARIABLES}
-        values = {name: part[name][i, j] for name in VARIABLES if name != "impacts"}
+        part = {name: cubes[e][name].values[a] for name in NAMES}
+        values = {name: part[name][i, j] for name in NAMES if name != "impacts"}
         around = np.s_[max(i - 1, 0) : i + 3, max(j - 1, 0) : j + 3]
         wide = np.s_[max(i - 1, 0) : i + 3, max(j - 3, 0) : j + 5]
         known = {"corner": part["impacts"][i, j], "impacts": part["impacts"][wide], "modes": part["peak_mode"][wide]}

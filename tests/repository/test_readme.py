@@ -83,7 +83,7 @@ def test_every_command_has_a_test() -> None:
     ("target", "program"),
     [
         ("environment", ":"),
-        ("reproduce", "ROCKING_RUN=$PPID python -m workflow.run"),
+        ("reproduce", "flock Snakefile snakemake --nolock" if shutil.which("flock") else "snakemake"),
         ("test", "pytest --numprocesses auto"),
         ("serve", "rocking serve --host 127.0.0.1 --port 8000 --results 'results'"),
     ],

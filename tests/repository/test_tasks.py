@@ -68,7 +68,7 @@ def test_task(copy: Path, task: str) -> None:
     folders = [copy, copy / "api", copy / "assessment", *([copy / "build/packages"] if task == "package" else [])]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, folders)), "PYTHONWARNINGS": "error"}
     (step,) = [step for step in STEP.finditer(TASKS[task]) if not step["path"]]
-    command = ["-c", step["text"]] if step["language"] == "python" else shlex.split(step["text"])[1:]
+    command = ["-c", step["text"]] if step["language"] == "python" else ["-m", *shlex.split(step["text"])]
     if task == "figure":
         environment["PYTHONWARNINGS"] = "default"  # those of Snakemake are not ours
     done = subprocess.run(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rocking._interpolation.stencils import OVERTURNS, SQUARED, Mesh
-from rocking._model.outcome_code import SURVIVES
+from rocking._model.outcome import SURVIVES
 from rocking._model.response import Outcome
 from rocking._spectra.cubes import BESIDE
 from rocking._spectra.layer import CELL_CENTRE, UNKNOWN, GridLayer, largest_in_neighbourhood

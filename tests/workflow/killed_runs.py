@@ -20,30 +20,21 @@ KILLED = ("group", "make", "run")
 """What is killed: every process, the command alone, the process that runs Snakemake alone."""
 
 
-WITH_TIMES = (".snakemake/log", ".snakemake/metadata", "logs")
-"""Folders whose files contain times."""
-
-
 def project(folder: Path) -> Path:
     """Copy what the commands of this checkout read to a folder that has its own results."""
     folder.mkdir()
     for name in ("Makefile", "Snakefile", "environment.lock", "pyproject.toml"):
         shutil.copy2(PROJECT / name, folder)
-    for name in ("rocking", "workflow", "profiles"):  # with the compiled kernels
+    for name in ("rocking", "workflow", "profiles", "benchmarks"):  # with the compiled kernels
         shutil.copytree(PROJECT / name, folder / name)
     (folder / ".venv").symlink_to(PROJECT / ".venv")
     return folder
 
 
 def content(folder: Path) -> dict[str, str]:
-    """Return the digests of all files that a run left, except those that contain times or the commit of a checkout."""
-    found = (path for top in ("results", "logs", ".snakemake") for path in (folder / top).rglob("*") if path.is_file())
-    names = {path.relative_to(folder).as_posix(): path for path in found}
-    return {
-        name: "" if name.startswith((*WITH_TIMES, "results/.records/manifest.")) else digest(path)
-        for name, path in sorted(names.items())
-        if not name.startswith((".snakemake/log", ".snakemake/run.lock", ".snakemake/iocache"))
-    }
+    """Return the digests of all results, without the commit of a checkout."""
+    paths = (path for path in sorted((folder / "results").rglob("*")) if path.is_file())
+    return {path.relative_to(folder).as_posix(): digest(path) for path in paths}
 
 
 def digest(path: Path) -> str:
@@ -57,18 +48,18 @@ def reproduce(folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def processes(group: int) -> dict[int, str]:
-    found = {}
+    commands = {}
     for place in Path("/proc").glob("[0-9]*"):
         try:
             if os.getpgid(int(place.name)) == group:
-                found[int(place.name)] = (place / "cmdline").read_text().replace("\0", " ")
+                commands[int(place.name)] = (place / "cmdline").read_text().replace("\0", " ")
         except (ProcessLookupError, FileNotFoundError):  # it has ended in the meantime
             continue
-    return found
+    return commands
 
 
 def jobs(commands: Iterable[str]) -> list[str]:
-    return sorted(found[1] for command in commands if (found := re.search(r"scripts/tmp\w+\.(\w+)\.py", command)))
+    return sorted(match[1] for command in commands if (match := re.search(r"scripts/tmp\w+\.(\w+)\.py$", command)))
 
 
 def interrupt(folder: Path, what: str, condition: Callable[[list[str]], bool]) -> str:
@@ -76,14 +67,16 @@ def interrupt(folder: Path, what: str, condition: Callable[[list[str]], bool]) -
     with tempfile.TemporaryFile() as log:
         command = subprocess.Popen(COMMAND, cwd=folder, stdout=log, stderr=log, start_new_session=True)
         while command.poll() is None:
-            found = processes(command.pid)
-            if condition(jobs(found.values())):
-                runs = [one for one, command_line in found.items() if command_line.startswith("python -m workflow.run")]
+            running = processes(command.pid)
+            if condition(jobs(line.strip() for line in running.values())):
+                runs = [
+                    process for process, line in running.items() if re.match(r"\S*python\S* \S*bin/snakemake ", line)
+                ]
                 if what == "group":
                     os.killpg(command.pid, signal.SIGKILL)
                 else:
-                    os.kill(runs[0] if what == "run" and runs else command.pid, signal.SIGKILL)
+                    os.kill(runs[0] if what == "run" else command.pid, signal.SIGKILL)
                 command.wait()
-                return f"in {', '.join(jobs(found.values())) or 'no job'}"
+                return f"in {', '.join(jobs(line.strip() for line in running.values())) or 'no job'}"
             time.sleep(0.02)
     return "after its end"

@@ -26,7 +26,7 @@ from workflow.claims import (
 from workflow.claims.area import node_areas, share_of_area
 from workflow.claims.claim import FAILS, HOLDS, IDENTITY, IN_RANGE, MIXED, VERDICTS, Claim, Range, holding_range
 from workflow.claims.misprints import MISPRINTS, TESTS
-from workflow.scripts.claims import as_markdown
+from workflow.claims.table import as_markdown
 
 ETA = 0.85
 OMEGA = np.geomspace(0.5, 14.0, 41)

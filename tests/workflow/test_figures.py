@@ -14,7 +14,7 @@ from rocking._excitation.pulses import PULSE_NAMES
 from rocking._solver.peak_response import peak_response
 from tests.workflow_fixtures import PROJECT, SMOKE
 from workflow.figures import figure_09, figure_scale_law_excitations, similar_histories
-from workflow.scripts.figure import main
+from workflow.scripts.figures import draw_figure
 
 PROVENANCE = ("code_sha256", "settings_sha256", "configuration", "product_version")
 CONFIGURED = yaml.safe_load(SMOKE.read_text())["figures"]
@@ -25,7 +25,7 @@ def test_figure_drawn_twice_has_equal_bytes(name: str, smoke_results: Path, tmp_
     paths = {kind: tmp_path / f"{name}.{kind}" for kind in ("svg", "png", "nc")}
     written = read_dataset(smoke_results / f"figures/{name}.nc").attrs
     provenance = {key: written[key] for key in PROVENANCE}
-    main(figure=name.replace("-", "_"), **paths, **CONFIGURED[name], provenance=provenance)
+    draw_figure(name, files=paths, inputs={}, **CONFIGURED[name], provenance=provenance)
     for kind, path in paths.items():
         there = smoke_results / f"figures/{name}.{kind}"
         assert hashlib.sha256(path.read_bytes()).digest() == hashlib.sha256(there.read_bytes()).digest(), kind

@@ -18,7 +18,7 @@ from rocking._lookup.collection import CubeCollection
 from tests.sampling import ALL, number
 from tests.workflow_fixtures import SMOKE, rules_to_run, snakemake
 from workflow.configuration import ConfigurationError, check
-from workflow.pulses import configured_pulse, write_samples
+from workflow.pulses import configured_pulse, relative_entry
 
 TRIANGLE = rocking.SampledPulse([0.0, 1.0, 0.0], name="triangle")
 RAMP = rocking.SampledPulse([0.0, 3.0, -1.0, 0.0], [0.0, 0.1, 0.3, 0.7], 0.5, "ramp")
@@ -38,7 +38,7 @@ def configuration(pulses: list[Any]) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ("saw", "pulses.1 = 'saw': allowed: one of sine, cosine"),
+        ("saw", "pulses.1: `pulse` = 'saw'; allowed: one of sine, cosine"),
         ({"acceleration": [0, 1, 0]}, "pulses.1: `name` = None"),
         ({"name": "sine", "acceleration": [0, 1, 0]}, "no name of the catalogue"),
         ({"name": "../up", "acceleration": [0, 1, 0]}, "pulses.1: `name` = '../up'"),
@@ -65,18 +65,16 @@ def test_two_pulses_have_two_names() -> None:
         check(configuration(entries))
 
 
-def test_samples_pass_through_files_to_the_last_digit(tmp_path: Path) -> None:
+def test_samples_of_a_file_are_those_of_a_list(tmp_path: Path) -> None:
     values, times = np.random.default_rng(3).uniform(-1.0, 1.0, (2, 500))
     pulse = rocking.SampledPulse(values, np.cumsum(np.abs(times)) / 7.0, 0.3, "noise")
-    write_samples(pulse, tmp_path / "parts" / "noise.json")
-    assert rocking.SampledPulse.from_file(tmp_path / "parts" / "noise.json") == pulse
-    assert pulse.mirrored().mirrored() == pulse
     rows = zip(pulse.phases.tolist(), values.tolist(), strict=True)
     (tmp_path / "noise.csv").write_text("".join(f"{t},{a}\n" for t, a in rows))
     entry = {"name": "other", "file": "noise.csv", "period": 2.0 * np.pi}
     found = configured_pulse(entry, tmp_path)
     assert isinstance(found, rocking.SampledPulse)
     assert (found.name, found.digest) == ("other", pulse.digest)
+    assert configured_pulse(relative_entry(entry, str(tmp_path))) == found
 
 
 @pytest.mark.slow
@@ -89,11 +87,13 @@ def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) 
     written.write_text(yaml.safe_dump(configuration(entries)))
     run = tmp_path / "run"
     run.mkdir()
-    finished = snakemake(run, module="workflow.run", configuration=written)
+    finished = snakemake(run, configuration=written)
     assert finished.returncode == 0, finished.stdout
     listed = json.loads((run / "results/manifest.json").read_text())["products"]
     kinds = "spectra", "overturning"
-    assert set(listed) == {f"{kind}/{pulse.name}/eta-0.85.nc" for kind in kinds for pulse in pulses}
+    files = {f"{kind}/{pulse.name}/eta-0.85.nc" for kind in kinds for pulse in pulses}
+    files |= {f"spectra/{pulse.name}/restitution-errors.nc" for pulse in pulses}
+    assert set(listed) == files | {f"zarr/{pulse.name}.zarr" for pulse in pulses}
     verdicts = (run / "results/checks.txt").read_text()
     assert "failed" not in verdicts
     assert [name for name in listed if f"[{name}]" not in verdicts] == []
@@ -101,12 +101,12 @@ def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) 
         for kind in kinds:
             assert listed[f"{kind}/{pulse.name}/eta-0.85.nc"]["pulse_sha256"] == pulse.digest
         _check_cube(run / "results", pulse)
-    assert not ALL or "Nothing to be done" in snakemake(run, module="workflow.run", configuration=written).stdout
+    assert not ALL or "Nothing to be done" in snakemake(run, configuration=written).stdout
 
     triangle["acceleration"] = [0, 2, 1]  # other samples make the products of this pulse again
     written.write_text(yaml.safe_dump(configuration(entries)))
     planned = snakemake(run, "--dry-run", configuration=written)
-    again = {"samples", "overturning", "spectrum_part", "spectra", "check_data_sets"}
+    again = {"overturning", "spectra", "restitution_errors", "zarr_store", "check_data_sets"}
     assert rules_to_run(planned.stdout) == again | {"manifest", "check_results", "all"}, planned.stdout
     assert "of the triangle pulse" in planned.stdout
     assert "of the ramp pulse" not in planned.stdout

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from rocking._base.output_file import write_output
+
 
 class Verdicts:
     """Collects the result of each test, without run times, so that equal runs give equal files."""
@@ -34,4 +36,4 @@ def run_tests(name: str, environment: Mapping[str, str]) -> list[str]:
 
 def write_report(report: Path, lines: Iterable[str], code: str) -> None:
     """Write the results of tests and the digest of their code."""
-    report.write_text("\n".join([*sorted(lines), f"code {code}"]) + "\n", encoding="utf-8")
+    write_output(report, "\n".join([*sorted(lines), f"code {code}"]) + "\n")

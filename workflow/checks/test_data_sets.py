@@ -14,7 +14,7 @@ from rocking._boundary.curves import curves_at
 from rocking._boundary.search import RESOLUTION, region_code
 from rocking._boundary.tracing import CHORD
 from rocking._datasets.cube import read_dataset, read_spectrum, stored_pulse
-from rocking._model.outcome_code import outcome_codes
+from rocking._model.outcome import outcome_codes
 from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking.paper.overturning import case_1_1_margin, case_1_2_margin, overturning_amplitudes
@@ -35,11 +35,14 @@ DATA_SETS: list[str] = json.loads(os.environ["ROCKING_DATA_SETS"])
 """Names of the files of the pulse, relative to `RESULTS`."""
 
 
+(ERRORS,) = (name for name in DATA_SETS if name.endswith("/restitution-errors.nc"))
+
+
 def listed(folder: str) -> list[str]:
     return [name for name in DATA_SETS if name.startswith(folder)]
 
 
-@pytest.mark.parametrize("name", listed("spectra/"))
+@pytest.mark.parametrize("name", [name for name in listed("spectra/") if name != ERRORS])
 def test_cube_is_consistent_and_answers_as_the_solver_at_each_angle(name: str) -> None:
     cube = read_spectrum(RESULTS / name)
     overturned = cube.outcome.values >= Outcome.OVERTURNED_DIRECTLY
@@ -59,6 +62,14 @@ def test_cube_is_consistent_and_answers_as_the_solver_at_each_angle(name: str) -
     # 1e-6: chatter magnifies the rounding by which two processors differ
     np.testing.assert_allclose(part.peak_rotation, solved.peak_rotation, rtol=1e-6)
     np.testing.assert_array_equal(part.outcome, solved.outcome)
+
+
+def test_errors_between_cubes_are_those_of_these_cubes() -> None:
+    errors = read_dataset(RESULTS / ERRORS)
+    cubes = [read_spectrum(RESULTS / name) for name in listed("spectra/") if name != ERRORS]
+    assert errors.restitution.values.tolist() == [float(cube.restitution) for cube in cubes]
+    assert errors.attrs["cubes_content_sha256"].split() == [cube.attrs["content_sha256"] for cube in cubes]
+    assert errors.sizes == {"restitution": len(cubes), **cubes[0].sizes}
 
 
 @pytest.mark.parametrize("name", listed("overturning/"))

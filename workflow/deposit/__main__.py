@@ -1,6 +1,7 @@
 """An archive of a results folder for a data repository: `python -m workflow.deposit [FOLDER]`, or `make deposit`.
 
-FOLDER contains `results`, which must be as its manifest states. The zip file holds the products, checksums, a
+FOLDER contains `results`, which must be as its manifest states. The zip file holds the products but the zarr stores,
+which repeat the cubes, checksums, a
 description of DataCite, the licence of the data, a page for readers, and a script that verifies the files without this
 package. Equal products give equal bytes of the archive in the same year.
 """
@@ -19,7 +20,7 @@ from typing import Any
 
 import yaml
 
-from rocking._base.version import __version__
+from rocking._base.installation import __version__
 from workflow.verify import MANIFEST, problems
 
 ROOT = Path(__file__).parents[2]
@@ -62,12 +63,13 @@ def datacite(manifest: dict[str, Any], citation: dict[str, Any], year: int) -> d
 def files(folder: Path) -> Iterator[tuple[str, bytes | Path]]:
     """Yield name in the archive and content, or path, of each file; the checksums come last."""
     manifest = json.loads((folder / MANIFEST).read_bytes())
+    products = [name for name in sorted(manifest["products"]) if (folder / "results" / name).is_file()]
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     about = datacite(manifest, citation, dt.datetime.now(dt.UTC).year)
     readme = string.Template((TEXTS / "README.md").read_text(encoding="utf-8")).substitute(
         title=about["titles"][0]["title"],
         description=" ".join(citation["abstract"].split()),
-        count=len(manifest["products"]),
+        count=len(products),
         size=f"{sum(entry['size'] for entry in manifest['products'].values()) / 1e6:.1f}",
         version=__version__,
         papers="\n".join(
@@ -82,7 +84,7 @@ def files(folder: Path) -> Iterator[tuple[str, bytes | Path]]:
         "datacite.json": (json.dumps(about, indent=2) + "\n").encode(),
         **{f"reference-problems/{path.name}": path for path in sorted(PROBLEMS.glob("*.json"))},
         "data/manifest.json": folder / MANIFEST,
-        **{f"data/{name}": folder / "results" / name for name in sorted(manifest["products"])},
+        **{f"data/{name}": folder / "results" / name for name in products},
     }
     yield from contents.items()
     yield "SHA256SUMS", "".join(f"{_digest(content)}  {name}\n" for name, content in contents.items()).encode()

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from rocking._base.arrays import Array
 from rocking._boundary.amplitude import thresholds
-from rocking._datasets.cube import read_dataset
 from rocking._model.block import STANDARD_GRAVITY, RectangularBlock
 from rocking._solver.peak_response import peak_response
 from rocking.paper.groups import Groups, GroupSet, Problem, groups_of, problem_of_block
@@ -38,7 +37,8 @@ COLOURS, SURVIVES = (BLUE, VERMILION), "#D9D9D9"
 
 def data(
     *,
-    boundaries: Sequence[Path],
+    sine: Path,
+    cosine: Path,
     alpha_deg: float,
     half_diagonal: Sequence[float],
     restitution: float,
@@ -46,12 +46,12 @@ def data(
 ) -> xr.Dataset:
     """The traced boundary, thresholds of each block in SI units, and where blocks pass alpha and survive.
 
-    `boundaries`: overturning boundaries of this restitution, one for each pulse; `alpha_deg`: slenderness angle [deg]
+    `sine`, `cosine`: overturning boundaries of this restitution; `alpha_deg`: slenderness angle [deg]
     of all blocks; `half_diagonal`: R [m] of each block; `restitution`: eta [-]; `period`: T_p [s] at which thresholds
     are found and checked.
     """
     alpha = float(np.radians(alpha_deg))
-    pulses = [read_dataset(path).pulse.attrs["pulse_name"] for path in boundaries]
+    pulses = ["sine", "cosine"]
     blocks = [RectangularBlock.from_slenderness_angle(alpha, R) for R in half_diagonal]
     rows = [
         {"pulse": i, "block": j, "period": one, **row}
@@ -76,7 +76,7 @@ def data(
     }
     return xr.Dataset(
         {
-            **line_variables(lines_of_files(boundaries, [alpha])),
+            **line_variables(lines_of_files([sine, cosine], [alpha])),
             **{
                 f"threshold_{name}": plotted("threshold", [row[name] for row in rows], text, units=units)
                 for name, (text, units) in names.items()

@@ -1,147 +1,125 @@
-# Each pulse and restitution: the overturning boundaries, the solved nodes (a part, which is kept), and the cube, completed
-# from the parts of its neighbours with the errors up to the next restitution. Another restitution so repeats only what
-# depends on it. These jobs have priority, as figures and claims depend on them.
+# Each pulse and restitution: the overturning boundaries, and the spectrum cube, which does not interpolate across them.
+# Then, for each pulse, the errors of interpolation between its cubes, and all cubes as one zarr store. Another restitution
+# makes its own boundary and cube, and these two again. Boundaries have priority, as figures and claims depend on them.
 ETAS = {f"{eta:.2f}": eta for eta in config["restitution"]}
-ENTRIES = [(configured_pulse(entry, CONFIG_FOLDER), entry) for entry in config["pulses"]]
-PULSES = list(different(pulse for pulse, _ in ENTRIES))
-# of the pulses given by samples: the file of the samples, which names their digest, and the entry of the configuration
-SAMPLES = {pulse.name: samples_file(pulse) for pulse, _ in ENTRIES if not isinstance(pulse, str)}
-SAMPLED = {pulse.name: entry for pulse, entry in ENTRIES if not isinstance(pulse, str)}
+PULSES = different(configured_pulse(entry, CONFIG_FOLDER) for entry in config["pulses"])
+# what a job is given: a name, or samples; paths are relative, as the checkout may be moved
+ENTRIES = {
+    name: name if isinstance(pulse, str) else relative_entry(entry, os.path.relpath(CONFIG_FOLDER))
+    for (name, pulse), entry in zip(PULSES.items(), config["pulses"])
+}
+SAMPLE_FILES = {name: entry["file"] for name, entry in ENTRIES.items() if name != entry and "file" in entry}
 
 
 wildcard_constraints:
-    pulse=r"[a-z0-9_]+(\([^/()]+\))?",
+    pulse="|".join(map(re.escape, PULSES)),
     eta="|".join(map(re.escape, ETAS)),
-    samples="[0-9a-f]{16}",
 
 
 CUBE_MB = 300 + BYTES * nodes_of_cube(config) / 1e6
-OVERTURNING_SETTINGS = {**config["boundary"], "alpha_deg": config["grid"]["alpha_deg"]}
-OVERTURNING_PROVENANCE = provenance(
-    "overturning",
-    ["scripts/overturning.py"],
-    OVERTURNING_SETTINGS,
-    [path for pulse in PULSES for path in overturning_files(pulse, ETAS)],
-)
-WINDOWS = {eta: window_of(eta, ETAS) for eta in ETAS}
-PART_PROVENANCE = provenance("spectrum_part", ["scripts/spectrum_part.py"], config["grid"], [])
-SPECTRUM_PROVENANCE = {
-    eta: provenance(
-        "spectra",
-        ["scripts/spectra.py", "scripts/spectrum_part.py"],
-        {"grid": config["grid"], "restitution": window},
-        [path for pulse in PULSES for path in spectrum_files(pulse, [eta])],
-    )
-    for eta, window in WINDOWS.items()
-}
-# the cells that are not interpolated depend on the code of the boundaries too
-PART_CODE = PART_PROVENANCE | {"boundaries": OVERTURNING_PROVENANCE}
-CUBE_CODE = PART_CODE | {"cubes": SOURCES.digest(PROJECT / "workflow/scripts/spectra.py")}
+LEVELS_MB = 400 + (BYTES + 4 * len(ETAS)) * nodes_of_cube(config) / 1e6
+BOUNDARY_SETTINGS = {**config["boundary"], "alpha_deg": config["grid"]["alpha_deg"]}
+BOUNDARY_PROVENANCE = provenance(["scripts/overturning.py"], BOUNDARY_SETTINGS)
+CUBE_PROVENANCE = provenance(["scripts/spectra.py"], config["grid"])
+ERRORS_PROVENANCE = provenance(["scripts/restitution_errors.py"], {"restitution": config["restitution"]})
+STORE_PROVENANCE = provenance(["scripts/zarr_store.py"], {})
 
-
-for pulse, _ in ENTRIES:
-    if not isinstance(pulse, str):
-        for path in (*spectrum_files(pulse.name, ETAS), *overturning_files(pulse.name, ETAS)):
-            PRODUCTS[path]["pulse_sha256"] = pulse.digest
-
-
-rule samples:
-    output:
-        samples=f"{records.PARTS}/pulses/{{pulse}}.{{samples}}.json",
-    log:
-        "logs/pulses/{pulse}.{samples}.log",
-    localrule: True
-    conda:
-        "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(300),
-        runtime=10,
-    params:
-        pulse=lambda wildcards: SAMPLED[wildcards.pulse],
-        folder=os.path.relpath(CONFIG_FOLDER),  # the checkout may be moved
-    message:
-        "Samples of the {wildcards.pulse} pulse"
-    script:
-        "../scripts/samples.py"
+for name, pulse in PULSES.items():
+    samples = {} if isinstance(pulse, str) else {"pulse_sha256": pulse.digest}
+    list_products("overturning", BOUNDARY_PROVENANCE, overturning_files(name, ETAS.values()), **samples)
+    list_products("spectra", CUBE_PROVENANCE, spectrum_files(name, ETAS.values()), **samples)
+    list_products("restitution_errors", ERRORS_PROVENANCE, [f"results/spectra/{name}/restitution-errors.nc"], **samples)
+    list_products("zarr_store", STORE_PROVENANCE, [f"results/zarr/{name}.zarr"], **samples)
 
 
 rule overturning:
     input:
-        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
+        samples=lambda wildcards: SAMPLE_FILES.get(wildcards.pulse, []),
     output:
-        boundaries=overturning_files("{pulse}", ["{eta}"])[0],
-        record=record_of("overturning/{pulse}-{eta}", OVERTURNING_PROVENANCE),
+        boundaries="results/overturning/{pulse}/eta-{eta}.nc",
     log:
         "logs/overturning/{pulse}-{eta}.log",
+    benchmark:
+        "logs/benchmarks/overturning-{pulse}-{eta}.tsv"
     priority: 3
     conda:
         "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(400),
-        runtime=240,
     params:
-        **OVERTURNING_SETTINGS,
-        pulse=lambda wildcards: wildcards.pulse,
+        **BOUNDARY_SETTINGS,
+        pulse=lambda wildcards: ENTRIES[wildcards.pulse],
         restitution=lambda wildcards: ETAS[wildcards.eta],
-        provenance=OVERTURNING_PROVENANCE,
+        provenance=BOUNDARY_PROVENANCE,
     message:
         "Overturning boundaries of the {wildcards.pulse} pulse at restitution {wildcards.eta}"
     script:
         "../scripts/overturning.py"
 
 
-rule spectrum_part:
+rule spectra:
     input:
         boundaries=rules.overturning.output.boundaries,
-        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
+        samples=rules.overturning.input.samples,
     output:
-        part=part_files("{pulse}", ["{eta}"])[0],
-        record=record_of("parts/{pulse}-{eta}", PART_CODE),
+        cube="results/spectra/{pulse}/eta-{eta}.nc",
     log:
-        "logs/parts/{pulse}-{eta}.log",
+        "logs/spectra/{pulse}-{eta}.log",
+    benchmark:
+        "logs/benchmarks/spectra-{pulse}-{eta}.tsv"
     priority: 2
     conda:
         "../envs/rocking.yaml"
     resources:
         mem_mb=memory(CUBE_MB),
-        runtime=240,
     params:
         grid=config["grid"],
+        pulse=lambda wildcards: ENTRIES[wildcards.pulse],
         restitution=lambda wildcards: ETAS[wildcards.eta],
-        pulse=lambda wildcards: wildcards.pulse,
-    message:
-        "Solving the spectrum cube of the {wildcards.pulse} pulse at restitution {wildcards.eta}"
-    script:
-        "../scripts/spectrum_part.py"
-
-
-rule spectra:
-    input:
-        parts=lambda wildcards: part_files(wildcards.pulse, WINDOWS[wildcards.eta]),
-        samples=lambda wildcards: SAMPLES.get(wildcards.pulse, []),
-    output:
-        cube=spectrum_files("{pulse}", ["{eta}"])[0],
-        record=record_of("spectra/{pulse}-{eta}", CUBE_CODE),
-    log:
-        "logs/spectra/{pulse}-{eta}.log",
-    priority: 3
-    conda:
-        "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(CUBE_MB),
-        runtime=120,
-    params:
-        pulse=lambda wildcards: wildcards.pulse,
-        restitution=lambda wildcards: ETAS[wildcards.eta],
-        provenance=lambda wildcards: SPECTRUM_PROVENANCE[wildcards.eta],
+        provenance=CUBE_PROVENANCE,
     message:
         "Spectrum cube of the {wildcards.pulse} pulse at restitution {wildcards.eta}"
     script:
         "../scripts/spectra.py"
 
 
-RECORDS += expand(
-    [rules.overturning.output.record, rules.spectra.output.record],
-    pulse=PULSES,
-    eta=ETAS,
-)
+rule restitution_errors:
+    input:
+        cubes=lambda wildcards: spectrum_files(wildcards.pulse, ETAS.values()),
+        samples=rules.overturning.input.samples,
+    output:
+        errors="results/spectra/{pulse}/restitution-errors.nc",
+    log:
+        "logs/restitution_errors/{pulse}.log",
+    benchmark:
+        "logs/benchmarks/restitution_errors-{pulse}.tsv"
+    conda:
+        "../envs/rocking.yaml"
+    resources:
+        mem_mb=memory(LEVELS_MB),
+    params:
+        pulse=lambda wildcards: ENTRIES[wildcards.pulse],
+        provenance=ERRORS_PROVENANCE,
+    message:
+        "Errors between the cubes of the {wildcards.pulse} pulse"
+    script:
+        "../scripts/restitution_errors.py"
+
+
+rule zarr_store:
+    input:
+        cubes=lambda wildcards: spectrum_files(wildcards.pulse, ETAS.values()),
+    output:
+        store=directory("results/zarr/{pulse}.zarr"),
+    log:
+        "logs/zarr/{pulse}.log",
+    benchmark:
+        "logs/benchmarks/zarr-{pulse}.tsv"
+    conda:
+        "../envs/rocking.yaml"
+    resources:
+        mem_mb=memory(CUBE_MB),
+    params:
+        provenance=STORE_PROVENANCE,
+    message:
+        "All cubes of the {wildcards.pulse} pulse as a zarr store"
+    script:
+        "../scripts/zarr_store.py"

@@ -1,69 +1,91 @@
-# One rule per figure: workflow/figures/figure_03.py makes figure-03.svg, .png and the plotted data in figure-03.nc.
-_figures = config["figures"]
+# workflow/figures/figure_03.py makes figure-03.svg, .png and the plotted data in figure-03.nc. One job draws figures that
+# share their data or their libraries, as its start takes longer than a small figure.
+DRAWN_TOGETHER = {
+    "closed_forms": ["figure-01", "figure-03", "figure-S1", "table-1"],
+    "histories": ["figure-02", "figure-05", "figure-06", "figure-07", "figure-11", "figure-12"],
+    "spectrum_curves": ["figure-08", "figure-13"],
+    "boundaries": ["figure-04", "figure-09", "figure-10"],
+    "master_spectra": ["figure-master-spectra", "figure-master-housner"],
+    "scale_law": ["figure-scale-law", "figure-scale-law-excitations"],
+}
+# figures with the caption of another one
+CAPTIONS = {"figure-06": "figure-05", "figure-12": "figure-11", "figure-master-housner": "figure-master-spectra"}
+
+
+def boundaries_of(figure):
+    """The boundaries of sine and cosine at the restitution of a figure."""
+    (eta,) = restitutions(config, figure)
+    return {pulse: overturning_files(pulse, [eta])[0] for pulse in ("sine", "cosine")}
+
+
+# files that a figure reads, by the arguments of its function `data`
 FIGURE_INPUTS = {
     "figure-04": {"boundaries": overturning_files("sine", restitutions(config, "figure-04"))},
-    "figure-09": {
-        "boundaries": [overturning_files(pulse, restitutions(config, "figure-09"))[0] for pulse in ("sine", "cosine")]
-    },
-    **{
-        figure: {pulse: overturning_files(pulse, restitutions(config, figure))[0] for pulse in ("sine", "cosine")}
-        for figure in ("figure-10", "figure-master-spectra")
-    },
+    "figure-09": boundaries_of("figure-09"),
+    "figure-10": boundaries_of("figure-10"),
+    "figure-master-spectra": boundaries_of("figure-master-spectra"),
     "figure-scale-law": {"cubes": spectrum_files("sine", restitutions(config, "figure-scale-law"))},
 }
-FIGURES = {figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in _figures}
-READ_BY_CLAIMS = [
-    "figure-06",
-    "figure-09",
-    "figure-11",
-    "figure-12",
-    "figure-master-spectra",
-    "figure-master-housner",
-    "figure-scale-law-excitations",
-]
-
-# for `snakemake --report`: the captions of the guide, by figure; a changed one repeats no job
-GUIDE = (PROJECT / "docs/figures.md").read_text(encoding="utf-8") if (PROJECT / "docs/figures.md").exists() else ""
-SECTIONS = {section.partition("\n")[0]: section.partition("\n")[2].strip() for section in GUIDE.split("\n## ")[1:]}
-ANCHORS = {re.sub(r"[^a-z0-9]+", "-", title.lower()): text for title, text in SECTIONS.items()}
-config["captions"] = {
-    figure: ANCHORS[anchor] for figure, anchor in re.findall(r"\[(\S+)\]\(#(\S+)\) \|", GUIDE) if anchor in ANCHORS
+FIGURE_FILES = {
+    figure: {kind: f"results/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in config["figures"]
 }
-
-for _figure, _files in FIGURES.items():
-    _name = _figure.replace("-", "_")
-    _read = {
-        name: records.digest(PROJECT / "workflow/motions" / name)["sha256"]
-        for name in chosen(config, _figure).get("records", ())
+# the records of a figure are files of workflow/motions: their digests are settings, as paths change with the folder of a run
+FIGURE_RECORDS = {
+    figure: {
+        name: sha256_of_file(PROJECT / "workflow/motions" / name) for name in chosen(config, figure).get("records", [])
     }
-    _settings = {**_figures[_figure], **({"motions": _read} if _read else {})}
-    _provenance = provenance(_name, ["scripts/figure.py", f"figures/{_name}.py"], _settings, _files.values())
-    RECORDS.append(record_of(f"figures/{_figure}", _provenance))
+    for figure in config["figures"]
+}
+FIGURE_PROVENANCE = {
+    figure: provenance(
+        ["scripts/figures.py", f"figures/{figure.replace('-', '_')}.py"],
+        {**config["figures"][figure], **({"motions": FIGURE_RECORDS[figure]} if FIGURE_RECORDS[figure] else {})},
+    )
+    for figure in config["figures"]
+}
+# a figure that is in no group has a job of its own
+GROUPED = [figure for group in DRAWN_TOGETHER.values() for figure in group]
+DRAWN_TOGETHER |= {figure.replace("-", "_"): [figure] for figure in config["figures"] if figure not in GROUPED}
+
+for _group, _figures in DRAWN_TOGETHER.items():
+    for _figure in _figures:
+        list_products(f"figures_{_group}", FIGURE_PROVENANCE[_figure], FIGURE_FILES[_figure].values())
 
     rule:
         name:
-            _name
+            f"figures_{_group}"
         input:
-            **FIGURE_INPUTS.get(_figure, {}),
+            [path for figure in _figures for path in FIGURE_INPUTS.get(figure, {}).values()],
         output:
-            svg=_files["svg"],
-            png=report(_files["png"], caption="../report/figure.rst", category="Figures", labels={"figure": _figure}),
-            nc=_files["nc"],
-            record=RECORDS[-1],
+            [FIGURE_FILES[figure][kind] for figure in _figures for kind in ("svg", "nc")],
+            [
+                report(
+                    FIGURE_FILES[figure]["png"],
+                    caption=f"../report/{CAPTIONS.get(figure, figure)}.rst",
+                    category="Figures",
+                    labels={"figure": figure},
+                )
+                for figure in _figures
+            ],
         log:
-            f"logs/figures/{_figure}.log",
-        priority: int(_figure in READ_BY_CLAIMS)
+            f"logs/figures/{_group}.log",
+        benchmark:
+            f"logs/benchmarks/figures-{_group}.tsv"
+        priority: 1
         localrule: True
         conda:
             "../envs/rocking.yaml"
-        resources:
-            mem_mb=memory(800),
-            runtime=60,
         params:
-            **_figures[_figure],
-            figure=_name,
-            provenance=_provenance,
+            figures={
+                figure: {
+                    **config["figures"][figure],
+                    "files": FIGURE_FILES[figure],
+                    "inputs": FIGURE_INPUTS.get(figure, {}),
+                    "provenance": FIGURE_PROVENANCE[figure],
+                }
+                for figure in _figures
+            },
         message:
-            f"Drawing {_figure}"
+            f"Drawing {', '.join(_figures)}"
         script:
-            "../scripts/figure.py"
+            "../scripts/figures.py"

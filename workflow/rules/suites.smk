@@ -1,37 +1,29 @@
-# A suite of records (configuration with the key `suite`): one job per record file, so that a large suite spreads over
+# A suite of records (configuration with the key `suite`): one job for each record file, so that a large suite spreads over
 # cores and machines, then counts, fitted curves and figures.
-SUITE = {**DEFAULTS, **config["suite"]}
+SUITE = config["suite"]
+RESULTS = f"results/suites/{SUITE['name']}"
+SUITE_LOGS = f"logs/suites/{SUITE['name']}"
 SUITE_FILES = {path.name: path for path in suite_configuration(SUITE, CONFIG_FOLDER).records.paths()}
-SUITE_FOLDER = f"results/suites/{SUITE['name']}"
 # asked for by `sensitivity`: one file for each record, and those of the suite
-SUITE_ASKS = SUITE.get("sensitivity") is not None
-SENSITIVITY_FILES = {name: f"{SUITE_FOLDER}/sensitivity/{name}.nc" for name in SUITE_FILES if SUITE_ASKS}
-SENSITIVITY_PRODUCTS = (
-    {"sensitivity": f"{SUITE_FOLDER}/sensitivity.nc", "sensitivity_rows": f"{SUITE_FOLDER}/sensitivity.csv"}
-    if SUITE_ASKS
-    else {}
-)
-SUITE_FIGURES = {"curves": "fragility", "outcomes": "outcomes", **({"map": "outcomes"} if SUITE["map"] else {})}
+HAS_SENSITIVITY = SUITE["sensitivity"] is not None
+SENSITIVITY_FILES, SENSITIVITY_PRODUCTS = [], {}
+if HAS_SENSITIVITY:
+    SENSITIVITY_FILES = expand(f"{RESULTS}/sensitivity/{{file}}.nc", file=SUITE_FILES)
+    SENSITIVITY_PRODUCTS["sensitivity"] = f"{RESULTS}/sensitivity.nc"
+    SENSITIVITY_PRODUCTS["sensitivity_rows"] = f"{RESULTS}/sensitivity.csv"
+# figures and the data set that each is drawn from
+SUITE_FIGURES = {"curves": "fragility", "outcomes": "outcomes"}
+if SUITE["map"] is not None:
+    SUITE_FIGURES["map"] = "outcomes"
 # what the response of a record does not depend on
 OUTCOME_SETTINGS = {**SUITE, "demand": ["overturning"], "confidence": 0.95}
-# names of the jobs, of which `record_of` gives the paths of the records of their products
-SUITE_JOBS = f"suites/{SUITE['name']}"
 
-RECORD_PROVENANCE = provenance(
-    "suite_record",
-    ["scripts/suite_record.py"],
-    OUTCOME_SETTINGS,
-    [*(f"{SUITE_FOLDER}/records/{name}.nc" for name in SUITE_FILES), *SENSITIVITY_FILES.values()],
-)
-FRAGILITY_PROVENANCE = provenance(
-    "suite_fragility",
-    ["scripts/suite_fragility.py"],
-    SUITE,
-    [
-        *(f"{SUITE_FOLDER}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")),
-        *SENSITIVITY_PRODUCTS.values(),
-    ],
-)
+RECORD_PROVENANCE = provenance(["scripts/suite_record.py"], OUTCOME_SETTINGS)
+FRAGILITY_PROVENANCE = provenance(["scripts/suite_fragility.py"], SUITE)
+FRAGILITY_FILES = [f"{RESULTS}/{name}" for name in ("outcomes.nc", "fragility.nc", "fragility.csv")]
+list_products("suite_record", RECORD_PROVENANCE, expand(f"{RESULTS}/records/{{file}}.nc", file=SUITE_FILES))
+list_products("suite_record", RECORD_PROVENANCE, SENSITIVITY_FILES)
+list_products("suite_fragility", FRAGILITY_PROVENANCE, [*FRAGILITY_FILES, *SENSITIVITY_PRODUCTS.values()])
 
 
 wildcard_constraints:
@@ -42,16 +34,14 @@ rule suite_record:
     input:
         file=lambda wildcards: os.path.relpath(SUITE_FILES[wildcards.file]),  # the checkout may be moved
     output:
-        **({"sensitivity": f"{SUITE_FOLDER}/sensitivity/{{file}}.nc"} if SUITE_ASKS else {}),
-        outcomes=f"{SUITE_FOLDER}/records/{{file}}.nc",
-        record=record_of(f"{SUITE_JOBS}/records/{{file}}", RECORD_PROVENANCE),
+        **({"sensitivity": f"{RESULTS}/sensitivity/{{file}}.nc"} if HAS_SENSITIVITY else {}),
+        outcomes=f"{RESULTS}/records/{{file}}.nc",
     log:
-        f"logs/suites/{SUITE['name']}/{{file}}.log",
+        f"{SUITE_LOGS}/{{file}}.log",
+    benchmark:
+        f"{SUITE_LOGS}/benchmarks/{{file}}.tsv"
     conda:
         "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(800),
-        runtime=120,
     params:
         suite=OUTCOME_SETTINGS,
         provenance=RECORD_PROVENANCE,
@@ -64,20 +54,18 @@ rule suite_record:
 rule suite_fragility:
     input:
         files=expand(rules.suite_record.output.outcomes, file=SUITE_FILES),
-        sensitivities=list(SENSITIVITY_FILES.values()),
+        sensitivities=SENSITIVITY_FILES,
     output:
         **SENSITIVITY_PRODUCTS,
-        outcomes=f"{SUITE_FOLDER}/outcomes.nc",
-        fragility=f"{SUITE_FOLDER}/fragility.nc",
-        table=f"{SUITE_FOLDER}/fragility.csv",
-        record=record_of(f"{SUITE_JOBS}/fragility", FRAGILITY_PROVENANCE),
+        outcomes=FRAGILITY_FILES[0],
+        fragility=FRAGILITY_FILES[1],
+        table=FRAGILITY_FILES[2],
     log:
-        f"logs/suites/{SUITE['name']}/fragility.log",
+        f"{SUITE_LOGS}/fragility.log",
+    benchmark:
+        f"{SUITE_LOGS}/benchmarks/fragility.tsv"
     conda:
         "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(800),
-        runtime=60,
     params:
         suite=SUITE,
         provenance=FRAGILITY_PROVENANCE,
@@ -87,72 +75,36 @@ rule suite_fragility:
         "../scripts/suite_fragility.py"
 
 
-SUITE_FIGURE_RECORDS = []
-
-for _figure, _source in SUITE_FIGURES.items():
-    _files = {kind: f"{SUITE_FOLDER}/figures/{_figure}.{kind}" for kind in ("svg", "png", "nc")}
-    _provenance = provenance(
-        f"suite_figure_{_figure}", ["scripts/figure.py", f"figures/suite_{_figure}.py"], {}, _files.values()
-    )
-    SUITE_FIGURE_RECORDS.append(record_of(f"{SUITE_JOBS}/figures/{_figure}", _provenance))
-
-    rule:
-        name:
-            f"suite_figure_{_figure}"
-        input:
-            **{_source: f"{SUITE_FOLDER}/{_source}.nc"},
-        output:
-            **_files,
-            record=SUITE_FIGURE_RECORDS[-1],
-        log:
-            f"logs/suites/{SUITE['name']}/{_figure}.log",
-        localrule: True
-        conda:
-            "../envs/rocking.yaml"
-        resources:
-            mem_mb=memory(800),
-            runtime=60,
-        params:
-            figure=f"suite_{_figure}",
-            provenance=_provenance,
-        message:
-            f"Drawing {_figure} of the suite"
-        script:
-            "../scripts/figure.py"
+SUITE_FIGURE_FILES = {
+    figure: {kind: f"{RESULTS}/figures/{figure}.{kind}" for kind in ("svg", "png", "nc")} for figure in SUITE_FIGURES
+}
+SUITE_FIGURE_PROVENANCE = {
+    figure: provenance(["scripts/figures.py", f"figures/suite_{figure}.py"], {}) for figure in SUITE_FIGURES
+}
+for _figure, _files in SUITE_FIGURE_FILES.items():
+    list_products("suite_figures", SUITE_FIGURE_PROVENANCE[_figure], _files.values())
 
 
-SUITE_MANIFEST_CODE = SOURCES.digest(PROJECT / "workflow/scripts/manifest.py")
-
-
-rule suite_manifest:
+rule suite_figures:
     input:
-        products=list(PRODUCTS),
-        records=[
-            *expand(rules.suite_record.output.record, file=SUITE_FILES),
-            rules.suite_fragility.output.record,
-            *SUITE_FIGURE_RECORDS,
-        ],
+        [f"{RESULTS}/{source}.nc" for source in set(SUITE_FIGURES.values())],
     output:
-        manifest=f"{SUITE_FOLDER}/manifest.json",
-        record=record_of(
-            f"{SUITE_JOBS}/manifest", {"code": SUITE_MANIFEST_CODE, "sources": PRODUCTS, "title": config["title"]}
-        ),
+        [path for files in SUITE_FIGURE_FILES.values() for path in files.values()],
     log:
-        f"logs/suites/{SUITE['name']}/manifest.log",
+        f"{SUITE_LOGS}/figures.log",
+    benchmark:
+        f"{SUITE_LOGS}/benchmarks/figures.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(300),
-        runtime=30,
     params:
-        sources=PRODUCTS,
-        title=config["title"],
-        code=SUITE_MANIFEST_CODE,
-    message:
-        "Listing the products of the suite"
+        figures={
+            f"suite_{figure}": {
+                "files": SUITE_FIGURE_FILES[figure],
+                "inputs": {source: f"{RESULTS}/{source}.nc"},
+                "provenance": SUITE_FIGURE_PROVENANCE[figure],
+            }
+            for figure, source in SUITE_FIGURES.items()
+        },
     script:
-        "../scripts/manifest.py"
-
-
-FINISHED += [*rules.suite_manifest.input, *rules.suite_manifest.output]
+        "../scripts/figures.py"

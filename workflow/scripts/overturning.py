@@ -15,8 +15,8 @@ from rocking._datasets.cube import AXES, MODEL_RESULT, VARIABLES, describe, scal
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.sampled import SampledPulse
 from rocking._model.response import Outcome
-from workflow.pulses import pulse_of_job
-from workflow.scripts.job import command_of, run
+from workflow.pulses import configured_pulse
+from workflow.scripts.job import attributes_of, run
 
 ACCURACY = (
     "chord_error", "uncounted_chord_error", "thinnest_region", "thinnest_uncounted_region",
@@ -30,8 +30,7 @@ COUNTS = ("unmeasured_chords", "open_ends")
 
 def main(
     *,
-    pulse: str,
-    samples: Path | list[Path],
+    pulse: Any,
     restitution: float,
     alpha_deg: Sequence[float],
     nodes: int,
@@ -39,19 +38,20 @@ def main(
     slenderness: Mapping[str, float],
     frequency_ratio: Mapping[str, float],
     boundaries: Path,
-    provenance: Mapping[str, str],
+    provenance: dict[str, str],
     threads: int,
 ) -> None:
     """Trace the curves of a restitution [-] at all angles [deg], inside the configured window.
 
-    The first grid has `nodes` in each direction for the slender limit, `nodes_rigid` for other angles.
+    `pulse`: entry of the configuration. The first grid has `nodes` in each direction for the slender limit,
+    `nodes_rigid` for other angles.
     """
-    shape = pulse_of_job(pulse, samples)
+    shape = configured_pulse(pulse)
     window = {"slenderness": _ends(slenderness), "frequency_ratio": _ends(frequency_ratio)}
     traced = curves_of(shape, restitution, alpha_deg, nodes, nodes_rigid, threads=threads, **window)
     joined = join_curves([one.drop_attrs(deep=False) for one in traced])
     curves = described(joined, shape, restitution).assign_attrs(accuracy_of(traced))
-    write_dataset(describe(curves, **provenance), boundaries)
+    write_dataset(describe(curves, **attributes_of(curves.attrs["id"], provenance)), boundaries)
     print(f"{boundaries}: {curves.sizes['curve']} curves, {curves.sizes['point']} points")
 
 
@@ -82,7 +82,6 @@ def accuracy_of(traced: Sequence[xr.Dataset]) -> dict[str, Any]:
 def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float) -> xr.Dataset:
     """The curves of all angles with our attributes."""
     name = as_pulse(pulse).name
-    product = f"overturning/{name}/eta-{restitution:.2f}"
     for key, side in (("outcome", "overturning"), ("neighbour_outcome", "other")):
         curves[key].attrs |= VARIABLES["outcome"][1] | {"long_name": f"outcome on the {side} side"}
     curves["alpha"].attrs |= AXES["alpha"]
@@ -98,8 +97,7 @@ def described(curves: xr.Dataset, pulse: str | SampledPulse, restitution: float)
         "blocks overturn after many impacts; distance in log omega within which the ends of the latter are known: "
         "end_distance; largest distance of the nodes in 1/a, below which a region can be missed: node_distance; ends "
         "of regions that are known to a step of the grid only: open_ends.",
-        history=command_of(product),
-        id=product,
+        id=f"overturning/{name}/eta-{restitution:.2f}",
     )
 
 

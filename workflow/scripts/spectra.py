@@ -1,37 +1,53 @@
-"""Completes the spectrum cube of one pulse and restitution: measures the errors up to the next restitution."""
+"""Fills the spectrum cube of one pulse and restitution."""
 
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
+import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from rocking._datasets.cube import check_file, describe, write_dataset
-from rocking._datasets.netcdf import open_netcdf
-from rocking._spectra.cubes import with_restitution_errors
-from workflow.pulses import pulse_of_job
-from workflow.scripts.job import command_of, run
+import numpy as np
+
+from rocking._boundary.curves import crossed_cells
+from rocking._datasets.cube import describe, read_dataset, write_dataset
+from rocking._spectra.cubes import solve_cubes
+from workflow.pulses import configured_pulse
+from workflow.scripts.axes import stepped
+from workflow.scripts.job import attributes_of, run
 
 
 def main(
     *,
-    pulse: str,
-    samples: Path | list[Path],
+    pulse: Any,
     restitution: float,
-    parts: Sequence[Path],
+    grid: Mapping[str, Any],
+    boundaries: Path,
     cube: Path,
-    provenance: Mapping[str, str],
+    provenance: dict[str, str],
     threads: int,
 ) -> None:
-    """Write the cube of a restitution [-], interpolated up to the next one from the parts of its window."""
-    for path in parts:
-        check_file(path)
-    with ExitStack() as stack:
-        # not kept in memory: one angle of a cube at a time is needed of the others
-        opened = [stack.enter_context(open_netcdf(path, cache=False)) for path in parts]
-        own = [float(part["restitution"]) for part in opened].index(restitution)
-        (whole,) = with_restitution_errors(pulse_of_job(pulse, samples), opened, own, own + 1, threads=threads)
-    described = describe(whole, history=command_of(whole.attrs["id"]), **provenance)
+    """Solve the configured grid at a restitution [-]; cells that its boundaries cross are not interpolated.
+
+    `pulse`: entry of the configuration.
+    """
+    columns = grid["frequency_ratio"]
+    slenderness = stepped(**grid["slenderness"])
+    frequency_ratio = np.geomspace(columns["low"], columns["high"], columns["points"])
+    alpha = [math.radians(angle) for angle in grid["alpha_deg"]]
+    curves = read_dataset(boundaries)
+    barred = [crossed_cells(curves, angle, slenderness, frequency_ratio) for angle in alpha]
+    (solved,) = solve_cubes(
+        configured_pulse(pulse),
+        restitution=[restitution],
+        slenderness=slenderness,
+        frequency_ratio=frequency_ratio,
+        alpha=alpha,
+        barred=np.array([barred]),
+        derived=grid.get("derived", ()),
+        threads=threads,
+    )
+    described = describe(solved, **attributes_of(solved.attrs["id"], provenance))
     write_dataset(described, cube, chunks={"alpha": 1})  # one angle can be read alone
-    print(f"{cube}: {whole.outcome.size} cells, {int((whole.outcome > 1).sum())} overturned")
+    print(f"{cube}: {solved.outcome.size} cells, {int((solved.outcome > 1).sum())} overturned")
 
 
 if __name__ == "__main__":

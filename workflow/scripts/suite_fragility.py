@@ -6,6 +6,7 @@ from typing import Any
 
 import xarray as xr
 
+from rocking._base.output_file import write_output
 from rocking._datasets.csv_text import csv_text
 from rocking._datasets.cube import describe, read_dataset, write_dataset
 from rocking.suites.configuration import suite_configuration
@@ -13,7 +14,7 @@ from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.outcomes import join_outcomes
 from rocking.suites.sensitivity import sensitivity_of_outcomes
 from rocking.suites.table import fragility_table, sensitivity_table
-from workflow.scripts.job import command_of, run
+from workflow.scripts.job import attributes_of, run
 
 
 def main(
@@ -23,7 +24,7 @@ def main(
     outcomes: Path,
     fragility: Path,
     table: Path,
-    provenance: Mapping[str, str],
+    provenance: dict[str, str],
     sensitivities: Sequence[Path] = (),
     sensitivity: Path | None = None,
     sensitivity_rows: Path | None = None,
@@ -38,10 +39,9 @@ def main(
     joined = _joined(files, chosen.measure)
     found = fragility_of_outcomes(joined, chosen.demand, chosen.confidence)
     about = {
-        "history": command_of(f"suites/{chosen.name}/fragility"),
         "suite": chosen.name,
         "measure": chosen.measure,
-        **provenance,
+        **attributes_of(f"suites/{chosen.name}/fragility", provenance),
     }
     described: dict[Path, xr.Dataset] = {
         outcomes: joined.assign_attrs(
@@ -58,7 +58,7 @@ def main(
     if sensitivity is not None and sensitivity_rows is not None:
         changed = _joined(sensitivities, chosen.measure)
         changed = changed.merge(sensitivity_of_outcomes(changed, chosen.confidence))
-        sensitivity_rows.write_text(csv_text(sensitivity_table(changed)), encoding="utf-8")
+        write_output(sensitivity_rows, csv_text(sensitivity_table(changed)))
         described[sensitivity] = changed.assign_attrs(
             title=f"Friction demand, and effect of restitution and sampling, under the suite {chosen.name}",
             summary="Largest friction demand of each block under each record at some levels of intensity, and whether "
@@ -68,7 +68,7 @@ def main(
     for path, dataset in described.items():
         name = f"suites/{chosen.name}/{path.stem}"
         write_dataset(describe(dataset, id=name, **about), path)
-    table.write_text(csv_text(fragility_table(found)), encoding="utf-8")
+    write_output(table, csv_text(fragility_table(found)))
     print(f"{fragility}: {joined.sizes['record']} records, {joined.sizes['block']} blocks")
 
 

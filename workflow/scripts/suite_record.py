@@ -14,7 +14,7 @@ from rocking.suites.configuration import BlockMap, SuiteConfiguration, suite_con
 from rocking.suites.margins import with_margins
 from rocking.suites.outcomes import check_suite, suite_outcomes
 from rocking.suites.sensitivity import sensitivity_outcomes
-from workflow.scripts.job import command_of, run
+from workflow.scripts.job import attributes_of, run
 
 
 def main(
@@ -22,7 +22,7 @@ def main(
     file: Path,
     suite: Mapping[str, Any],
     outcomes: Path,
-    provenance: Mapping[str, str],
+    provenance: dict[str, str],
     sensitivity: Path | None = None,
 ) -> None:
     """Compute the outcomes of the blocks, and of the grid of blocks of the map, under the motion of a file.
@@ -37,7 +37,7 @@ def main(
     if chosen.map is not None:
         found = found.assign(map_overturned=_map_of(chosen, chosen.map, motion))
     product = f"suites/{chosen.name}/records/{file.name}"
-    about = {"history": command_of(product), "source": motion.source, **provenance}
+    about = {"source": motion.source, **attributes_of(product, provenance)}
     described = describe(
         found,
         title=f"Rocking under {motion.name}",

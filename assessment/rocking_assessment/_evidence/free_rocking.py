@@ -81,10 +81,11 @@ LARGEST_RESIDUAL = 0.1
 NEGLIGIBLE = 1e-3
 """Standard deviation of the residual over the first peak, below which a trace is not refused for its errors [-]."""
 
-LARGEST_DEPARTURE = 0.05
-"""Largest changes of alpha and eta from flight to flight [-]: those of larger ones are not independent of each other.
+LARGEST_DEPARTURE = 0.02, 0.05
+"""Largest changes of alpha and of eta from flight to flight [-]: larger ones are not independent of each other.
 
-Of ground that moves at 5 % of uplift they are 0.1 to 16 %, and intervals of those above 5 % too narrow.
+Of ground that moves at 5 % of uplift the changes of alpha are up to 5 %. Where they are above 2 %, intervals hold alpha
+and p in about half of the traces (`python -m benchmarks.accuracy.free_rocking --kind ground`, without the limit).
 """
 
 EXACT = 5e-5
@@ -191,11 +192,15 @@ def identify_free_rocking(
             f"last {best.correlated * step:.2g} s",
             "free rocking of a rigid body on ground at rest, by a sensor whose drift does not change",
         )
-    if best.departure > LARGEST_DEPARTURE:
+    changes = best.mixture.typical_sizes() if best.departure else np.zeros(2)
+    if np.any(changes > LARGEST_DEPARTURE):
+        alpha, eta = 100.0 * changes
+        largest_alpha, largest_eta = LARGEST_DEPARTURE
         raise InvalidArgumentError(
             "rotation",
-            f"flights that differ by {100.0 * best.departure:.2g} % in alpha or restitution",
-            f"free rocking of a rigid body on ground at rest, whose flights differ by {LARGEST_DEPARTURE:.0%} at most",
+            f"flights that differ by {alpha:.2g} % in alpha and {eta:.2g} % in restitution",
+            "free rocking of a rigid body on ground at rest, whose flights differ by at most "
+            f"{largest_alpha:.0%} in alpha and {largest_eta:.0%} in restitution",
         )
     found = _Found(t, theta, used, model, impacts, best, sides, level, noise)
     result = _described(found)

@@ -25,8 +25,8 @@ from scipy.special import stdtr
 
 from rocking.extension import Array
 
-SIZES = np.geomspace(2e-4, 0.5, 11)
-"""Sizes of the grid [-]: shares of alpha and eta. A smaller one than the first changes no trace visibly."""
+SIZES = np.geomspace(1e-3, 0.5, 10)
+"""Sizes of the grid [-]: shares of alpha and eta. Those of no real body are more constant than the first."""
 
 LEAST_VARIANCE = 1e-12  # of the errors, over that of samples by changes of 1 [-]: below it rounding counts
 BISECTIONS = 60  # of the half width, which is between 0 and a bound that holds

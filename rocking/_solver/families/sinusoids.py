@@ -11,7 +11,7 @@ from rocking._excitation.shapes import MAX_PIECES
 from rocking._excitation.sinusoids import MAX_SINUSOIDS, SinusoidSeries
 from rocking._numba.compilation import Fields, Record, SimdVector, kernel
 from rocking._numba.simd import load, splat, store
-from rocking._numba.simd_sines import sine_and_cosine
+from rocking._numba.simd_functions import sine_and_cosine
 
 SINUSOIDS = int(Family.SINUSOIDS)
 

@@ -9,7 +9,7 @@ from rocking._excitation.series import Family
 from rocking._excitation.wavelets import MAX_POLYNOMIAL, WaveletSeries
 from rocking._numba.compilation import Fields, Record, Series, SimdVector, kernel
 from rocking._numba.simd import load, splat, store
-from rocking._numba.simd_exponentials import exponential
+from rocking._numba.simd_functions import exponential
 
 WAVELET = int(Family.WAVELET)
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import any_lane, load, select, splat, store, store_where
-from rocking._numba.simd_exponentials import cosh_minus_one_and_sinh
+from rocking._numba.simd_functions import cosh_minus_one_and_sinh
 from rocking._solver.stages import columns as column
 from rocking._solver.stages.excitation import (
     expand_at_start,

@@ -10,7 +10,7 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import LANES, any_lane, load, maximum, minimum, select, splat, store, store_where
-from rocking._numba.simd_exponentials import arccosine
+from rocking._numba.simd_functions import arccosine
 from rocking._solver.crossings import refine_crossings
 from rocking._solver.excitation import shapes_and_slopes
 from rocking._solver.families.sinusoids import is_unit_sinusoid

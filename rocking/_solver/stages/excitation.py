@@ -10,8 +10,7 @@ from typing import Any
 
 from rocking._numba.compilation import Record, SimdVector, kernel
 from rocking._numba.simd import load, maximum, minimum, select, splat, square_root, store
-from rocking._numba.simd_exponentials import exponential
-from rocking._numba.simd_sines import sine_and_cosine
+from rocking._numba.simd_functions import exponential, sine_and_cosine
 from rocking._solver.families.sinusoids import SERIES_LENGTH, SERIES_RADIUS, is_unit_sinusoid
 from rocking._solver.families.wavelets import WAVELET, WAVELET_SERIES_LENGTH, expand_gaussian_product, polynomial_at
 from rocking._solver.stages import columns as column

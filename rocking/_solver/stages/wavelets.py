@@ -19,8 +19,7 @@ from typing import Any
 
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, any_lane, load, select
-from rocking._numba.simd_error_function import scaled_erfc
-from rocking._numba.simd_exponentials import exponential
+from rocking._numba.simd_functions import exponential, scaled_erfc
 from rocking._solver.stages import columns as column
 
 WAVELET_SERIES_RADIUS, MAX_WAVELET_REACH = 1.8, 0.9

@@ -13,7 +13,7 @@ z = 0 both are 1, so that the acceleration is exactly zero at uplift through F =
 
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
-from rocking._numba.simd_sines import sine_and_cosine
+from rocking._numba.simd_functions import sine_and_cosine
 from rocking._solver.excitation import expand_excitation
 
 

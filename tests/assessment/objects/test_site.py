@@ -12,8 +12,8 @@ from rocking_assessment._objects.site import Motion, static_acceleration
 from rocking_assessment._objects.sliding import first_exceedance
 
 import rocking
-from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, StoppedError
+from rocking._base.units import STANDARD_GRAVITY
 from rocking._boundary.scan import RELATIVE_ERROR
 from rocking._numba.cancellation import StopFlag
 

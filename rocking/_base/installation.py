@@ -1,6 +1,13 @@
-"""Extras of the installation: packages that a part of the product needs beyond those of `rocking`."""
+"""The installed package: version and authors, which pyproject.toml states, and what its extras need."""
 
+from importlib.metadata import metadata
 from importlib.util import find_spec
+
+_ABOUT = metadata("rocking")
+
+__version__ = _ABOUT["Version"]
+
+AUTHORS = _ABOUT["Author"]
 
 
 def require_extra(extra: str, *modules: str) -> None:
