@@ -226,7 +226,7 @@ def _of_validation(error: Mapping[str, Any]) -> InvalidArgumentError:
     """An error of pydantic as one of this package."""
     kind, context = str(error["type"]), error.get("ctx", {})
     source, *place = error["loc"]
-    names = [part for part in place if part not in TAGS]
+    names = [part for part in place if isinstance(part, int) or _is_field(part)]
     own = context.get("error")
     name = _joined(names) or str(source)
     if isinstance(own, InvalidArgumentError):  # of a validator of this package
@@ -250,8 +250,13 @@ def _of_validation(error: Mapping[str, Any]) -> InvalidArgumentError:
     return InvalidArgumentError(name, plain(value), allowed)
 
 
-TAGS = {"<json>", "<file>", "<name>", "<samples>"}
-"""Parts of the places of errors that name an alternative, not a field."""
+TYPES = {"float", "int", "str", "bool"}
+"""Parts of the places of errors that name an alternative of a type, as tags such as "<json>" and models do."""
+
+
+def _is_field(part: str) -> bool:
+    """True if a part of the place of an error is the name of a field, not of an alternative."""
+    return part.isidentifier() and part not in TYPES and not part[0].isupper()
 
 
 def _joined(place: Sequence[str | int]) -> str:

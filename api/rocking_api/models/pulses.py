@@ -48,9 +48,9 @@ def _made(samples: PulseSamples) -> SampledPulse:
     return SampledPulse(**dict(samples))
 
 
-def name_of(pulse: str | SampledPulse) -> str:
+def name_of(pulse: Any) -> str:
     """The name that an answer repeats of a pulse."""
-    return pulse if isinstance(pulse, str) else pulse.name
+    return str(pulse.name if isinstance(pulse, SampledPulse) else pulse)
 
 
 GivenPulse: Any = Annotated[
