@@ -42,7 +42,9 @@ class Helper:
         except (TimeoutError, MemoryError, BrokenWorkerProcess):
             limits = f"a {parameter} that is read within {SECONDS} s and {MEMORY // 1024**2} MiB"
             raise InvalidArgumentError(parameter, name, limits) from None
-        except (InvalidArgumentError, OSError):
+        except InvalidArgumentError as error:  # which names the temporary file
+            raise InvalidArgumentError(parameter, name, error.allowed) from None
+        except OSError:
             raise
         except Exception as error:  # noqa: BLE001  # whatever the reader meets in a damaged file
             allowed = f"a file without the defect that its reader found ({type(error).__name__})"
