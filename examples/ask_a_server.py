@@ -37,7 +37,7 @@ table = "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n0.2,9,
 request = Request(
     f"{server}/v1/response?pulse=sine",
     data=table.encode(),
-    headers={"Content-Type": "text/csv", "Accept": "text/csv"},
+    headers={"Content-Type": "text/csv"},
 )
 with urlopen(request) as reply:
     for row in csv.DictReader(io.TextIOWrapper(reply, encoding="utf-8")):

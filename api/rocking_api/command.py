@@ -13,7 +13,7 @@ import uvicorn
 from pydantic import ValidationError
 
 from rocking_api.execution.kernels import compile_command
-from rocking_api.settings import EXAMPLE, Settings, has_data
+from rocking_api.settings import EXAMPLE, Settings, has_data, unknown_variables, variables
 
 LOG: dict[str, Any] = {
     "version": 1,
@@ -24,8 +24,12 @@ LOG: dict[str, Any] = {
 }
 """For logging.config.dictConfig."""
 
-HEALTHCHECK_SECONDS = 60
-"""Time after which uvicorn replaces a worker that does not answer it [s]; loading the package takes some of it."""
+HEALTHCHECK_SECONDS = 10
+"""Time that uvicorn waits for the answer of a worker before it replaces it [s].
+
+It waits as long for one that has died between question and answer, and stops nothing meanwhile: with `stop_seconds` it
+stays below `TimeoutStopSec` of `deploy/rocking.service`. A thread of the worker answers before the package is loaded.
+"""
 
 
 def serve(
@@ -43,6 +47,9 @@ def serve(
     workers: Annotated[int, typer.Option(help="Processes that serve.", metavar="[NUMBER]", min=1, max=256)] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
+    for variable in unknown_variables(os.environ):
+        typer.echo(f"Error: {variable} is not allowed; allowed: {', '.join(variables())}", err=True)
+        raise typer.Exit(2)
     given: dict[str, Any] = {} if results is None else {"results": results}
     try:
         settings = Settings(**given)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
 import anyio.to_thread
 
+from rocking._base.errors import DatasetError
 from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._lookup.collection import NO_CUBES, CubeCollection
 
@@ -31,13 +31,12 @@ class State(NamedTuple):
 class DatasetChecker:
     """Checks every data set once per version of its file, on request, and logs each that is found damaged or repaired.
 
-    `damaged` says of each data set or folder that exists and cannot be used what is wrong, by name; `on_change` is
-    called with a name and whether it is damaged, where that has changed.
+    `damaged` says of each data set or folder that exists and cannot be used what is wrong, by name. The digest of each
+    file is known afterwards.
     """
 
-    def __init__(self, cubes: CubeCollection, on_change: Callable[[str, bool], None] = lambda *_: None) -> None:
+    def __init__(self, cubes: CubeCollection) -> None:
         self._cubes = cubes
-        self._on_change = on_change
         self.damaged: dict[str, str] = {}
         self._task: asyncio.Task[None] | None = None
         self._state = State([], 0, {})
@@ -69,8 +68,10 @@ class DatasetChecker:
         for k, name in enumerate(sorted(names, key=lambda name: name not in self.damaged)):
             try:
                 problem = await anyio.to_thread.run_sync(partial(self._cubes.problem, name))
-            except UnknownDatasetError:
-                problem = None  # removed meanwhile
+                if problem is None:
+                    await anyio.to_thread.run_sync(partial(self._cubes.catalogue.product, name))
+            except (UnknownDatasetError, DatasetError):
+                problem = None  # removed or replaced meanwhile
             if problem is not None:
                 problems[name] = problem
             self._note(name, problem)
@@ -88,7 +89,6 @@ class DatasetChecker:
             self.damaged[name] = problem
         if (now := self.damaged.get(name)) == before:
             return
-        self._on_change(name, now is not None)
         if now is None:
             LOG.info("a data set is no longer damaged: %s", name)
         else:

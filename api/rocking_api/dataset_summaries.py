@@ -7,11 +7,10 @@ from pathlib import Path
 
 import xarray as xr
 
-from rocking._datasets.catalogue import Catalogue, DatasetFile, VersionCache
+from rocking._datasets.catalogue import Catalogue, VersionCache
 from rocking._datasets.cube import DIMENSIONS
 from rocking._datasets.netcdf import open_netcdf
-from rocking_api.models.responses import DatasetSummary, Link
-from rocking_api.zarr_store import SPECTRA
+from rocking_api.models.responses import DatasetSummary, Extent, Link
 
 
 class DatasetSummaries:
@@ -29,46 +28,44 @@ class DatasetSummaries:
             if known is not None:
                 return known
             with self._catalogue.open(name) as file:
-                product = self._catalogue.product_of(file)
-                with self._catalogue.lock:
-                    return self._kept.store(name, file.path, file.version, _read(product, file.path))
+                sha256 = self._catalogue.known_digest(file)
+                summary = _read(name, file.version.size, sha256, file.path)
+                return summary if sha256 is None else self._kept.store(name, file.path, file.version, summary)
 
 
-def _read(product: DatasetFile, path: Path) -> DatasetSummary:
+def _read(name: str, size: int, sha256: str | None, path: Path) -> DatasetSummary:
     """The summary from the head and the axes of a file: reading all variables of fifty files takes half a minute."""
     try:
         with open_netcdf(path) as dataset:
-            return summarized(product, dataset)
+            return summarized(name, size, sha256, dataset)
     except (OSError, ValueError, RuntimeError, KeyError):  # whatever the libraries meet in a damaged file
-        return summarized(product, xr.Dataset())
+        return summarized(name, size, sha256, xr.Dataset())
 
 
-def summarized(product: DatasetFile, dataset: xr.Dataset) -> DatasetSummary:
+def summarized(name: str, size: int, sha256: str | None, dataset: xr.Dataset) -> DatasetSummary:
     """What the catalogue tells of one data set; of a damaged file, an empty one, only its version and its name."""
     scalars = {str(name): value for name, value in dataset.coords.items() if value.ndim == 0}
     extent = {}
     for axis in DIMENSIONS:
         if axis in dataset.variables and dataset[axis].dtype.kind == "f" and dataset[axis].notnull().any():
             extent[axis] = float(dataset[axis].min()), float(dataset[axis].max())
-    path = f"/v1/datasets/{product.name}"
-    hrefs = {
-        "self": path,
-        "data": f"{path}.nc",
-        "version": f"{path}.nc?sha256={product.sha256}",
-        "zarr": f"{path}.zarr",
-    }
-    if product.name.startswith(f"{SPECTRA}/"):
+    path = f"/v1/datasets/{name}"
+    hrefs = {"self": path, "data": f"{path}.nc"}
+    if name.startswith("spectra/"):
         hrefs["subset"] = f"{path}/subset"
-    types = {"self": "application/json", "zarr": "application/vnd+zarr"}
+    links = [
+        Link(rel=relation, href=href, type="application/json" if relation == "self" else "application/x-netcdf")
+        for relation, href in hrefs.items()
+    ]
     return DatasetSummary(
-        **vars(product),
-        title=str(dataset.attrs.get("title", product.name)),
+        name=name,
+        size=size,
+        sha256=sha256,
+        title=str(dataset.attrs.get("title", name)),
         pulse=scalars["pulse"].attrs.get("pulse_name") if "pulse" in scalars else None,
         restitution=float(scalars["restitution"]) if "restitution" in scalars else None,
-        extent=extent,
+        extent=Extent(**extent),
         metadata=path,
         netcdf=hrefs["data"],
-        version_url=hrefs["version"],
-        zarr=hrefs["zarr"],
-        links=[Link(rel=k, href=href, type=types.get(k, "application/x-netcdf")) for k, href in hrefs.items()],
+        links=links,
     )

@@ -7,14 +7,15 @@ them when it is made.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import entry_points
 from pathlib import Path
 
 from fastapi import APIRouter
 
+from rocking_api.http.limits import Limit
 from rocking_api.settings import Settings
 
 LOG = logging.getLogger("rocking.service")
@@ -61,6 +62,8 @@ class Extension:
         Folder of Jinja templates; they may extend `base.html` of the service.
     static : Path, optional
         Folder of scripts, styles and other files.
+    body_limits : mapping, optional
+        Largest bodies of its routes, by the start of their addresses; others have that of the service, 0.5 MB.
     """
 
     name: str
@@ -68,6 +71,7 @@ class Extension:
     menu: tuple[MenuEntry, ...] = ()
     templates: Path | None = None
     static: Path | None = None
+    body_limits: Mapping[str, Limit] = field(default_factory=dict)
 
 
 @cache

@@ -73,7 +73,7 @@ class SuiteReader:
             links=_links(name, datasets),
         )
 
-    def suite(self, name: str, query: m.SuiteParams) -> m.SuiteResponse:
+    def suite(self, name: str, query: m.SuiteParams, url: str) -> m.SuiteResponse:
         """A suite."""
         found = self._part(self._fragility, name, "fragility", _fragility)
         outcomes = self._part(self._outcomes, name, "outcomes", _of_outcomes)
@@ -85,6 +85,7 @@ class SuiteReader:
             raise DatasetError(f"{_FOLDER}{name}: its files are of different blocks; ask again after the run has ended")
         return m.SuiteResponse(
             query=query,
+            url=url,
             name=name,
             **found.about,
             intensity=found.intensity,

@@ -11,6 +11,7 @@ import atexit
 import gc
 import os
 import sys
+import warnings
 from contextlib import suppress
 from importlib.metadata import EntryPoint, entry_points
 from typing import Annotated, Any
@@ -75,6 +76,7 @@ class Commands(TyperGroup):
         if not extra.get("standalone_mode", True):
             return super().main(*args, **extra)
         extra["standalone_mode"] = False
+        warnings.formatwarning = lambda message, *_: f"warning: {message}\n"  # without a line of the source
         try:
             status = super().main(*args, **extra) or 0
             sys.stdout.flush()

@@ -17,7 +17,7 @@ from rocking._cli.arguments import Params, given_units, unit_period
 from rocking._cli.options import HistoryOptions, OutputOptions
 from rocking._cli.progress import progress
 from rocking._datasets.csv_text import csv_text
-from rocking._dimensional.fields import FIELDS, JUDGED
+from rocking._dimensional.fields import CONTACT_FORCES, FIELDS, JUDGED
 from rocking._dimensional.thresholds import Threshold, threshold_text
 from rocking._model.fields import COLUMN_FIELDS, OUTCOME, SOURCE
 from rocking._model.outcome import Outcome
@@ -176,13 +176,14 @@ _UNITS = {
     **dict.fromkeys(("alpha", "alpha_lower", "alpha_upper", "noise", "offset"), "rad"),
     **dict.fromkeys(("frequency_parameter_lower", "frequency_parameter_upper"), "rad/s"),
     "angular_velocity_deg": "deg/s",
+    **dict.fromkeys(CONTACT_FORCES, "N"),
     "annual_rate": "1/year",
     **dict.fromkeys(("rotation_deg", "direction_deg"), "deg"),
     **dict.fromkeys(("time", "impact_time_s", "time_step", "significant_duration", "mean_period"), "s"),
     **dict.fromkeys(("mass_height", "left", "right", "peak_displacement"), "m"),
     **dict.fromkeys(("peak_velocity", "final_velocity", "arias_intensity"), "m/s"),
     **dict.fromkeys(("gravity", "acceleration", "thresholds"), "m/s2"),
-    **dict.fromkeys(("pulse_peak_acceleration", "peak_vertical_acceleration"), "m/s2"),
+    **dict.fromkeys(("pulse_peak_acceleration", "peak_vertical_acceleration", "vertical_acceleration"), "m/s2"),
 }
 """Units that the text output names beside a value or a column; others are dimensionless."""
 
@@ -235,7 +236,7 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     if params.problem is not None and not params.problem.is_block:
         with progress("solving the body"):
             motion = history_of(params.problem, **options)
-        _print_motion(motion, form)
+        print_motion(motion, form)
         return
     with progress("solving the block"):
         motion = time_history(params.pulse, **params.groups, **options)
@@ -276,15 +277,17 @@ def released(options: HistoryOptions, duration: str | None, samples: int, contac
         samples=samples,
         contact=contact,
     )
-    _print_motion(motion, form)
+    print_motion(motion, form)
 
 
-def _print_motion(motion: xr.Dataset, form: Form) -> None:
-    from rocking._history.contact import COLUMNS
+def print_motion(motion: xr.Dataset, form: Form) -> None:
+    """Print a motion in SI units against time, with its reactions and contact forces if it has them."""
+    from rocking._history.contact import ATTRIBUTES, COLUMNS
 
-    columns = _si_columns(motion) | {"edge": motion["edge"].values.tolist()}
-    columns |= {name: [finite(one) for one in motion[name].values.tolist()] for name in COLUMNS if name in motion}
-    names = ("outcome", "impacts", "largest_friction_demand", "smallest_normal_reaction", "impulse_ratio", "warnings")
+    columns = _si_columns(motion)
+    others = ("edge", "vertical_acceleration", *COLUMNS, *CONTACT_FORCES)
+    columns |= {name: [finite(value) for value in motion[name].values.tolist()] for name in others if name in motion}
+    names = ("outcome", "impacts", *ATTRIBUTES, "warnings")
     about = {name: motion.attrs[name] for name in names if name in motion.attrs}
     about = {name: finite(value) if isinstance(value, float) else value or None for name, value in about.items()}
     about |= {"impact_time_s": motion["impact_time"].values.tolist()}

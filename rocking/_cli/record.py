@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from rocking._cli.options import OutputOptions, RecordOptions, said, with_options
+from rocking._base.quantities import MASS
+from rocking._cli.options import OutputOptions, RecordOptions, option, said, with_options
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
@@ -42,21 +43,43 @@ def record(
     second: Annotated[
         str | None, said("Second horizontal component: the answer is for the worst direction.", "FILE|NAME")
     ] = None,
+    mirrored: Annotated[bool, said("The record with the other sign.", "", "--mirrored")] = False,
+    history: Annotated[bool, said("Print the motion against time instead.", "", "--history")] = False,
+    samples: Annotated[
+        int | None, said("Number of uniform samples of this motion; by default those of the record.", "NUMBER")
+    ] = None,
+    contact: Annotated[
+        bool, said("Add reactions of the ground and friction demand to this motion.", "", "--contact")
+    ] = False,
+    mass: Annotated[str | None, option(MASS, text="Mass of the body, for these reactions in newtons")] = None,
 ) -> None:
     """Outcome and peak rotation of a block under a recorded ground motion, by the solver.
 
     With a second component the motion is turned in steps of 15 degrees towards it; the worst one has the lowest factor.
     """
-    from rocking._base.errors import InvalidArgumentError
+    from rocking._base.errors import InvalidArgumentError, reject_given
     from rocking._cli import printing
     from rocking._cli.arguments import option_errors
     from rocking._cli.progress import progress
+    from rocking._dimensional.curves import with_forces
     from rocking._excitation.records.record import summary_of
     from rocking._model.block import AbstractBlock
 
     with option_errors({"records": "--second", "format": "--file-format"}), file_errors():
         form = printing.output_format(output, block)
         motion, body, restitution = read_problem(file, block)
+        if mirrored:
+            motion = motion.mirrored()
+        if history:
+            reject_given("--history", second=second, fit=fit or None)
+            options: dict[str, Any] = {"scale": block.scale, "restitution": restitution, "samples": samples}
+            with progress("solving the motion"):
+                moving = body.history(motion, **options, contact=contact or mass is not None)
+            if mass is not None:
+                moving = with_forces(moving, MASS.number(mass), float(body.gravity))
+            printing.print_motion(moving, form)
+            return
+        reject_given("an answer without --history", samples=samples, contact=contact or None, mass=mass)
         if fit and not isinstance(body, AbstractBlock):
             raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
         with progress("solving the block under the record"):
@@ -91,12 +114,11 @@ def _worst_direction(
 ) -> tuple[float, Record, BodyResponse]:
     """The worst angle from the first towards the second component [degrees], the motion along it, the response."""
     from rocking._excitation.records.pair import PAIR_ANGLES, checked_pair, rotated
-    from rocking.suites.body_outcomes import mirrored
 
     checked_pair(pair)
     motions = [one for _, one in rotated(*pair)]
     if not body.is_block:
-        motions = [*motions, *map(mirrored, motions)]  # in the opposite directions
+        motions = [*motions, *[one.mirrored() for one in motions]]  # in the opposite directions
     found = [(180.0 * k / PAIR_ANGLES, one, body.response(one, **given)) for k, one in enumerate(motions)]
 
     def order(one: tuple[float, Record, BodyResponse]) -> tuple[float, bool, float]:

@@ -18,7 +18,7 @@ from typing import Generic, NamedTuple, Self, TypeVar
 import xarray as xr
 
 from rocking._base.errors import DatasetError
-from rocking._datasets.cube import decode_dataset
+from rocking._datasets.cube import decode_dataset, reject_large
 from rocking._datasets.netcdf import sha256_of
 
 CLOCK_TICK = 20_000_000
@@ -98,11 +98,15 @@ class DataFile:
         return self._file.fileno()
 
     def content(self) -> bytes:
-        """All bytes of the file, of one version; `DatasetError` if it cannot be read or changes all the time."""
+        """All bytes of the file, of one version.
+
+        Raises `DatasetError` if it cannot be read, is larger than `MAX_FILE_BYTES`, or changes all the time.
+        """
         try:
             # the version is the same before and after the read, so that all bytes are of it; else read again
             for _ in range(MAX_READS):
                 self.version = self._settled()
+                reject_large(self.name, self.version.size)
                 self._file.seek(0)
                 content = self._file.read()
                 if self.is_unchanged():
@@ -235,6 +239,11 @@ class Catalogue:
         with self.lock:
             return self._products.value(file.name, file, self._dataset_file)
 
+    def known_digest(self, file: DataFile) -> str | None:
+        """The sha256 of an open data set if it was computed for this version of the file before."""
+        product = self._products.current(file.name)
+        return None if product is None else product.sha256
+
     def _dataset_file(self, file: DataFile) -> DatasetFile:
         content = file.content()
         return DatasetFile(file.name, len(content), sha256_of(content))
@@ -264,7 +273,7 @@ def _scan(
         unreadable["/".join(parts) or "results"] = f"cannot be read: {error.strerror}"
         return
     for entry in entries:
-        if not _PART.fullmatch(entry.name):
+        if not _PART.fullmatch(entry.name) or entry.name.endswith(".zarr"):  # a store has thousands of files
             continue
         inner = *parts, entry.name
         if parts and entry.name.endswith(".nc"):

@@ -7,7 +7,12 @@ from math import isfinite
 from types import SimpleNamespace
 from typing import Any
 
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # text that begins so is a formula for a spreadsheet
+FORMULA_STARTS = ("=", "+", "-", "@", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+"""Text that begins so is a formula for a spreadsheet; the last four are = + - @ of full width."""
+
+_DELIMITERS = ";\t"
+"""Signs at which a program that expects other delimiters than commas divides a cell, so that a formula begins there."""
+
 _NEGATIVE = re.compile("-[0-9]+(?:[.,][0-9]+)?")
 
 
@@ -15,7 +20,8 @@ def csv_text(columns: Mapping[str, Sequence[Any]]) -> str:
     """A header line with the names of the columns, and the rows.
 
     Floats have all digits. None, nan and infinite values are empty cells; booleans are true and false. Text with a
-    comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading apostrophe.
+    comma, a quote or a line break is quoted; text that a spreadsheet would take for a formula has a leading apostrophe,
+    and so has a part of it behind a semicolon or a tabulator.
     """
     return csv_header(columns) + csv_rows(columns)
 
@@ -42,5 +48,17 @@ def _cell(value: Any) -> Any:
         return value if isfinite(value) else None
     if isinstance(value, bool):
         return "true" if value else "false"
-    is_formula = isinstance(value, str) and value.startswith(FORMULA_STARTS) and not _NEGATIVE.fullmatch(value)
-    return f"'{value}" if is_formula else value
+    return _without_formula(value) if isinstance(value, str) else value
+
+
+def _without_formula(text: str) -> str:
+    """A text with an apostrophe before each part that a spreadsheet would take for a formula."""
+    if text.isidentifier():  # such as the name of an outcome, a million times
+        return text
+    parts = re.split(f"([{_DELIMITERS}])", text)
+    safe = "".join(f"'{part}" if _is_formula(part) else part for part in parts)
+    return f"'{safe}" if _is_formula(safe) or safe.startswith("\t") else safe
+
+
+def _is_formula(part: str) -> bool:
+    return part.startswith(FORMULA_STARTS) and not _NEGATIVE.fullmatch(part)

@@ -30,6 +30,10 @@ from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED
 from rocking._model.fields import CUBE_FIELDS, DERIVED_FIELDS
 
+MAX_FILE_BYTES = 2 * 1024**3
+"""Largest file that is read, whole, into memory [bytes]: forty times a cube of `atlas.yaml`. A sparse file can have any
+size."""
+
 DIMENSIONS = ("alpha", "slenderness", "frequency_ratio")  # dimensions of a spectrum cube, in order
 
 AXES: dict[str, dict[str, Any]] = {
@@ -260,10 +264,17 @@ def read_content(path: Path | str) -> bytes:
     path = Path(path)
     try:
         if path.is_file():
+            reject_large(path, path.stat().st_size)
             return path.read_bytes()
     except OSError as error:
         raise DatasetError(f"{path}: cannot be read: {error.strerror}") from error
     raise DatasetError(f"{path}: no such data set; `make reproduce` builds it")
+
+
+def reject_large(name: Path | str, size: int) -> None:
+    """Raise `DatasetError` for a file of more than `MAX_FILE_BYTES`, whose name the message has."""
+    if size > MAX_FILE_BYTES:
+        raise DatasetError(f"{name}: has {size} bytes; a data set has at most {MAX_FILE_BYTES}")
 
 
 def decode_dataset(content: bytes, path: Path | str) -> xr.Dataset:

@@ -13,6 +13,7 @@ from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.units import Scalar
 from rocking._boundary.tracing import overturning_boundary, trace_curves
+from rocking._dimensional.fields import CONTACT_FORCES
 from rocking._dimensional.problem import Problem, frequency_ratio_of
 from rocking._dimensional.response import BodyResponse, respond
 from rocking._excitation.records.record import Record
@@ -85,6 +86,15 @@ def _in_radians(history: xr.Dataset, block: AbstractBlock) -> xr.Dataset:
     moved = block.top_height * np.sin(scaled["rotation"][1])
     scaled["top_displacement"] = variable(history["rotation"].dims, moved, "m", "top corner displacement")
     return history.assign(scaled)
+
+
+def with_forces(motion: xr.Dataset, mass: float, gravity: float) -> xr.Dataset:
+    """A motion with reactions, and these in newtons for a mass [kg] at a gravity [m/s2]."""
+    forces = {
+        name: variable(motion[reaction].dims, mass * gravity * motion[reaction].values, "N", meaning)
+        for name, (reaction, meaning) in CONTACT_FORCES.items()
+    }
+    return motion.assign(forces)
 
 
 def _body_history(

@@ -49,6 +49,12 @@ DISPLACEMENT = fields.ResponseField(
     shown="top_displacement",
 )  # fmt: skip
 
+CONTACT_FORCES = {
+    "horizontal_force": ("horizontal_reaction", "horizontal reaction H of the ground at the pivot"),
+    "normal_force": ("normal_reaction", "normal reaction N of the ground at the pivot"),
+}
+"""Variables of a motion of a body of known mass [N]: the reaction over the weight of each, and its meaning."""
+
 ARGUMENTS = ("scale", "peak_acceleration", "period", "slenderness", "frequency_ratio", "restitution")
 """Fields that are arguments or groups of the problem."""
 

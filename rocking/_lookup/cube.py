@@ -190,7 +190,7 @@ class Cube:
         if method == "solver":
             groups = points.slenderness, points.frequency_ratio, points.restitution, points.alpha
             return solve_checked(as_pulse(self.pulse), *groups, None, threads, stop), []
-        found, used, unknown = self._interpolated(points, limit, threads, stop)
+        found, used, unknown = self._interpolated(points, limit, threads, stop, method)
         result = _response(found)
         if unknown:  # the solver takes what the cubes leave open
             left = np.flatnonzero(~found.known)
@@ -221,24 +221,32 @@ class Cube:
 
         Responses elsewhere are undefined. `threads` as in `response`.
         """
-        found = self._interpolated(points, limit, threads, None)[0]
+        found = self._interpolated(points, limit, threads, None, "cube")[0]
         return found.from_cube, _response(found)
 
     def _interpolated(
-        self, points: Points, limit: float, threads: int | None, stop: StopFlag | None
+        self, points: Points, limit: float, threads: int | None, stop: StopFlag | None, method: str
     ) -> tuple[Found, list[CubeSlice], int]:
-        """Responses of the points, the slices used, and the number of points that are not known."""
+        """Responses of the points, the slices used, and the number of points that are not known.
+
+        With the method "auto" a file that was replaced since it was opened leaves its points to the solver.
+        """
         size, cores = points.slenderness.size, threads or AVAILABLE_CORES
         groups, present = np.empty(size, np.int64), np.zeros(2 * self.restitutions.size + 1, np.bool_)
         arrays = points.slenderness, points.frequency_ratio, points.restitution, points.alpha, groups
         found = Found.zeros(size)
         # points on one slice, or between the same two, are one group: each is interpolated from one window of slices
         no_uplift = prepare(points.slenderness, points.restitution, self.restitutions, groups, present, found)
-        windows: list[tuple[int, Window, tuple[Any, ...]]] = [
-            (group, window, window.arguments(points.alpha, self.may_read))
-            for group in np.flatnonzero(present[:-1]).tolist()
-            if (window := self._window(group)) is not None
-        ]
+        windows: list[tuple[int, Window, tuple[Any, ...]]] = []
+        for group in np.flatnonzero(present[:-1]).tolist():
+            window = self._window(group)
+            if window is None:
+                continue
+            try:
+                windows.append((group, window, window.arguments(points.alpha, self.may_read)))
+            except DatasetError:
+                if method == "cube":
+                    raise
         given: list[tuple[int, int]] = []
 
         def fill(part: slice, _: NDArray[np.uint8] | None = None) -> None:

@@ -141,7 +141,7 @@ class RestitutionErrors:
 
     def layer(self, restitution: float, angle: int) -> NDArray[np.float32]:
         """The errors (n, m) above a restitution at an angle, read from the file; raises as `Layers.at`."""
-        with _reading(self.path, self.version) as dataset:
+        with _reading(self.path.name, self.path, self.version) as dataset:
             errors = dataset["restitution_error"].sel(restitution=restitution).isel(alpha=angle)
             return np.asarray(errors.values)
 
@@ -183,14 +183,16 @@ def decode_slice(
     with open_checked(content, name) as cube:
         check_spectrum(cube, name)
         try:
-            return slice_of(cube, sha256_of(content), partial(_layer_of_file, path, version, errors), errors)
+            return slice_of(cube, sha256_of(content), partial(_layer_of_file, name, path, version, errors), errors)
         except InvalidArgumentError as error:
             raise DatasetError(f"{name}: {error}; build it again") from error
 
 
-def _layer_of_file(path: Path, version: FileVersion | None, errors: RestitutionErrors | None, angle: int) -> Nodes:
-    """The nodes (n, m) of an angle, from a version of a file, with the errors between cubes."""
-    with _reading(path, version) as cube:
+def _layer_of_file(
+    name: Path | str, path: Path, version: FileVersion | None, errors: RestitutionErrors | None, angle: int
+) -> Nodes:
+    """The nodes (n, m) of an angle, from a version of a file, with the errors between cubes; messages have `name`."""
+    with _reading(name, path, version) as cube:
         nodes = _layer(cube, angle)
         restitution = restitution_of(cube)
         measured = errors is not None and errors.window(restitution, cube.attrs["content_sha256"]).stop > 0
@@ -200,15 +202,20 @@ def _layer_of_file(path: Path, version: FileVersion | None, errors: RestitutionE
 
 
 @contextmanager
-def _reading(path: Path, version: FileVersion | None) -> Iterator[xr.Dataset]:
+def _reading(name: Path | str, path: Path, version: FileVersion | None) -> Iterator[xr.Dataset]:
     """The data set of a version of a file, open inside of the `with` block."""
     try:
         with open_netcdf(path) as dataset:
             yield dataset
     except (OSError, RuntimeError, ValueError, KeyError) as error:
-        raise DatasetError(f"{path}: cannot be read: {error}") from error
+        raise DatasetError(f"{name}: cannot be read: {_reason(error)}") from error
     if version is None or version_of(path) != version:
-        raise DatasetError(f"{path}: was replaced after it was opened; open it again")
+        raise DatasetError(f"{name}: was replaced after it was opened; open it again")
+
+
+def _reason(error: Exception) -> str:
+    """What a library says of a file, without its path."""
+    return str(error.strerror or "") if isinstance(error, OSError) else str(error)
 
 
 def check_slice(content: bytes, path: Path | str) -> tuple[str, float]:

@@ -17,7 +17,6 @@ from rocking._base.units import Scalar
 from rocking._dimensional.problem import Problem, spread_restitution
 from rocking._dimensional.response import respond
 from rocking._dimensional.rigid_body import RigidBody
-from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import StopFlag
 from rocking.suites.intensity import measure_of
 from rocking.suites.outcomes import FIELDS, check_levels, checked_levels, checked_records, labelled_outcomes
@@ -48,7 +47,7 @@ def body_outcomes(
         raise InvalidArgumentError(
             "measure", measure, f"{', '.join(BODY_MEASURES)} for a body with two different edges"
         )
-    motions = [one for record in checked_records(records) for one in (record, mirrored(record))]
+    motions = [one for record in checked_records(records) for one in (record, record.mirrored())]
     levels = checked_levels(intensity, chosen)
     spread = spread_restitution(body, restitution)
     eta = None if isinstance(spread, str) and spread == "momentum" else np.array(RESTITUTION.number(spread))
@@ -70,12 +69,6 @@ def body_outcomes(
         for name, values in fields.items():
             values[:, :, k] = scale if name == "scale" else getattr(found, name)
     return labelled_outcomes(fields, levels, chosen, motions, _properties(body, eta))
-
-
-def mirrored(record: Record) -> Record:
-    """A record with the other sign of its horizontal acceleration."""
-    name = f"{record.name}, mirrored" if record.name else ""
-    return Record(-record.acceleration, record.time_step, "m/s2", name, record.source, record.remarks, record.vertical)
 
 
 def _properties(body: RigidBody, eta: Array | None) -> dict[str, tuple[NDArray[Any], str, str]]:

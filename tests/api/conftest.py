@@ -17,6 +17,7 @@ from rocking_api.settings import EXAMPLE, Settings
 import rocking
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.cube import describe, scalar_coordinates, write_dataset
+from rocking._datasets.zarr_store import write_pulse_store
 from rocking._spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
 from rocking.suites.margins import with_margins
@@ -75,6 +76,8 @@ def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", titl
             frequency_ratio=np.geomspace(0.5, 12.0, nodes),
         )
         write_dataset(cube, folder / "spectra" / pulse / f"eta-{eta:.2f}.nc")
+    for pulse in {pulse for pulse, _ in cubes} - {"cosine"}:
+        write_pulse_store(sorted((folder / "spectra" / pulse).glob("eta-*.nc")), folder / "zarr" / f"{pulse}.zarr")
     curves = overturning_boundary("sine", restitution=0.85, nodes=101)
     curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))
@@ -192,9 +195,18 @@ def examples_of(description):
                     query[name] = value
             for media_type, body in operation.get("requestBody", {}).get("content", {None: {"example": ""}}).items():
                 if body.get("schema", {}).get("format") != "binary":
-                    assert "example" in body, f"{path}: {media_type} has no example"
-                    content = json.dumps(body["example"]) if media_type == JSON else body["example"]
-                    yield Example(path, operation, method.upper(), url, query, media_type, content)
+                    example = body["example"] if "example" in body else example_of_model(body["schema"], description)
+                    content = json.dumps(example) if media_type == JSON else example
+                    beside = {} if media_type == JSON else query  # JSON holds all parameters
+                    yield Example(path, operation, method.upper(), url, beside, media_type, content)
+
+
+def example_of_model(schema, description):
+    """What a page fills in for a body of a model: the examples of its required fields."""
+    model = description["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
+    pulse = {"acceleration": [0.0, 1.0, 0.0], "name": "triangle"}
+    required = {name: model["properties"][name] for name in model["required"] if name != "pulse"}
+    return {"pulse": pulse} | {name: part["examples"][0] for name, part in required.items()}
 
 
 def texts(query):

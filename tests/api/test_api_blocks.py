@@ -93,7 +93,7 @@ vase,0.2,80,4,500,
 
 
 def test_many_blocks_as_json_and_csv(client):
-    found = client.post("/v1/blocks/response?pulse=sine", json={"blocks": ROWS}).json()
+    found = client.post("/v1/blocks/response", json={"pulse": "sine", "blocks": ROWS}).json()
     for k, row in enumerate(ROWS):
         query = {name: value for name, value in row.items() if name != "name"} | {"pulse": "sine", "method": "solver"}
         single = client.get("/v1/blocks/response", params=query).json()

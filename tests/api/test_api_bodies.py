@@ -5,7 +5,7 @@ import pytest
 import rocking
 from rocking._dimensional.body_kinds import BODIES as KINDS
 from tests.api.conftest import assert_problem, texts
-from tests.sampling import but_long, number, sample
+from tests.sampling import but_long
 
 RECORD = "time [s],acceleration [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
 BLOCK = {"width": 0.4, "height": 1.6}
@@ -40,29 +40,23 @@ def test_parameters_in_the_body_and_in_the_query_have_the_same_answer_and_the_sa
     content, params = ROUTES[route]
     inside = client.post(route, json=content | params)
     assert inside.status_code == (422 if route == "/v1/identify" else 200), inside.text  # three samples are too few
-    for name in sample([*params], number(1, len(params))):
-        rest = {key: value for key, value in params.items() if key != name}
-        query = texts({name: params[name]})
-        assert answer_of(client.post(route, params=query, json=content | rest)) == answer_of(inside)
-        assert answer_of(client.post(route, params=query, json=content | params)) == answer_of(inside)
     if "record" in content:
         assert answer_of(client.post(route, params=texts(params), content=RECORD)) == answer_of(inside)
-
     name = next(name for name in OTHER if name in params)
-    problem = assert_problem(client.post(route, params={name: OTHER[name]}, json=content | params), 422, name)
-    assert problem["allowed"] == "one value"
-    assert problem["value"] == f"{OTHER[name]} in the query and {params[name]} in the body"
+    if route != "/v1/spectrum":  # whose POST has no query
+        problem = assert_problem(client.post(route, params={name: OTHER[name]}, json=content | params), 422, name)
+        assert "JSON body" in problem["allowed"]
     assert_problem(client.post(route, json=content | params | {"colour": 1}), 422, "colour")
     assert_problem(client.post(route, json=content | params | {name: -1.0}), 422, name)
     document = client.get("/openapi.json").json()  # which states the parameters of the body
     operation = document["paths"][route]["post"]
     schema = operation["requestBody"]["content"]["application/json"]["schema"]
-    model = document["components"]["schemas"][schema.get("anyOf", [schema])[0]["$ref"].rpartition("/")[2]]
+    model = document["components"]["schemas"][schema.get("oneOf", [schema])[0]["$ref"].rpartition("/")[2]]
     assert {*content, *params, *(one["name"] for one in operation.get("parameters", []))} <= {*model["properties"]}
 
 
 def test_what_is_missing_in_both_places_is_named(client):
-    assert_problem(client.post("/v1/records/response?width=0.4", json={"record": RECORD}), 422, "height")
+    assert_problem(client.post("/v1/records/response", json={"record": RECORD, "width": 0.4}), 422, "height")
     assert_problem(client.post("/v1/records/response?width=0.4", content=RECORD), 422, "height")
     assert_problem(client.post("/v1/records/response", json=BLOCK), 422, "record")
 
@@ -140,4 +134,4 @@ def test_the_description_has_the_parameters_of_every_kind(client):
     for kind in KINDS.values():
         assert {*kind.fields} <= shared
         assert {*kind.fields} <= {*shown}
-    assert document["components"]["schemas"]["Kind"]["enum"] == [*KINDS]
+    assert shown["kind"]["anyOf"][0]["enum"] == [*KINDS]

@@ -46,6 +46,19 @@ def test_the_response_is_that_of_the_library(client, motion):
         assert beside["pulse"] is None
 
 
+def test_the_mirrored_record_and_forces_of_a_known_mass(client, motion):
+    body = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03)
+    given = {"offset": 0.03, "samples": 40, "mass": 200.0, "mirrored": True}
+    found = post(client, route="history", **given).json()
+    expected = body.history(motion.mirrored(), scale=1.0, samples=40, contact=True)
+    np.testing.assert_allclose(found["rotation"], expected["rotation"])
+    np.testing.assert_allclose(found["contact"]["normal_force"], 200.0 * 9.80665 * expected["normal_reaction"].values)
+    assert found["units"]["contact.normal_force"] == "N"
+    assert found["record"]["name"].endswith(", mirrored")
+    plain = post(client, route="history", samples=40, contact=True).json()
+    assert plain["contact"].get("normal_force") is None
+
+
 def test_remarks_of_the_reader_are_in_the_response(client):
     body = at2("NPTS= 101, DT= .01 SEC", body=rows(count=100)).encode()
     remark = "the file holds 100 samples, its header states 101"

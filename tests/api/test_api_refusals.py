@@ -8,20 +8,15 @@ import gzip
 import json
 import time
 
-import anyio
 import numpy as np
 import pytest
 import xarray as xr
-from rocking_api.http.errors import error_response
+from rocking_api.app import MAX_JSON
 from rocking_api.models import blocks as block_models
 from rocking_api.models.pulses import MAX_BODY, MAX_SAMPLES
-from rocking_api.routers import assess, identify
-from rocking_api.routers.response import MAX_JSON
+from rocking_assessment.service import assess, identify
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
-from rocking._excitation.records.record import UNITS
 from tests.api.conftest import CSV, JSON, NAPA, NC, POINT, QUERIES, assert_problem, client_of, post
-from tests.api.test_api_curves import BODIES as OF_PULSE
 from tests.excitation.record_files import at2
 from tests.sampling import number
 
@@ -74,11 +69,9 @@ def test_all_that_is_missing_or_wrong_is_named_up_to_a_number(client):
         "pulse", "slenderness", "frequency_ratio", "restitution", "colour",
     ]  # fmt: skip
     _, first, missing, above, unknown = problem["errors"]
-    assert first == {"name": "slenderness", "value": "x", "allowed": "a number"}
+    assert first["value"] == "x"
     assert missing == {"name": "frequency_ratio", "allowed": "required in the query"}
-    assert unknown["allowed"].startswith(
-        "one of pulse, alpha_deg, method, absolute_tolerance, slenderness, frequency_ratio"
-    )
+    assert unknown["allowed"] == "see /docs"
     assert above == {"name": "restitution", "value": 3.0, "allowed": "[0, 1] [-]"}
     assert problem["detail"].startswith("5 parameters are missing or wrong: `pulse` = 'saw' is not allowed")
     unknown = {f"unknown_{k}": 1 for k in range(50)}
@@ -92,21 +85,26 @@ def test_it_is_said_whether_a_value_is_expected_in_the_query_or_in_the_body(clie
     body = {"pulse": "sine", "frequency_ratio": 5, "restitution": 0.85}
     assert assert_problem(client.post(url, json=body), 422, "slenderness")["allowed"] == "required in the body"
     unknown = assert_problem(client.post(url, json=body | {"slenderness": 1, "colour": 1}), 422, "colour")
-    assert unknown["detail"].startswith("there is no parameter `colour` in the body; allowed: one of pulse")
+    assert unknown["detail"].startswith("there is no parameter `colour` in the body")
     for missing, allowed in (
         ("pulse", "required in the query"),
         ("frequency_ratio", "required: a column of the body or a parameter in the URL"),
     ):
         query = {name: value for name, value in body.items() if name != missing}
         assert assert_problem(post(client, url, columns, CSV, **query), 422, missing)["allowed"] == allowed
-    unknown = assert_problem(post(client, url, columns, CSV, **body, colour=1), 422, "colour")
-    assert unknown["allowed"].endswith(", in the query")
-    block = {"width": 0.4, "height": 1.6, "peak_acceleration": 4.0}
-    problem = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block], "colour": 1}), 422)
-    assert "`blocks[0].period` is missing in the body" in problem["detail"]
-    assert "there is no parameter `colour` in the body" in problem["detail"]
-    pulse = assert_problem(client.post("/v1/blocks/response", json={"blocks": [block | {"period": 0.5}]}), 422, "pulse")
-    assert pulse["allowed"] == "required in the query, or in a JSON body"
+    both = client.post(f"{url}?method=solver", json=body | {"slenderness": 1})
+    assert "JSON body" in assert_problem(both, 422, "method")["allowed"]
+
+
+def test_long_lists_of_what_is_allowed_do_not_break_off(client):
+    allowed = assert_problem(
+        client.get("/v1/blocks/response", params=QUERIES["/v1/blocks/response"] | {"inertia": 3}), 422
+    )
+    assert len(allowed["allowed"]) > 400
+    assert allowed["allowed"].endswith(")")
+    assert allowed["detail"].endswith(allowed["allowed"])
+    long = assert_problem(client.get("/v1/response", params=POINT | {"pulse": "x" * 5000}), 422, "pulse")
+    assert len(long["value"]) < 500
 
 
 LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with its unit, such as 0.5 s, 500 ms"
@@ -114,7 +112,7 @@ LENGTH, TIME = "a number with its unit, such as 0.3 m, 30 cm", "a number with it
 
 def test_wrong_numbers_are_named_with_units_in_json_in_tables_and_of_records(client):
     row = {"width": 0.4, "height": "tall", "peak_acceleration": 4.0, "period": "short"}
-    response = client.post("/v1/blocks/response?pulse=sine", json={"blocks": [row, row | {"height": 1.6}]})
+    response = client.post("/v1/blocks/response", json={"pulse": "sine", "blocks": [row, row | {"height": 1.6}]})
     assert assert_problem(response, 422, "blocks[0].height")["errors"] == [
         {"name": "blocks[0].height", "value": "tall", "allowed": LENGTH},
         {"name": "blocks[0].period", "value": "short", "allowed": TIME},
@@ -129,14 +127,9 @@ def test_wrong_numbers_are_named_with_units_in_json_in_tables_and_of_records(cli
     ]
     wrong = SIZE | {"height": "x", "scale": 0.0, "unit": "feet", "baseline_order": "y"}
     problem = assert_problem(client.post("/v1/records/response", params=wrong, content=NAPA.read_bytes()), 422)
-    assert {one["name"]: one["allowed"] for one in problem["errors"]} == {
-        "height": LENGTH,
-        "baseline_order": "an integer",
-        "scale": "[1e-06, 1e+06] [-]",
-        "unit": "one of " + " or".join(", ".join(map(repr, UNITS)).rsplit(",", 1)),
-    }
-    step = client.post("/v1/records/response", params=SIZE | {"time_step": "x"}, content=NAPA.read_bytes())
-    assert assert_problem(step, 422, "time_step")["allowed"] == "a number [s]"
+    allowed = {one["name"]: one["allowed"] for one in problem["errors"]}
+    assert allowed.keys() == {"height", "scale", "unit", "baseline_order"}
+    assert (allowed["height"], allowed["baseline_order"]) == (LENGTH, "an integer")
 
 
 RECORD = "time [s],acceleration [g]\n" + "".join(f"{0.05 * k:.2f},{0.3 * ((-1) ** (k // 5)):.1f}\n" for k in range(21))
@@ -144,34 +137,32 @@ TABLE = "name,width [m],height [cm],peak_acceleration [m/s2],period [ms],restitu
 NESTED = "[" * 100_000 + "]" * 100_000
 GROUPS = '{"pulse":"sine","restitution":0.9,"frequency_ratio":5,"slenderness":%s}'
 NO_JSON = [
-    *("", "{", "\x00", "{" * 100_000, '{"pulse":' * 50_000, NESTED, GROUPS % NESTED, '{"pulse": ["\\x"]}'),
+    *("{", "\x00", "{" * 100_000, '{"pulse":' * 50_000, NESTED, GROUPS % NESTED, '{"pulse": ["\\x"]}'),
     *(GROUPS % f"[{entries}]" for entries in ("1,", ",1", "1,,2", "1 2", "1,true,[", "1,}", "nope")),
-    *(GROUPS % f"[{entries}]" for entries in ("1," * 500_000, "null," * 9_000)),
-    GROUPS % ("9" * 100_000),
-    '{"pulse":"\\ud800"' + GROUPS[15:] % 1,
 ]
 NO_GROUPS = [
     *("null", "[]", "[1, 2]", '"text"', GROUPS.replace("0.9", '0.9,"x":1') % 1),
     *(GROUPS % one for one in ('{"0":1}', '"0.5x"', "[null]", "[[1]]", "[NaN]", "1e999", "-1")),
-    *(GROUPS % one for one in ("[1,null]", '[1,"2x"]', '[1,2],"restitution":[1,2,3]', '1,"slenderness":2')),
+    *(GROUPS % one for one in ("[1,null]", '[1,"2x"]', '[1,2],"restitution":[1,2,3]')),
     '{"pulse":["sine"]' + GROUPS[15:] % 1,
     GROUPS.replace("0.9", '0.9,"' + "x" * 100_000 + '":1') % 1,
 ]
 
 
 def test_bodies_that_are_no_json_or_no_groups_are_refused_in_few_words(client):
-    for media_type in (JSON, CSV, NC):
-        for status, bodies in ((400, NO_JSON), (422, NO_GROUPS)):
-            for body in bodies:
-                response = post(client, "/v1/response", body, media_type)
-                assert_problem(response, status if media_type == JSON else 422)
-                assert len(response.content) < 2000
+    for status, bodies in ((400, NO_JSON), (422, NO_GROUPS)):
+        for body in bodies:
+            response = post(client, "/v1/response", body)
+            assert_problem(response, status)
+            assert len(response.content) < 2000
+    for media_type in (CSV, NC):
+        assert_problem(post(client, "/v1/response", "{", media_type, pulse="sine"), 422)
     assert_problem(post(client, "/v1/response", b"\xff\xfe\x00"), 400)
-    for body in ("", "[" * 100_000, "[" + "9" * 5000, r'[{"\ud800": 1}]', r'[{"name": "\ud800", "width": 0.4}]'):
-        assert "line 1 column" in assert_problem(post(client, ASSESS, body), 400, "body")["value"]
+    half = assert_problem(post(client, "/v1/response", '{"pulse":"\\ud800"' + GROUPS[15:] % 1), 422, "pulse")
+    assert half["value"] == r"\ud800"
 
 
-BATCH, BLOCKS, RESPONSE = "/v1/response", "/v1/blocks/response?pulse=sine", "/v1/records/response?width=0.4&height=1.6"
+BATCH, BLOCKS, RESPONSE = "/v1/response", "/v1/blocks/response", "/v1/records/response?width=0.4&height=1.6"
 FIVE = BATCH + "?pulse=sine"
 OBJECTS = [{"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}]
 SHORT = {"acceleration": [1.0, 0.0], "time_step": 0.1}
@@ -183,7 +174,6 @@ def json_of(**body):
 
 
 BODIES = [
-    (BATCH + "?eta=0.4", GROUPS % 1, JSON, "eta"),
     (FIVE, "slenderness,frequency_ratio\n0.5,5\n", CSV, "restitution"),
     *((FIVE, body, CSV, "body") for body in ("slenderness,mass\n0.5,5\n", "slenderness\n\xff\n")),
     *((FIVE, f"slenderness,frequency_ratio,restitution\n0.5,5{rest}\n", CSV, "body") for rest in ("", ",x")),
@@ -192,16 +182,20 @@ BODIES = [
     (FIVE + "&eta=0.4", "slenderness\n0.5\n", CSV, "eta"),
     *((FIVE, body, CSV, "lines of at most") for body in ("slenderness," * 200, "slenderness\n" + "1" * 2000)),
     (FIVE, "slenderness\n" + "0.5\n" * 10_000 + "x\n", CSV, "from line 10002"),
-    *((BATCH, GROUPS % f'1,"slenderness":{last}', JSON, "two values, the second in line 1") for last in ("[2]", 2)),
     *((FIVE, body, NC, "body") for body in ("\x89HDF\r\n", "CDF\x01\x00\x00")),
-    (BLOCKS, json_of(blocks=[]), JSON, "blocks"),
-    (BLOCKS, json_of(blocks=[{"width": 2, "peak_acceleration": 4, "period": 1}]), JSON, "blocks[0].height"),
-    (BLOCKS, json_of(blocks=[{"width": 2}]), JSON, "blocks[0].peak_acceleration"),
-    (BLOCKS, TABLE.replace("[cm]", ""), CSV, "blocks, row 2, height"),
-    (BLOCKS, TABLE.replace("[cm]", "[kg]"), CSV, "blocks, header"),
-    (BLOCKS, TABLE.replace("80", "tall"), CSV, "blocks, row 2, height"),
-    (BLOCKS, TABLE.replace("0.2,", "1e9,"), CSV, "blocks, row 2, width"),
-    *((RESPONSE + "&unit=g", body, CSV, "record") for body in ("", "\0\1\2", "<html>", "{}", "1\n2\n", "a,b\n1,2\n")),
+    (BLOCKS, json_of(pulse="sine", blocks=[]), JSON, "blocks"),
+    (
+        BLOCKS,
+        json_of(pulse="sine", blocks=[{"width": 2, "peak_acceleration": 4, "period": 1}]),
+        JSON,
+        "blocks[0].height",
+    ),
+    (BLOCKS, json_of(pulse="sine", blocks=[{"width": 2}]), JSON, "blocks[0].peak_acceleration"),
+    (BLOCKS + "?pulse=sine", TABLE.replace("[cm]", ""), CSV, "blocks, row 2, height"),
+    (BLOCKS + "?pulse=sine", TABLE.replace("[cm]", "[kg]"), CSV, "blocks, header"),
+    (BLOCKS + "?pulse=sine", TABLE.replace("80", "tall"), CSV, "blocks, row 2, height"),
+    (BLOCKS + "?pulse=sine", TABLE.replace("0.2,", "1e9,"), CSV, "blocks, row 2, width"),
+    *((RESPONSE + "&unit=g", body, CSV, "record") for body in ("\0\1\2", "<html>", "{}", "1\n2\n", "a,b\n1,2\n")),
     (RESPONSE, at2("NPTS= 10, DT= .01", body="0.1 0.2\n"), CSV, "record"),
     (IDENTIFY, "{}", JSON, "time"),
     (IDENTIFY, json_of(time=[0, 1], rotation=[0, 1], extra=1), JSON, "extra"),
@@ -209,17 +203,21 @@ BODIES = [
     (IDENTIFY, json_of(time=[20, *range(19)], rotation=[0.1] * 20), JSON, "time"),
     (IDENTIFY, json_of(time=[0, 1e308, 1.7e308], rotation=[1e-300, 1e300, 1e-308]), JSON, "time"),
     (IDENTIFY, json_of(time=[0] * (identify.MAX_SAMPLES + 1), rotation=[]), JSON, "time"),
-    (IDENTIFY, json_of(time=[None] * 100_000, rotation=[]), JSON, "time"),
     *((IDENTIFY, body, CSV, None) for body in ("", "time\n1\n2\n", "a,b,c\n1,2,3\n", "\x00" * 1000)),
     *((IDENTIFY, body, CSV, None) for body in ("0,nan\n1,inf\n", "1,2\n" * 60_000)),
     *((ASSESS, body, JSON, "objects") for body in ("{}", "[1]", "[]", "[{}]", '[{"name": [1], "width": 1}]')),
-    *((ASSESS, body, CSV, "objects") for body in ("", "a,b\n1,2\n", "name,width,height\nbust,1,2\n")),
+    *((ASSESS, body, CSV, "objects") for body in ("a,b\n1,2\n", "name,width,height\nbust,1,2\n")),
     *((ASSESS, body, CSV, "objects") for body in ("name,width [m],height [m]\n", "v" * 140_000, '"' * 999, "\0,\0\n")),
-    (ASSESS, json_of(objects=OBJECTS, records=[SHORT], hazard={}), JSON, "hazard"),
-    (ASSESS, json_of(objects=OBJECTS, records=[SHORT | {"acceleration": []}]), JSON, "acceleration"),
-    (ASSESS, json_of(objects=OBJECTS, records=[SHORT | {"unit": "ly"}]), JSON, "unit"),
-    (ASSESS, json_of(objects=OBJECTS, records=3), JSON, "records"),
-    (ASSESS, json_of(objects=OBJECTS, mesh="/etc/passwd"), JSON, "mesh"),
+    ("/v1/assess", json_of(objects=OBJECTS, sensitivity=False, records=[SHORT], hazard={}), JSON, "hazard"),
+    (
+        "/v1/assess",
+        json_of(objects=OBJECTS, sensitivity=False, records=[SHORT | {"acceleration": []}]),
+        JSON,
+        "acceleration",
+    ),
+    ("/v1/assess", json_of(objects=OBJECTS, sensitivity=False, records=[SHORT | {"unit": "ly"}]), JSON, "unit"),
+    ("/v1/assess", json_of(objects=OBJECTS, sensitivity=False, records=3), JSON, "records"),
+    ("/v1/assess", json_of(objects=OBJECTS, sensitivity=False, mesh="/etc/passwd"), JSON, "mesh"),
     (ASSESS, json_of(objects=[{"path": "/etc/passwd"}]), JSON, "objects"),
 ]
 """Address, body, its type, and what is named: a parameter, perhaps within another one, or a reason."""
@@ -263,14 +261,17 @@ def test_a_body_that_is_not_csv_is_refused_with_line_and_reason(client):
         (TABLE.replace("vase", '"vase'), 2, "unexpected end of data"),
         (TABLE.replace("name", "n" * 131_073), 1, "field larger than field limit"),
     ):
-        problem = assert_problem(post(client, BLOCKS, body, CSV), 422, f"blocks, line {line}")
+        problem = assert_problem(post(client, BLOCKS, body, CSV, pulse="sine"), 422, f"blocks, line {line}")
         assert reason in problem["value"]
 
 
 @pytest.mark.parametrize("route", ["/v1/response", "/v1/assess", "/v1/spectrum", "/v1/records/response", IDENTIFY])
 def test_types_and_codings_that_are_not_read_are_refused(client, route):
     if "records" not in route:
-        assert_problem(post(client, route, "<x/>", "application/xml"), 415, "Content-Type")
+        status = 422 if route == "/v1/spectrum" else 415  # a route with JSON alone reads nothing else
+        assert_problem(
+            post(client, route, "<x/>", "application/xml", **({"pulse": "sine"} if route == BATCH else {})), status
+        )
     bomb = gzip.compress(b" " * number(1_000_000, 50_000_000))
     for coding in ("gzip", "deflate", "br", "gzip, identity"):
         headers = {"content-type": JSON, "content-encoding": coding}
@@ -312,24 +313,15 @@ def test_names_lead_to_nothing_but_data_sets_and_static_files(client):
         for suffix in ("", ".nc", ".zarr/.zmetadata", ".zarr/../../../x"):
             assert_problem(client.get(f"/v1/datasets/{name}{suffix}"), 404)
     for key in ("../../eta-0.85.nc", "..%2f..%2fx", "%00", "a" * 5000, ".zmetadata/../x", "", "none/0.0"):
-        assert client.get(f"/v1/datasets/spectra/sine/eta-0.85.zarr/{key}").status_code == 404
+        assert client.get(f"/v1/datasets/spectra/sine.zarr/{key}").status_code == 404
     for path in ("/static/../app.py", "/static/..%2fapp.py", "/static/%2e%2e/app.py", "/static/%00", "/v2/response"):
         assert client.get(path).status_code == 404
     for name in ("%2e%2e", "..%2f..", "%00", "a" * 5000, "demonstration%2ffragility"):
         assert client.get(f"/v1/suites/{name}").status_code == 404
     assert_problem(client.get("/v1/suites/none"), 404, "name")
-    assert_problem(client.get("/v1/suites/none", params={"format": "nrml"}), 404, "name")
+    assert_problem(client.get("/v1/suites/none/nrml"), 404, "name")
     assert_problem(client.get("/v1/datasets/spectra/none/subset"), 404, "name")
     assert_problem(client.get("/v1/datasets/overturning/sine/eta-0.85/subset"), 422, "name")  # no cube
-
-
-def test_half_of_a_pair_of_escapes_is_repeated_as_text():
-    error = InvalidArgumentError("a \ud800", "b \udc00", "c \udfff")
-    for one in (error, SeveralArgumentsError([error, InvalidArgumentError("d", "e", "f")])):
-        problem = json.loads(anyio.run(error_response, None, one).body)
-        assert [problem[name] for name in ("parameter", "value", "allowed")] == [r"a \ud800", r"b \udc00", r"c \udfff"]
-        assert r"\ud800" in problem["detail"]
-    assert len(problem["errors"]) == 2
 
 
 def test_sizes_are_limited(results, monkeypatch):
@@ -347,6 +339,7 @@ def test_sizes_are_limited(results, monkeypatch):
         assert_problem(response, 413, "points")
         assert_problem(post(client, FIVE, bytes(grid.to_netcdf(engine="scipy")), NC, restitution=1), 413, "points")
         assert_problem(post(client, "/v1/response", " " * 2001), 413, "body")
+        assert_problem(post(client, "/v1/spectrum", iter([b" " * 300_000] * 2)), 413, "body")
         assert_problem(post(client, FIVE, iter([b"slenderness\n", *[b"0.5\n"] * 1000]), CSV), 413, "body")
         assert "1000 bytes" in assert_problem(post(client, RESPONSE, NAPA.read_bytes(), CSV), 413, "body")["allowed"]
         assert_problem(client.get(SUBSET), 413, "points")
@@ -359,10 +352,10 @@ def test_sizes_are_limited(results, monkeypatch):
             post(client, RESPONSE.replace("response", "history"), RECORD, CSV, samples=10**6), 413, "samples"
         )
         for count, status in ((2, 200), (3, 413)):
-            assert client.post(BLOCKS, json={"blocks": [row] * count}).status_code == status
+            assert client.post(BLOCKS, json={"pulse": "sine", "blocks": [row] * count}).status_code == status
             lines = [TABLE.splitlines()[0], *TABLE.splitlines()[1:] * count]
             for end in ("\n", "\r\n", "\r"):
-                response = post(client, BLOCKS, end.join([*lines, ""]), CSV)
+                response = post(client, BLOCKS, end.join([*lines, ""]), CSV, pulse="sine")
                 assert response.status_code == status
             objects = client.post("/v1/assess?pga=3&pgv=0.3&shapes=sine&sensitivity=false", json=OBJECTS * count)
             assert objects.status_code == status
@@ -374,30 +367,26 @@ def test_sizes_are_limited(results, monkeypatch):
 
 
 def test_large_bodies_are_limited_by_route(client, monkeypatch):
-    whole = GROUPS % ("[1.5" + ", 1.5" * 200_000 + "]")
-    body = whole + " " * (MAX_JSON - len(whole))
-    assert post(client, BATCH, body).json()["query"]["points"] == 200_001
-    problem = assert_problem(post(client, BATCH, body + " "), 413, "body")
-    assert problem["allowed"] == f"at most {MAX_JSON} bytes in JSON; send larger tables as CSV or netCDF"
+    assert "2097152" in assert_problem(post(client, BATCH, " " * (MAX_JSON + 1)), 413, "body")["allowed"]
     assert_problem(post(client, ASSESS, " " * (assess.MAX_BODY + 1), CSV), 413, "body")
     assert_problem(post(client, IDENTIFY, " " * (identify.MAX_BODY + 1)), 413, "body")
     assert_problem(post(client, "/v1/map", "0" * (MAX_BODY + 1)), 413, "body")
-    monkeypatch.setattr("rocking_assessment._objects.site.MOST_SAMPLES", 3000)
-    assert_problem(client.post(ASSESS + "&floor_periods=1", json=OBJECTS), 422, "floor_periods")
+    table = "slenderness\n" + "1.5\n" * 100_001
+    problem = post(client, BATCH, table, CSV, pulse="sine", frequency_ratio=5, restitution=0.9, format="json")
+    assert "csv or nc" in assert_problem(problem, 413, "points")["allowed"]
     monkeypatch.setattr(assess, "MAX_PAIRS", 0)
     assert_problem(client.post(ASSESS, json=OBJECTS), 413, "objects")
 
 
 PULSES = [
     ({"acceleration": [0, 1, None]}, "pulse.acceleration[2]"),
-    ({"acceleration": [0, 1e400, 0]}, "pulse.acceleration[1]"),
+    ({"acceleration": [0, 1e400, 0]}, "pulse"),
     ({"acceleration": [0, [1], 0]}, "pulse.acceleration[1]"),
-    ({"acceleration": [0, 0]}, "pulse.acceleration"),
+    ({"acceleration": [0, 0]}, "pulse"),
     ({"acceleration": [1.0] * (MAX_SAMPLES + 1)}, "pulse.acceleration"),
     ({"acceleration": "0,1,0"}, "pulse.acceleration"),
-    ({"acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulse.time[2]"),
-    ({"acceleration": [0, 1, 0], "time": [0, 1e-300, 1e300]}, "pulse.time"),
-    ({"acceleration": [0, 1, 0], "period": -1}, "pulse.period"),
+    ({"acceleration": [0, 1, 0], "time": [0, 2, 1]}, "pulse"),
+    ({"acceleration": [0, 1, 0], "period": -1}, "pulse"),
     ({"acceleration": [0, 1, 0], "name": ""}, "pulse.name"),
     ({"acceleration": [0, 1, 0], "dt": 1}, "pulse.dt"),
     ({}, "pulse.acceleration"),
@@ -406,15 +395,17 @@ PULSES = [
 ]
 
 
-@pytest.mark.parametrize("route", OF_PULSE)
+@pytest.mark.parametrize("route", ["/v1/map", "/v1/response"])
 def test_an_error_of_the_samples_of_a_pulse_names_the_element(client, route):
+    body = {"/v1/map": {"restitution": 0.9}, "/v1/response": json.loads(GROUPS % 1)}[route]
     for pulse, name in PULSES:
-        body = json.dumps(OF_PULSE[route] | {"pulse": pulse})
-        problem = assert_problem(client.post(route, content=body), 422, name)
-        assert len(json.dumps(problem)) < 2000
+        response = post(client, route, json.dumps(body | {"pulse": pulse}))
+        problem = assert_problem(response, 422)
+        assert problem["parameter"].startswith(name)
+        assert len(response.content) < 3000
 
 
-def test_hostile_samples_of_a_pulse_are_refused_soon(client):
+def test_hostile_json_is_refused_soon(client):
     few = {"restitution": 0.85, "columns": 4, "rows": 3}
     numbers = json.dumps(few | {"pulse": {"acceleration": [1.2345678901234567] * MAX_SAMPLES}})
     began = time.process_time()
@@ -426,6 +417,6 @@ def test_hostile_samples_of_a_pulse_are_refused_soon(client):
         '{"pulse": {"acceleration": [' + "1e999," * 70_000 + "1]}}",
         '{"a": "' + "\\u0000" * 60_000 + '"}',
     ):
-        assert client.post("/v1/map", content=body).status_code in (400, 422)
-    assert client.post("/v1/map", content=numbers).status_code == 200
+        assert post(client, "/v1/map", body).status_code in (400, 422)
+    assert post(client, "/v1/map", numbers).status_code == 200
     assert time.process_time() - began < 10.0

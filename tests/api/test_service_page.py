@@ -53,18 +53,16 @@ def test_every_route_and_every_setting_with_its_default_is_documented(client):
 def test_pages_of_the_built_guide(results, tmp_path):
     folder = tmp_path / "docs"
     client = client_of(results, guide=folder)
-    assert "make docs" in assert_problem(client.get("/guide/"), 404)["detail"]
-    page = client.get("/guide/", headers={"accept": "text/html"}).text
-    assert "<code>make docs</code>" in page
-    assert "`" not in page
-    assert '"/guide/"' not in client.get("/").text  # a menu leads only where something is
+    assert '"/guide/"' in client.get("/").text  # the menu leads somewhere in every installation
+    first_steps = client.get("/guide/").text
+    assert "<code>make docs</code>" in first_steps
+    assert "rocking response --pulse sine" in first_steps
     (folder / "howto").mkdir(parents=True)
     (folder / "index.html").write_text("<title>rocking</title>")
     (folder / "howto" / "block.html").write_text("<title>My block</title>")
     (tmp_path / "secret").write_text("not published")
     assert '"/guide/"' in client.get("/").text
-    home = client.get("/guide")
-    assert str(home.url).endswith("/guide/")
+    home = client.get("/guide/")
     assert "<title>rocking</title>" in home.text
     assert "default-src 'self'" in home.headers["content-security-policy"]
     assert "<title>My block</title>" in client.get("/guide/howto/block.html").text

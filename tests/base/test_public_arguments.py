@@ -1,7 +1,7 @@
 """Every number that a public function takes: what is no number, and what is out of its range, is refused by its name.
 
-The calls are made from the signatures, with the ordinary values of `tests/api/extreme_numbers.py`; the ranges are those
-that `rocking._base.quantities` declares.
+The calls are made from the signatures, with the ordinary values of `tests/base/extreme_numbers.py`; the ranges are
+those that `rocking._base.quantities` declares.
 """
 
 import inspect
@@ -23,7 +23,7 @@ from rocking._base.quantity import Quantity
 from rocking._base.units import Scalar
 from rocking._datasets.cube import write_dataset
 from rocking._spectra.cubes import spectrum
-from tests.api.extreme_numbers import BLOCK, RECORD, ordinary_arguments
+from tests.base.extreme_numbers import BLOCK, RECORD, ordinary_arguments
 from tests.lookup_grid import GRID
 from tests.sampling import sample
 

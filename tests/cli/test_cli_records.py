@@ -292,3 +292,32 @@ def test_the_motion_of_a_floor_is_read_again(tmp_path):
 )
 def test_errors_name_the_option(said, options):
     assert said in refused("floor", *options)
+
+
+def test_the_motion_under_a_record_as_numbers_with_forces_of_a_known_mass():
+    block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
+    given = ("record", MOTION, *SIZES, "--history", "--samples=50")
+    expected = block.history(motion, scale=1.0, samples=50, contact=True)
+    found = json.loads(run(*given, "--mass=200kg", "--format=json"))
+    np.testing.assert_array_equal(found["time"], expected["time"])
+    np.testing.assert_allclose(found["rotation_deg"], np.degrees(expected["rotation"]))
+    np.testing.assert_allclose(found["normal_force"], 200.0 * block.gravity * expected["normal_reaction"])
+    mirrored = json.loads(run(*given, "--mirrored", "--format=json"))
+    np.testing.assert_allclose(mirrored["rotation_deg"], np.negative(found["rotation_deg"]), atol=1e-12)
+    assert "normal_force" not in mirrored
+    (first, *_) = read_csv(run(*given, "--mass=200kg", "--offset=3cm", "--format=csv"))
+    assert {"edge", "normal_reaction", "horizontal_force", "vertical_acceleration"} <= first.keys()
+
+
+@pytest.mark.parametrize(
+    ("options", "option"), [(["--contact"], "--contact"), (["--mass=3kg"], "--mass"), (["--history", "--fit"], "--fit")]
+)
+def test_options_of_the_motion_belong_to_it(options, option):
+    assert option in refused("record", MOTION, *SIZES, *options)
+
+
+def test_the_mirrored_record_has_thresholds_of_its_own():
+    body, motion = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03), rocking.read_record(MOTION)
+    found = json.loads(run("record", MOTION, *SIZES, "--offset=3cm", "--mirrored", "--format=json"))
+    assert found["threshold_scale"] == body.thresholds(motion.mirrored()).value.tolist()
+    assert found["record"].endswith(", mirrored")

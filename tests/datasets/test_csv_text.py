@@ -33,7 +33,23 @@ def test_names_are_read_back_as_they_were_written():
     assert [tuple(row) for row in rows[1:]] == [(name, name) for name in NAMES]
 
 
-@pytest.mark.parametrize("name", ["=1+1", "+1", "-2+3", "@SUM(A1)", "\t=1", "\r=1", '=HYPERLINK("x", "y")', "-sine"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "=1+1",
+        "+1",
+        "-2+3",
+        "@SUM(A1)",
+        "\r=1",
+        "\n=1",
+        "＝1+1",
+        "＋1",
+        "－1",
+        "＠SUM(A1)",
+        '=HYPERLINK("x", "y")',
+        "-sine",
+    ],
+)
 def test_text_that_starts_a_formula_has_an_apostrophe(name):
     rows = list(csv.reader(io.StringIO(csv_text({name: [name]}), newline=""), strict=True))
     assert rows == [[f"'{name}"], [f"'{name}"]]
@@ -43,3 +59,11 @@ def test_numbers_are_not_taken_for_formulas():
     assert csv_text({"a": [-1.5, -3, -0.0, 1e-300], "b": ["1", "x", "y", "z"]}) == (
         "a,b\n-1.5,1\n-3,x\n-0.0,y\n1e-300,z\n"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "cell"), [("x;=1+1;y", "x;'=1+1;y"), ("x\t=1+1", "x\t'=1+1"), ("\t=1", "'\t'=1"), ("a;-2;b", "a;-2;b")]
+)
+def test_a_formula_behind_a_delimiter_of_another_program_has_an_apostrophe(name, cell):
+    rows = list(csv.reader(io.StringIO(csv_text({"name": [name]}), newline=""), strict=True))
+    assert rows[1] == [cell]

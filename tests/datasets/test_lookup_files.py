@@ -142,8 +142,32 @@ def test_an_angle_is_read_when_it_is_needed_and_from_the_version_that_was_opened
     np.testing.assert_array_equal(again.peak_rotation, between.peak_rotation)
     cube.response(**POINT, alpha=0.2)
     replaced(path, path.read_bytes())
+    assert not cube.response(**POINT, alpha=0.5).from_cube  # by the solver
     with pytest.raises(DatasetError, match="was replaced after it was opened"):
-        cube.response(**POINT, alpha=0.5)
+        cube.response(**POINT, alpha=0.5, method="cube")
+
+
+def test_a_cube_that_is_replaced_between_two_angles_is_named_without_its_folder(cubes, path):
+    angles = np.linspace(0.1, 0.5, 6)
+    axes = {"slenderness": np.linspace(0.3, 0.8, 9), "frequency_ratio": np.linspace(5.0, 9.0, 8), "alpha": angles}
+    write_dataset(spectrum("sine", restitution=0.85, **axes), path, chunks={"alpha": 1})
+    opened = cubes.cube("sine", "cube")
+    points = Points.of(*POINT.values(), 0.1)[0]
+    opened.evaluate(points, 1e-4, "cube")
+    path.unlink()
+    with pytest.raises(DatasetError) as error:
+        opened.evaluate(Points.of(*POINT.values(), 0.5)[0], 1e-4, "cube")
+    assert NAME in str(error.value)
+    assert str(path.parents[2]) not in str(error.value)
+
+
+def test_a_sparse_file_of_any_size_is_refused_before_it_is_read(cubes, path):
+    with path.open("wb") as file:
+        file.truncate(50 * 1024**3)
+    assert "has 53687091200 bytes" in cubes.problems()[NAME]
+    assert str(cubes.response("sine", **POINT)[0].source) == "solver"
+    with pytest.raises(DatasetError, match="a data set has at most"):
+        rocking.open_cube(path)
 
 
 def loop(path, _):

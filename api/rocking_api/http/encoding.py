@@ -1,4 +1,4 @@
-"""Responses as JSON, CSV or netCDF-3.
+"""Responses as CSV or netCDF-3.
 
 netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and request bodies are parsed by plain Python
 (scipy), so that untrusted bytes do not reach the HDF5 library.
@@ -6,24 +6,28 @@ netCDF-3 rather than netCDF-4: xarray and every netCDF library read it, and requ
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 import xarray as xr
-from fastapi import Request, Response
+from fastapi import Body, Request, Response
 from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
-from pydantic_core import to_json
+from pydantic import BaseModel, Discriminator, Tag
 
 from rocking._base.arrays import Array
+from rocking._base.errors import InvalidArgumentError
 from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
 from rocking._datasets.cube import MODEL_RESULT, VARIABLES
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND, IMPACTS
 from rocking_api.execution.evaluation import FIELDS, BatchResult
-from rocking_api.models.answer import Answer, url_of
+from rocking_api.http.errors import UnsupportedBodyError
+
+M = TypeVar("M")
+P = TypeVar("P", bound=BaseModel)
+Q = TypeVar("Q", bound=BaseModel)
 
 Form = Literal["json", "csv", "nc"]
 
@@ -33,65 +37,46 @@ MEDIA_TYPES: dict[Form, str] = {
     "nc": "application/x-netcdf",
 }
 
-TABLE_FORMS: tuple[Form, ...] = ("json", "csv")
-"""Formats of a table in a body, and of its response."""
-
 CONTENT: dict[int | str, dict[str, Any]] = {200: {"content": {MEDIA_TYPES["csv"]: {}, MEDIA_TYPES["nc"]: {}}}}
 """For the OpenAPI description: the other formats of a response."""
 
+JsonOrFile = Annotated[
+    Annotated[M, Tag("<json>")] | Annotated[bytes, Tag("<file>")],
+    Discriminator(lambda value: "<file>" if isinstance(value, bytes) else "<json>"),
+    Body(),
+]
+"""A body that is a JSON object of some model, or a file of another media type as it is."""
 
 Column = Callable[[slice], list[Any]]
 """The values of a column at some points, of which no list is made before they are sent."""
 
-
 ROWS = 5_000  # points of a batch that are written and sent at once [-]: up to half a megabyte, some milliseconds
-_WEIGHT = re.compile(r"0(\.[0-9]{0,3})?|1(\.0{0,3})?")  # RFC 9110, 12.4.2; another is ignored
 
 
-def negotiated_form(
-    request: Request,
-    requested: Form | None,
-    offered: Sequence[Form] = ("json", "csv", "nc"),
-    default: Form | None = None,
-) -> Form:
-    """Format of the response.
-
-    As requested, else the one that the Accept header prefers, of equal ones the first that it names; else the default,
-    which is the first that is offered unless stated. text/html means the default.
-    """
-    if requested is not None:
-        return requested
-    request.state.negotiated = True  # `ParamsRoute` adds the header Vary
-    default = default or offered[0]
-    quality = _accepted(request.headers.get("accept", ""))
-    named = list(quality)
-    if quality.get("text/html", 0.0) > 0.0:
-        named.insert(0, MEDIA_TYPES[default])
-        quality[named[0]] = quality["text/html"]
-
-    def rank(form: Form) -> tuple[float, bool, int]:
-        media = MEDIA_TYPES[form]
-        ranges = (media, media.partition("/")[0] + "/*", "*/*")  # the most specific holds (RFC 9110, 12.5.1)
-        q = next((quality[one] for one in ranges if one in quality), 0.0)
-        return q, media in quality, -named.index(media) if media in quality else 0
-
-    return max((default, *offered), key=rank)
+def body_form(request: Request, accepted: Sequence[Form]) -> Form:
+    """Format of the body by its Content-Type, which has to be stated."""
+    declared = request.headers.get("content-type", "").split(";")[0].strip().lower()
+    for form in accepted:
+        if declared in (MEDIA_TYPES[form], "application/netcdf" if form == "nc" else MEDIA_TYPES[form]):
+            return form
+    types = ", ".join(MEDIA_TYPES[form] for form in accepted)
+    raise UnsupportedBodyError("Content-Type", declared, f"one of {types}")
 
 
-def _accepted(header: str) -> dict[str, float]:
-    """The quality of each media range of an Accept header, -1 if it is excluded (q=0)."""
-    found = {}
-    for part in header.lower().split(","):
-        media, *parameters = (text.strip() for text in part.split(";"))
-        weight = next((text[2:] for text in parameters if text.startswith("q=")), "")
-        found[media] = (float(weight) if _WEIGHT.fullmatch(weight) else 1.0) or -1.0
-    return found
+def stated(body: P | bytes, query: Q) -> P | Q:
+    """The parameters of a request: those of the query beside a file, those of a JSON body otherwise."""
+    if isinstance(body, bytes):
+        return query
+    for name in query.model_fields_set:
+        raise InvalidArgumentError(name, getattr(query, name), "in the JSON body, which holds all parameters")
+    return body
 
 
-def json_response(answer: Answer[Any], request: Request, headers: Mapping[str, str] | None = None) -> Response:
-    """An answer to a request as JSON, without validation."""
-    answer.url = url_of(request)
-    return Response(answer.model_dump_json(), headers=headers, media_type=MEDIA_TYPES["json"])
+def body_of(json_example: Any, texts: Mapping[str, str], description: str = "") -> dict[str, Any]:
+    """What the OpenAPI description of a route adds to its body: an example of JSON, and of texts by media type."""
+    content: dict[str, Any] = {MEDIA_TYPES["json"]: {"example": json_example}}
+    content |= {media: {"schema": {"type": "string"}, "example": text} for media, text in texts.items()}
+    return {"requestBody": {"content": content, **({"description": description} if description else {})}}
 
 
 def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
@@ -99,9 +84,9 @@ def csv_response(columns: Mapping[str, list[Any]], name: str) -> Response:
     return text_response(csv_text(columns), name)
 
 
-def text_response(text: str, name: str, form: Form = "csv", headers: Mapping[str, str] | None = None) -> Response:
+def text_response(text: str, name: str, form: Form = "csv") -> Response:
     """Return the text of `csv_text` as a file."""
-    return Response(text, media_type=MEDIA_TYPES[form], headers={**_file(f"{name}.{form}"), **(headers or {})})
+    return Response(text, media_type=MEDIA_TYPES[form], headers=_file(f"{name}.{form}"))
 
 
 def columns_as_they_are(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Column]:
@@ -117,31 +102,9 @@ def csv_stream(columns: Mapping[str, Column], points: int, name: str) -> Respons
         for start in range(0, points, ROWS):
             yield csv_rows({key: column(slice(start, start + ROWS)) for key, column in columns.items()}).encode()
 
-    return _streamed(parts(), points, MEDIA_TYPES["csv"], _file(f"{name}.csv"))
-
-
-def json_stream(answer: Answer[Any], request: Request, columns: Mapping[str, Column], points: int) -> Response:
-    """As `json_response`, after columns that the answer lacks; written while it is sent."""
-    answer.url = url_of(request)
-
-    def parts() -> Iterator[bytes]:
-        opening = b"{"
-        for key, column in columns.items():
-            opening += to_json(key) + b":["
-            for start in range(0, points, ROWS):
-                yield opening + to_json(column(slice(start, start + ROWS)), inf_nan_mode="null")[1:-1]
-                opening = b","
-            opening = (b"" if points else opening) + b"],"
-        yield opening + answer.model_dump_json().encode()[1:]
-
-    return _streamed(parts(), points, MEDIA_TYPES["json"], {})
-
-
-def _streamed(parts: Iterator[bytes], points: int, media_type: str, headers: dict[str, str]) -> Response:
-    """Send a short response as a whole: a thread per part would take longer."""
-    if points <= ROWS:
-        return Response(b"".join(parts), media_type=media_type, headers=headers)
-    return StreamingResponse(parts, media_type=media_type, headers=headers)
+    if points <= ROWS:  # a thread a part would take longer
+        return Response(b"".join(parts()), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
+    return StreamingResponse(parts(), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
 
 def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
@@ -152,9 +115,9 @@ def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
 
 def solved_variable(name: str, dimensions: Any, values: NDArray[Any]) -> tuple[Any, NDArray[Any], dict[str, Any]]:
     """A field of responses with the type and the attributes that it has in the data sets."""
-    dtype, about = VARIABLES[name]
-    kept = {key: value for key, value in about.items() if key != "ancillary_variables"}
-    return dimensions, values.astype(dtype, copy=False), MODEL_RESULT | kept
+    dtype, attributes = VARIABLES[name]
+    own = {key: value for key, value in attributes.items() if key != "ancillary_variables"}
+    return dimensions, values.astype(dtype, copy=False), MODEL_RESULT | own
 
 
 def dataset_of(groups: Mapping[str, Array], result: BatchResult, attributes: Mapping[str, Any]) -> xr.Dataset:

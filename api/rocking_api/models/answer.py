@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import version
 from typing import Annotated, Any, Generic, TypeVar, get_args
 
-from fastapi import Request
-from pydantic import BaseModel, Field, GetJsonSchemaHandler, SerializeAsAny, computed_field
-from pydantic_core import core_schema
+from fastapi import Depends, Request
+from pydantic import BaseModel, Field, SerializeAsAny, computed_field
 
+from rocking._base.errors import InvalidArgumentError
 from rocking_api.models.metadata import METADATA, Metadata
 from rocking_api.models.params import ListParams, Params
-from rocking_api.models.quantity import said
+from rocking_api.models.quantity import said, unit_of
 
 Q = TypeVar("Q", bound=Params)
 L = TypeVar("L", bound=ListParams)
@@ -25,23 +24,23 @@ QUERY = said("parameters of the request, defaults included; empty without any")
 
 BY_SOLVER = said("what answered: always the solver", "solver")
 
-_UNIT = re.compile(r"(\w*) \[([^]]+)\]")
+
+async def url_of(request: Request) -> str:
+    """Path and query string of a request, after the method unless it is GET."""
+    scope = request.scope
+    address = scope["raw_path"] + b"?" + scope["query_string"] if scope["query_string"] else scope["raw_path"]
+    url: str = address.decode("latin-1")
+    return url if scope["method"] == "GET" else f"{scope['method']} {url}"
 
 
-_PULSE = {"type": "string", "title": "Pulse", "description": "name of the pulse, or of its samples"}
+async def no_query(request: Request) -> None:
+    """Refuse a query beside a JSON body, which holds all parameters."""
+    for name, value in request.query_params.items():
+        raise InvalidArgumentError(name, value, "in the JSON body, which holds all parameters")
 
 
-class Echo:
-    """The schema of an echoed query: its parameters, and what else a body has, such as the digest of samples."""
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        found = dict(handler.resolve_ref_schema(handler(schema)))
-        found.pop("additionalProperties", None)
-        if "pulse" in found["properties"]:
-            found["properties"] = found["properties"] | {"pulse": _PULSE}
-        return found
+Url = Annotated[str, Depends(url_of)]
+"""The address that repeats the question of a request."""
 
 
 class Answer(BaseModel, Generic[Q]):
@@ -64,12 +63,6 @@ class Bare(Answer[Params]):
     """Base of the models of routes without parameters."""
 
     query: Params = said(QUERY.description, Params())
-
-
-class Echoed(BaseModel, Generic[Q]):
-    """What answers to a query whose pulse may be given by samples repeat of it."""
-
-    query: Annotated[SerializeAsAny[Q], Echo()] = QUERY
 
 
 class ListAnswer(Answer[L]):
@@ -98,14 +91,12 @@ class InUnits(Answer[Q]):
 
 @cache
 def units_of(model: type[BaseModel]) -> dict[str, str]:
-    """The units in the descriptions of the fields of a model, by field; `1` for [-].
-
-    Several in one description are those of the keys of a dictionary, each after its key.
-    """
+    """The units of the fields of a model, by field, `1` for a plain number; names of nested fields joined by dots."""
     units: dict[str, str] = {}
     for name, field in model.model_fields.items():
-        stated = [(key, "1" if unit == "-" else unit) for key, unit in _UNIT.findall(field.description or "")]
-        units |= {name if len(stated) == 1 else f"{name}.{key}": unit for key, unit in stated}
+        unit = unit_of(field)
+        if unit:
+            units[name] = "1" if unit == "-" else unit
         for nested in _models_in(field.annotation):
             units |= {f"{name}.{inner}": unit for inner, unit in units_of(nested).items()}
     return units
@@ -116,11 +107,3 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
         yield annotation
     for part in get_args(annotation):
         yield from _models_in(part)
-
-
-def url_of(request: Request) -> str:
-    """Path and query string of a request, after the method unless it is GET."""
-    scope = request.scope
-    given = scope["raw_path"] + b"?" + scope["query_string"] if scope["query_string"] else scope["raw_path"]
-    url: str = given.decode("latin-1")
-    return url if scope["method"] == "GET" else f"{scope['method']} {url}"

@@ -35,11 +35,6 @@ class Batch:
     def points(self) -> int:
         return self.groups["slenderness"].size
 
-    @property
-    def nbytes(self) -> int:
-        """Memory of the arrays [bytes]; a group given as one number takes none."""
-        return sum(column.size * abs(column.strides[0]) for column in self.groups.values() if any(column.strides))
-
 
 def batch_of(options: LookupOptions, columns: Columns, given: Mapping[str, Any], max_points: int) -> Batch:
     """The points of the columns of a body, and of the groups that are given beside it: numbers or lists, or None."""

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Annotated, Literal
-
 from pydantic import BaseModel
 
-from rocking._dimensional.margins import MARGINS
-from rocking._dimensional.table import RESPONSES
 from rocking_api.models import quantity as q
-from rocking_api.models.answer import BY_SOLVER, Echoed, InUnits
+from rocking_api.models.answer import BY_SOLVER, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
+from rocking_api.models.fields import OTHER_EDGES, OfBlock, OfEdges, UnderPulse, of
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
-from rocking_api.models.responses import PointResponse, declared, with_fields
+from rocking_api.models.responses import PointResponse
 
 MAX_BLOCKS = 10_000  # most blocks of a body [-]: each is an object, unlike the points of /v1/response
 
@@ -32,45 +28,59 @@ class BlockParams(BodyParams):
 class BlocksParams(Params):
     """Values that many blocks of a body share."""
 
-    pulse: q.PulseName | None = q.said("required unless a JSON body holds it", None, examples=["sine"])
-    restitution: q.BodyRestitution = q.said("eta [-] where a block has none; momentum, kalliontzis(k=0.8)", "momentum")
+    pulse: q.PulseName | None = q.said("required beside CSV; JSON holds it", None, examples=["sine"])
+    restitution: q.BodyRestitution = q.said(
+        "eta where a block has none; momentum, kalliontzis(k=0.8)", "momentum", unit="-"
+    )
     format: q.TableFormat = None
+
+
+class BlocksQuery(BlocksParams):
+    """What the answer repeats of the values that many blocks share."""
+
+    pulse_digest: str | None = q.said("sha256 of the samples of the pulse; null for a pulse by its name", None)
 
 
 class BlockRow(BodyShape):
     """One of many bodies in JSON, in SI units."""
 
-    body: JsonBody  # type: ignore[assignment]  # a text once it is read
+    body: JsonBody  # a text once it is read
     name: str = q.said("label", "", max_length=200)
     peak_acceleration: q.PeakAcceleration
     period: q.Period
-    restitution: q.BodyRestitution | None = q.said("eta [-], or momentum; absent: the one for all blocks", None)
+    restitution: q.BodyRestitution | None = q.said("eta, or momentum; absent: the one for all blocks", None, unit="-")
 
 
 class BlockRows(BlocksParams):
     """Many blocks in a JSON body, and the values that they share."""
 
     blocks: list[BlockRow] = q.said("blocks, in the order of the response", json_schema_extra={"maxItems": MAX_BLOCKS})
-    pulse: GivenPulse | None = q.said(  # type: ignore[assignment]
-        "a pulse by its name, or by samples; absent: the pulse of the query", None
-    )
+    pulse: GivenPulse = q.said("a pulse by its name, or by samples")
 
 
-_OF_TABLE = [
-    one
-    if one.missing or one.kinds >= {"edges"}
-    else replace(one, missing="the edges of the body differ from those of a block")
-    for one in RESPONSES
-]
-"""Columns of `respond_table`."""
-
-
-@declared(_OF_TABLE, many=True)
-class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
+class BlocksResponse(InUnits[BlocksQuery]):
     """Many bodies: one value for each, in the order of the body; SI units, degrees and groups."""
 
     name: list[str] | None = q.said("labels; null without any", None)
     body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
+    peak_rotation_deg: list[float | None] = of("peak_rotation_deg")
+    top_displacement: list[float | None] = of("top_displacement")
+    overturned: list[bool] = of("overturned")
+    outcome: list[str] = of("outcome")
+    impacts: list[int] = of("impacts")
+    exceeded_alpha: list[bool] = of("exceeded_alpha")
+    peak_rotation: list[float | None] = of("peak_rotation")
+    error_bound: list[float | None] = of("error_bound", missing=OTHER_EDGES)
+    residual_energy: list[float | None] = of("residual_energy", missing=OTHER_EDGES)
+    width: list[float | None] = of("width", missing=OTHER_EDGES)
+    height: list[float | None] = of("height", missing=OTHER_EDGES)
+    alpha_deg: list[float | None] = of("alpha_deg", missing=OTHER_EDGES)
+    uplift_acceleration: list[float] = of("uplift_acceleration")
+    peak_acceleration: list[float] = of("peak_acceleration")
+    period: list[float] = of("period")
+    slenderness: list[float | None] = of("slenderness", missing=OTHER_EDGES)
+    frequency_ratio: list[float | None] = of("frequency_ratio", missing=OTHER_EDGES)
+    restitution: list[float | None] = of("restitution", missing=OTHER_EDGES)
     columns: dict[str, str] = q.said("meaning of the columns of the table that were read, by header", {})
     skipped: list[str] = q.said(
         "columns of the table that were not read, such as a thickness: nothing depends on them", []
@@ -80,12 +90,6 @@ class BlocksResponse(Echoed[BlocksParams], InUnits[BlocksParams]):
 
 
 AMPLITUDES = "all amplitudes at which the outcome changes"
-NOTES = q.said("what else is worth knowing")
-
-Edge = Annotated[
-    Literal["right", "left"] | None,
-    q.said("edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"),
-]
 
 
 class _Change(BaseModel):
@@ -95,56 +99,63 @@ class _Change(BaseModel):
 class Threshold(_Change):
     """An amplitude at which the outcome changes."""
 
-    peak_acceleration: float = q.said("a_g [m/s2]")
+    peak_acceleration: float = q.said("a_g", unit="m/s2")
 
 
 class PeriodThreshold(_Change):
     """A period at which the outcome changes, at this amplitude."""
 
-    period: float = q.said("T_p [s]", validation_alias="value")
+    period: float = q.said("T_p", validation_alias="value", unit="s")
 
 
 class SizeThreshold(_Change):
     """A size at which the outcome of blocks of this shape changes under this pulse."""
 
-    half_diagonal: float = q.said("R [m]", validation_alias="value")
+    half_diagonal: float = q.said("R", validation_alias="value", unit="m")
 
 
 class ScaleThreshold(_Change):
     """A scale at which the outcome changes."""
 
-    scale: float = q.said("factor of the record [-]")
-    peak_acceleration: float = q.said("PGA of the scaled record [m/s2]")
+    scale: float = q.said("factor of the record", unit="-")
+    peak_acceleration: float = q.said("PGA of the scaled record", unit="m/s2")
 
 
-@declared(MARGINS)
 class Margins(BaseModel):
     """Distances of the block from another outcome, by the rigid equation."""
 
+    nearest_acceleration: float | None = of("nearest_acceleration")
+    acceleration_factor: float | None = of("acceleration_factor")
+    nearest_period: float | None = of("nearest_period")
+    period_factor: float | None = of("period_factor")
+    smallest_surviving_half_diagonal: float | None = of("smallest_surviving_half_diagonal")
+    surviving_from_half_diagonal: float | None = of("surviving_from_half_diagonal")
+
     periods: list[PeriodThreshold] = q.said("all periods at which the outcome changes, ascending")
-    periods_searched: tuple[float, float] = q.said("smallest and largest period searched [s]")
+    periods_searched: tuple[float, float] = q.said("smallest and largest period searched", unit="s")
     sizes: list[SizeThreshold] = q.said("all sizes of this shape at which the outcome changes, ascending")
-    sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched [m]")
+    sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched", unit="m")
 
 
-@with_fields("pulse", "edges")
-class BodyResponse(InUnits[BlockParams]):
+class BodyResponse(UnderPulse, OfEdges, InUnits[BlockParams]):
     """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
-    edge: Edge
     thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
-    notes: list[str] = NOTES
     source: str = BY_SOLVER
 
 
-@with_fields("pulse", "block")
-class BlockResponse(InUnits[BlockParams]):
+class BlockResponse(UnderPulse, OfBlock, InUnits[BlockParams]):
     """What happens to the block."""
 
+    error_bound: float | None = of("error_bound")
+    frequency_ratio: float = of("frequency_ratio")
+    largest_surviving_acceleration: float | None = of("largest_surviving_acceleration")
+    largest_surviving_friction_demand: float | None = of("largest_surviving_friction_demand")
+    nearest_acceleration: float | None = of("nearest_acceleration")
+    nearest_period: float | None = of("nearest_period")
     response: PointResponse = q.said("the same request and response in dimensionless groups")
     thresholds: list[Threshold] | None = q.said(
         f"{AMPLITUDES}, this period, ascending; null if not found in time, see `warnings`"
     )
     margins: Margins | None = q.said("null if they were not found in time, see `warnings`")
-    notes: list[str] = NOTES
     data_version: str | None = q.said("sha256 of the data set that gave the response; null: the solver did")

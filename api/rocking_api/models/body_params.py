@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, create_model
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
 import rocking._base.quantities as quantities
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantity import Quantity
 from rocking._base.units import STANDARD_GRAVITY
 from rocking._dimensional.body import RespondingBody
 from rocking._dimensional.body_kinds import BODIES as KINDS
@@ -15,11 +16,13 @@ from rocking._dimensional.body_kinds import described, signatures
 from rocking_api.models import quantity as q
 from rocking_api.models.params import Params
 
-P = TypeVar("P", bound=Params)
-
 MAX_VERTICES = 200  # most vertices of an outline [-]
-EXAMPLES = {quantities.WIDTH.name: 0.4, quantities.HEIGHT.name: 1.6}  # values that the pages of the description fill in
-APART = ("restitution", "gravity")  # parameters of kinds that belong to every body
+
+PARAMETERS: dict[str, Quantity] = {}
+"""The parameters of all kinds of bodies by name, of those with one name the first."""
+for _kind in KINDS.values():
+    for _name, _quantity in _kind.fields.items():
+        PARAMETERS.setdefault(_name, _quantity)
 
 Text = Annotated[str, Field(max_length=2000)]
 _Point = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -27,63 +30,97 @@ Points = Annotated[
     Annotated[list[_Point], Field(max_length=MAX_VERTICES)],
     AfterValidator(lambda points: "; ".join(f"{x!r} {y!r}" for x, y in points)),
 ]
-_SAID = q.said(
+_BODY = q.said(
     "a body of any kind, with its parameters in brackets, such as hollow(width=40cm, height=1.6m, wall=2cm), or the "
     f"kind of the parameters beside it: {signatures().replace('[', '(').replace(']', ')')}",
     None,
 )
 
 
-def with_parameters(model: type[P]) -> type[P]:
-    """A decorator that adds the parameters of the kinds of bodies to a model; absent ones are not repeated."""
-    found: dict[str, Any] = {}
-    for kind in KINDS.values():
-        for name, quantity in kind.fields.items():
-            hidden: dict[str, Any] = {"exclude_if": lambda value: value is None}
-            if name in EXAMPLES:
-                hidden["examples"] = [EXAMPLES[name]]
-            if quantity.unit:
-                hint = q.si(quantity, kind=float | None, **hidden)
-            else:
-                text: Any = Text | Points if kind.hints[name].__origin__ is Any else Text
-                hint = Annotated[text | None, Field(description=quantity.help, **hidden)]
-            if name not in APART:
-                found.setdefault(name, (hint, None))
-    return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
+def _parameter(name: str, **more: Any) -> Any:
+    """A parameter of some kinds of bodies, which an answer repeats only if it was stated."""
+    quantity = PARAMETERS[name]
+    unit = "" if quantity.unit in ("", "bool") else quantity.unit
+    return q.said(quantity.named, None, unit=unit, exclude_if=lambda value: value is None, **more)
 
 
-@with_parameters
-class BodyDescription(Params):
+class BodyParameters(Params):
+    """The parameters of the kinds of bodies; numbers in SI units, or texts with another unit."""
+
+    width: float | None = _parameter("width", examples=[0.4])
+    height: float | None = _parameter("height", examples=[1.6])
+    sides: Text | None = _parameter("sides")
+    rebound: float | None = _parameter("rebound")
+    offset: float | None = _parameter("offset")
+    mass_height: float | None = _parameter("mass_height")
+    gyration: float | None = _parameter("gyration")
+    left: float | None = _parameter("left")
+    right: float | None = _parameter("right")
+    top_height: float | None = _parameter("top_height")
+    inclination: float | None = _parameter("inclination")
+    diameter: float | None = _parameter("diameter")
+    wall: float | None = _parameter("wall")
+    depth: float | None = _parameter("depth")
+    pedestal_width: float | None = _parameter("pedestal_width")
+    pedestal_height: float | None = _parameter("pedestal_height")
+    pedestal_mass: float | None = _parameter("pedestal_mass")
+    vertices: Text | Points | None = _parameter("vertices")
+    mass_ratio: float | None = _parameter("mass_ratio")
+    radius: float | None = _parameter("radius")
+    thickness: float | None = _parameter("thickness")
+    embrace: float | None = _parameter("embrace")
+    voussoirs: float | None = _parameter("voussoirs")
+    mass: float | None = _parameter("mass")
+    inertia: float | None = _parameter("inertia")
+    base: float | None = _parameter("base")
+    centre_height: float | None = _parameter("centre_height")
+    alpha: float | None = _parameter("alpha")
+    frequency_parameter: float | None = _parameter("frequency_parameter")
+    uplift_acceleration: float | None = _parameter("uplift_acceleration")
+
+    @field_validator(*(name for name in PARAMETERS if PARAMETERS[name].unit), mode="before", check_fields=False)
+    @classmethod
+    def _read(cls, value: Any, info: ValidationInfo) -> Any:
+        return value if value is None else q.served(PARAMETERS[str(info.field_name)]).read(value, si=True)
+
+
+class BodyDescription(BodyParameters):
     """A body in JSON: its kind, unless its parameters say it, and its parameters in SI units or as texts."""
 
     kind: Literal[tuple(KINDS)] | None = q.said("kind of body", None)  # type: ignore[valid-type]
-    restitution: q.si(quantities.RESTITUTION, "eta of an arch or a structure", float | None) = None  # type: ignore[valid-type]
-    gravity: q.si(quantities.GRAVITY, kind=float | None) = None  # type: ignore[valid-type]
+    restitution: float | None = q.said("eta of an arch or a structure", None, unit="-")
+    gravity: float | None = q.said(quantities.GRAVITY.named, None, unit="m/s2")
 
 
-def _as_text(given: BodyDescription) -> str:
-    kind, parameters = described(given.kind, given.model_dump(exclude_none=True, exclude={"kind"}))
+def _as_text(body: BodyDescription) -> str:
+    kind, parameters = described(body.kind, body.model_dump(exclude_none=True, exclude={"kind"}))
     stated = (f"{name}={value} {kind.fields[name].unit.strip('-')}" for name, value in kind.read(parameters).items())
-    return f"{kind.name}({', '.join(one.strip() for one in stated)})"
+    return f"{kind.name}({', '.join(text.strip() for text in stated)})"
 
 
-JsonBody = Annotated[Text | Annotated[BodyDescription, AfterValidator(_as_text)] | None, _SAID]
+JsonBody: Any = Annotated[Text | Annotated[BodyDescription, AfterValidator(_as_text)] | None, _BODY]
 """A body in JSON; a text once it is read."""
 
 
-@with_parameters
-class BodyShape(Params):
+class BodyShape(BodyParameters):
     """A body by the parameters of its kind, or by a text."""
 
-    body: Text | None = _SAID
+    body: Text | None = _BODY
 
     def made(self, gravity: float = STANDARD_GRAVITY, restitution: float | str | None = None) -> RespondingBody:
-        """The body; the restitution is that of an arch or a structure, whose kinds have it."""
-        given = {name: getattr(self, name) for name in _PARAMETERS if getattr(self, name) is not None}
-        if self.body is None and given.keys() < EXAMPLES.keys():
-            missing = next(name for name in EXAMPLES if name not in given)
+        """The body; the restitution is that of an arch or a structure, whose kinds have it.
+
+        The mass of a kind whose motion does not depend on it is left out.
+        """
+        stated = {name: getattr(self, name) for name in BodyParameters.model_fields}
+        stated = {name: value for name, value in stated.items() if value is not None}
+        mass = stated.pop("mass", None) if "inertia" not in stated else None
+        if self.body is None and stated.keys() < {"width", "height"}:
+            missing = next(name for name in ("width", "height") if name not in stated)
             raise InvalidArgumentError(missing, None, "required, or the parameters of another kind, or `body`")
-        kind, parameters = described(self.body, given)
+        kind, parameters = described(self.body, stated)
+        if mass is not None and "mass" in kind.fields:
+            parameters.setdefault("mass", mass)
         if "gravity" in kind.fields or gravity != STANDARD_GRAVITY:
             parameters.setdefault("gravity", gravity)
         if "restitution" in kind.fields and isinstance(restitution, float):
@@ -92,9 +129,6 @@ class BodyShape(Params):
             if kind.fields[name].unit:
                 q.served(kind.fields[name]).convert(value)
         return kind(**parameters)
-
-
-_PARAMETERS = BodyShape.model_fields.keys() - {"body"}
 
 
 class BodyParams(BodyShape):

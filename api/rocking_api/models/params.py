@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -26,14 +26,11 @@ class Params(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    takes_lists: ClassVar[bool] = False
-    """Whether a JSON body may be a list as well: content without parameters."""
-
 
 class ListParams(Params):
     """A part of a list."""
 
-    limit: int | None = q.between(1, 10_000, "most entries [-]; absent: all", default=None, examples=[10])
+    limit: int | None = q.between(1, 10_000, "most entries; absent: all", default=None, examples=[10], unit="-")
     cursor: str | None = q.said("`next_cursor` of the answer before; absent: the start of the list", None)
 
     def part(self, names: Sequence[str]) -> tuple[list[str], str | None]:
@@ -60,26 +57,31 @@ class ResponseParams(LookupOptions):
     restitution: q.Restitution
 
 
-class BatchOptions(LookupOptions):
-    """Options of many blocks."""
+_Slenderness: Any = q.read_as(q.SLENDERNESS, kind=float | None)
+_FrequencyRatio: Any = q.read_as(q.FREQUENCY_RATIO, kind=float | None)
+_Restitution: Any = q.read_as(q.RESTITUTION, kind=float | None)
 
+
+class TableParams(Params):
+    """Beside a table in the body: options of its blocks, and groups that the table does not hold."""
+
+    pulse: q.PulseName | None = q.said("required beside CSV and netCDF; JSON holds it", None, examples=["sine"])
+    alpha_deg: q.AlphaDeg = None
+    method: q.Method = "auto"
+    absolute_tolerance: q.AbsoluteTolerance = 1e-4
+    slenderness: _Slenderness = None
+    frequency_ratio: _FrequencyRatio = None
+    restitution: _Restitution = None
     format: q.BodyFormat = None
 
 
-class TableParams(BatchOptions):
-    """The same, and those of the groups that a table does not hold."""
+class BatchParams(LookupOptions):
+    """Many blocks in a JSON body: numbers, or arrays of one length. The pulse has a name, or is given by samples."""
 
-    slenderness: q.Slenderness | None = None
-    frequency_ratio: q.FrequencyRatio | None = None
-    restitution: q.Restitution | None = None
-
-
-class BatchParams(BatchOptions):
-    """Many blocks: numbers, or arrays of one length."""
-
-    slenderness: q.Slenderness | Annotated[list[q.Slenderness], _FAIL_FAST] = q.said(q.SLENDERNESS.help)
-    frequency_ratio: q.FrequencyRatio | Annotated[list[q.FrequencyRatio], _FAIL_FAST] = q.said(q.FREQUENCY_RATIO.help)
-    restitution: q.Restitution | Annotated[list[q.Restitution], _FAIL_FAST] = q.said(RESTITUTION.help)
+    slenderness: float | Annotated[list[float], _FAIL_FAST] = q.said(q.SLENDERNESS.named, unit="-")
+    frequency_ratio: float | Annotated[list[float], _FAIL_FAST] = q.said(q.FREQUENCY_RATIO.named, unit="-")
+    restitution: float | Annotated[list[float], _FAIL_FAST] = q.said(RESTITUTION.named, unit="-")
+    format: q.BodyFormat = None
 
 
 class ShapeParams(Params):
@@ -109,7 +111,7 @@ class SpectrumParams(LookupOptions):
     restitution: q.Restitution
     frequency_ratio_min: q.FrequencyRatio = Field(0.5, examples=[0.5])
     frequency_ratio_max: q.FrequencyRatio = Field(12.0, examples=[12.0])
-    points: int = q.between(2, math.inf, "points of the curve [-]", default=200)
+    points: int = q.between(2, math.inf, "points of the curve", default=200, unit="-")
     format: q.Format = None
 
 
@@ -123,9 +125,29 @@ class HistoryParams(BlockInGroups):
     """The motion of one block."""
 
     slenderness: q.Slenderness
-    duration: float | None = q.said("length p t [-]; absent: the pulse and free rocking", None, gt=0, le=MAX_DURATION)
-    samples: int = q.between(2, 1_000_000, "uniform samples [-]; the events are added", default=400)
+    duration: float | None = q.said(
+        "length p t; absent: the pulse and free rocking", None, gt=0, le=MAX_DURATION, unit="-"
+    )
+    samples: int = q.between(2, 1_000_000, "uniform samples; the events are added", default=400, unit="-")
     contact: q.Contact = False
+    format: q.Format = None
+
+
+class ThresholdsParams(BlockInGroups):
+    """A block and a pulse without amplitude."""
+
+    highest: float = q.said("largest a = a_g/(g tan alpha) searched", 100.0, gt=1, le=1e6, unit="-")
+
+
+class MapParams(ShapeParams):
+    """A window of the control space: columns uniform in log frequency ratio, rows uniform in slenderness."""
+
+    frequency_ratio_min: q.FrequencyRatio = Field(0.5, examples=[0.5])
+    frequency_ratio_max: q.FrequencyRatio = Field(12.0, examples=[12.0])
+    slenderness_min: q.Slenderness = Field(0.01, examples=[0.01])
+    slenderness_max: q.Slenderness = Field(1.05, examples=[1.05])
+    columns: int = q.between(2, math.inf, "frequency ratios", default=120, unit="-")
+    rows: int = q.between(2, math.inf, "slendernesses", default=90, unit="-")
     format: q.Format = None
 
 

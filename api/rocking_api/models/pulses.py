@@ -1,9 +1,8 @@
-"""A pulse given by samples in a JSON body, in place of a name: the models of bodies derive from those of queries."""
+"""JSON bodies whose pulse may be given by samples: they derive from the models of queries."""
 
 from __future__ import annotations
 
-from functools import cache
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
@@ -14,14 +13,19 @@ from pydantic import (
     PlainSerializer,
     Tag,
     computed_field,
-    create_model,
 )
 
 from rocking._excitation.sampled import SampledPulse
-from rocking_api.models.params import Params
+from rocking_api.models.params import (
+    BatchParams,
+    HistoryParams,
+    MapParams,
+    OverturningParams,
+    Params,
+    SpectrumParams,
+    ThresholdsParams,
+)
 from rocking_api.models.quantity import PulseName, said
-
-P = TypeVar("P", bound=Params)
 
 MAX_SAMPLES = 10_000  # most samples of a pulse over HTTP [-]: some milliseconds for the parser, and for each block
 MAX_BODY = 500_000  # largest body with the samples of a pulse [bytes]: as many times and accelerations of all digits
@@ -44,44 +48,54 @@ def _made(samples: PulseSamples) -> SampledPulse:
     return SampledPulse(**dict(samples))
 
 
-GivenPulse = Annotated[
-    Annotated[PulseName, Tag("name")] | Annotated[PulseSamples, AfterValidator(_made), Tag("samples")],
-    Discriminator(lambda value: "name" if isinstance(value, str) else "samples"),
-    PlainSerializer(lambda pulse: pulse if isinstance(pulse, str) else pulse.name, return_type=str),
+def name_of(pulse: Any) -> str:
+    """The name that an answer repeats of a pulse."""
+    return str(pulse.name if isinstance(pulse, SampledPulse) else pulse)
+
+
+GivenPulse: Any = Annotated[
+    Annotated[PulseName, Tag("<name>")] | Annotated[PulseSamples, AfterValidator(_made), Tag("<samples>")],
+    Discriminator(lambda value: "<name>" if isinstance(value, str) else "<samples>"),
+    PlainSerializer(name_of, return_type=str),
     said("a pulse by its name, or by samples"),
 ]
 
 
-def sampled_pulse(params: Params) -> SampledPulse | None:
-    """The pulse of some parameters if it is given by samples."""
-    pulse = getattr(params, "pulse", None)
-    return pulse if isinstance(pulse, SampledPulse) else None
+def digest_of(pulse: Any) -> str | None:
+    """The sha256 of the samples of a pulse; None for a pulse by its name."""
+    return pulse.digest if isinstance(pulse, SampledPulse) else None
 
 
-class _WithDigest(Params):
-    """What a response repeats of a pulse given by samples, beside its name."""
+class PulseBody(Params):
+    """A JSON body whose pulse has a name, or is given by samples."""
+
+    pulse: GivenPulse
 
     @computed_field(description="sha256 of the samples; null for a pulse by its name")  # type: ignore[prop-decorator]
     @property
     def pulse_digest(self) -> str | None:
-        pulse = sampled_pulse(self)
-        return None if pulse is None else pulse.digest
+        return digest_of(self.pulse)
 
 
-@cache
-def with_samples(kind: type[P]) -> type[P]:
-    """The model of a body with the fields of `kind`, whose pulse may be given by samples: a `SampledPulse` then."""
-    bases: Any = (_WithDigest, kind)
-    model: type[P] = create_model(
-        f"{kind.__name__}WithSamples",
-        __base__=bases,
-        __doc__=f"{kind.__doc__} The pulse has a name, or is given by samples.",
-        pulse=(GivenPulse, ...),
-    )
-    return model
+class SpectrumBody(PulseBody, SpectrumParams):
+    """The parameters of /v1/spectrum."""
 
 
-def options_of(found: Params, kind: type[P]) -> P:
-    """The fields of `kind` of a body that was validated, with the digest of a pulse that is given by samples."""
-    own = kind if sampled_pulse(found) is None else with_samples(kind)
-    return own.model_construct(**{name: getattr(found, name) for name in kind.model_fields})
+class HistoryBody(PulseBody, HistoryParams):
+    """The parameters of /v1/history."""
+
+
+class ThresholdsBody(PulseBody, ThresholdsParams):
+    """The parameters of /v1/thresholds."""
+
+
+class MapBody(PulseBody, MapParams):
+    """The parameters of /v1/map."""
+
+
+class OverturningBody(PulseBody, OverturningParams):
+    """The parameters of /v1/overturning."""
+
+
+class BatchBody(PulseBody, BatchParams):
+    """Many blocks: numbers, or arrays of one length."""

@@ -7,19 +7,18 @@ shifted by rounding for the error bound, stay in the latter.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Annotated, Any, Literal, TypeVar
+from dataclasses import replace
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
     Field,
     ValidationError,
     ValidatorFunctionWrapHandler,
     WrapValidator,
-    create_model,
 )
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 import rocking._base.quantities as q
@@ -33,8 +32,6 @@ from rocking._excitation.records.readers.read_record import FORMATS
 from rocking._excitation.records.record import TIME_STEP, UNITS
 from rocking._model.checks import impact_share
 
-Model = TypeVar("Model", bound=BaseModel)
-
 SLENDERNESS = q.SLENDERNESS.restricted(1e-9, math.inf)
 FREQUENCY_RATIO = q.FREQUENCY_RATIO.restricted(1e-6, 1e6)
 ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
@@ -42,34 +39,33 @@ ALPHA_DEG = q.ALPHA.in_degrees().restricted(1e-6, 89.9)
 SCALES = 1e-6, q.HIGHEST_SCALE  # smallest and largest factor of a record [-]
 
 
-_ENDS_OF_FIELDS = {"minimum": "ge", "exclusiveMinimum": "gt", "maximum": "le", "exclusiveMaximum": "lt"}
-
-
 def described(quantity: Quantity, text: str = "", *, unit: str = "", **more: Any) -> Any:
     """What the declaration says of a field: meaning, unit and range in the schema; `more` are those of `Field`."""
     text = f"{text} [{unit or quantity.unit}]" if text else quantity.help
-    return Field(description=text, json_schema_extra=dict(quantity.limits), **more)
+    extra: dict[str, Any] = {"unit": unit or quantity.unit, **quantity.limits}
+    return Field(description=text, json_schema_extra=extra, **more)
 
 
-def plain(quantity: Quantity, text: str = "", **more: Any) -> Any:
-    """A field that is a number in the unit of the quantity, within its range."""
-    ends: dict[str, Any] = {_ENDS_OF_FIELDS[name]: end for name, end in quantity.limits.items()}
-    text = f"{text} [{quantity.unit}]" if text else quantity.help
-    return Field(description=text, allow_inf_nan=False, **ends, **more)
+def read_as(quantity: Quantity, text: str = "", kind: Any = float, **more: Any) -> Any:
+    """A field that is read and checked by a declaration: a number in its unit, or a text with another one."""
+
+    def read(value: Any) -> Any:
+        return value if value is None else quantity.read(value, si=True)
+
+    return Annotated[kind, BeforeValidator(read), described(quantity, text, **more)]
 
 
-def said(text: str, default: Any = ..., **more: Any) -> Any:
-    """A field with its description; `more` are those of `Field`."""
-    return Field(default, description=text, **more)
+def said(text: str, default: Any = ..., *, unit: str = "", **more: Any) -> Any:
+    """A field with its description and its unit, "-" of a number, "" of others; `more` are those of `Field`."""
+    if unit:
+        more["json_schema_extra"] = {"unit": unit}
+    return Field(default, description=f"{text} [{unit}]" if unit else text, **more)
 
 
-def with_intervals(**estimates: tuple[Any, str, str]) -> Callable[[type[Model]], type[Model]]:
-    """A decorator that adds estimates to a model, by type, meaning and unit, and the ends of their intervals."""
-    found: dict[str, Any] = {}
-    for name, (kind, meaning, unit) in estimates.items():
-        ends = {name: meaning} | {f"{name}_{end}": f"{end} end of its interval" for end in ("lower", "upper")}
-        found |= {key: (kind, said(f"{text} [{unit}]")) for key, text in ends.items()}
-    return lambda model: create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
+def unit_of(field: FieldInfo) -> str:
+    """The unit of a field, "" if it has none."""
+    extra = field.json_schema_extra
+    return str(extra.get("unit", "")) if isinstance(extra, dict) else ""
 
 
 _ENDS = {
@@ -96,12 +92,7 @@ def served(quantity: Quantity) -> Quantity:
 
 def si(quantity: Quantity, text: str = "", kind: Any = float, **more: Any) -> Any:
     """A field in SI units within the range of the service; a text may state another unit, as "40 cm"."""
-    own = served(quantity)
-
-    def read(value: Any) -> Any:
-        return value if value is None else own.read(value, si=True)
-
-    return Annotated[kind, BeforeValidator(read), described(own, text, **more)]
+    return read_as(served(quantity), text, kind, **more)
 
 
 class WithUnit(float):
@@ -114,9 +105,11 @@ def _keep_unit(value: Any, read: ValidatorFunctionWrapHandler) -> float:
     return WithUnit(found) if stated else found
 
 
-def between(low: float, high: float, text: str, **more: Any) -> Any:
-    """A field with a range that includes its finite ends."""
-    return Field(description=text, ge=low, le=high if math.isfinite(high) else None, **more)
+def between(low: float, high: float, text: str, *, unit: str, **more: Any) -> Any:
+    """A field with a unit and a range that includes its finite ends."""
+    highest = high if math.isfinite(high) else None
+    extra: dict[str, Any] = {"unit": unit}
+    return Field(description=f"{text} [{unit}]", ge=low, le=highest, json_schema_extra=extra, **more)
 
 
 def _list_pulses(schema: dict[str, Any]) -> None:
@@ -146,7 +139,7 @@ def _momentum_or_number(value: Any, read: ValidatorFunctionWrapHandler) -> Any:
 
 
 def _format(*forms: str, default: str) -> Any:
-    text = f"format of the response; absent: by the Accept header, else {default}"
+    text = f"format of the response; absent: {default}"
     return Annotated[Literal[forms] | None, Field(description=text + (" (nc: netCDF-3)" if "nc" in forms else ""))]
 
 
@@ -157,16 +150,15 @@ Pulse = Field(
     examples=["sine", "mavroeidis_papageorgiou(cycles=3, phase=90deg)"],
     json_schema_extra=_list_pulses,
 )
-PulseName = Annotated[str, AfterValidator(_known_pulse), Pulse]
-Slenderness = Annotated[
-    float, plain(SLENDERNESS, f"{SLENDERNESS.help[:-4]}; from 1 on the block does not uplift", examples=[0.4])
-]
-FrequencyRatio = Annotated[float, plain(FREQUENCY_RATIO, examples=[5.0])]
-Restitution = Annotated[float, plain(q.RESTITUTION, examples=[0.85])]
+PulseName: Any = Annotated[str, AfterValidator(_known_pulse), Pulse]
+Slenderness: Any = read_as(SLENDERNESS, f"{SLENDERNESS.named}; from 1 on the block does not uplift", examples=[0.4])
+FrequencyRatio: Any = read_as(FREQUENCY_RATIO, examples=[5.0])
+RESTITUTION = replace(q.RESTITUTION, words=())  # a number: there is no shape
+Restitution: Any = read_as(RESTITUTION, examples=[0.85])
 AlphaDeg = Annotated[
     float | None,
     AfterValidator(lambda given: given and float(ALPHA_DEG.convert(given))),
-    Field(description="slenderness angle alpha [deg]; absent or 0: the slender limit", examples=[0.0]),
+    said("slenderness angle alpha; absent or 0: the slender limit", unit="deg", examples=[0.0]),
 ]
 
 # blocks and motions in SI units
@@ -174,13 +166,13 @@ AlphaDeg = Annotated[
 Gravity = si(q.GRAVITY)
 PeakAcceleration: Any = Annotated[si(q.PEAK_ACCELERATION, examples=[4.0]), WrapValidator(_keep_unit)]
 Period = si(q.PERIOD, examples=[0.5])
-Scale = Annotated[float, plain(q.SCALE.restricted(*SCALES))]
+Scale: Any = read_as(q.SCALE.restricted(*SCALES))
 Spread = Annotated[str, Field(pattern=r"^kalliontzis\(k=[0-9.eE+-]{1,30}\)$")]
 """An impact at a share k of the half base."""
 BodyRestitution = Annotated[
     Literal["momentum"] | Spread | Annotated[float, Field(ge=0.0, le=1.0)],
     WrapValidator(_momentum_or_number),
-    said("eta [-]; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b"),
+    said("eta; momentum: (2.4), 0 where that is negative; kalliontzis(k=0.8): impact at that share of b", unit="-"),
 ]
 
 # files of records
@@ -193,8 +185,8 @@ RecordFormat: Any = Annotated[
 Column = Annotated[str | None, Field(max_length=200)]
 RotationUnit: Any = Literal[tuple(QUANTITIES["rad"])]
 TimeUnit: Any = Annotated[Literal[tuple(QUANTITIES["s"])] | None, Field(description="unit of the column of times")]
-TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples [s], in place of a column of times")]
-Skip = Annotated[int, between(0, MAX_SKIP, "lines above the names of the columns, or above the rows [-]")]
+TimeStep = Annotated[float | None, between(*TIME_STEP, "time between samples, in place of a column of times", unit="s")]
+Skip = Annotated[int, between(0, MAX_SKIP, "lines above the names of the columns, or above the rows", unit="-")]
 Delimiter = Annotated[
     str | None,
     Field(
@@ -206,9 +198,11 @@ Delimiter = Annotated[
 Decimal = Annotated[Literal[".", ","], Field(description="decimal sign")]
 BaselineOrder = Annotated[
     int | None,
-    between(0, MAX_BASELINE_ORDER, "degree of the baseline to remove [-]; absent: only the mean of K-NET counts"),
+    between(0, MAX_BASELINE_ORDER, "degree of the baseline to remove; absent: only the mean of K-NET counts", unit="-"),
 ]
 Contact = Annotated[bool, Field(description="add the reactions of the ground and the friction that they need")]
+
+Mass: Any = si(q.MASS, "mass of the body, for the reactions in newtons", float | None)
 
 # options of the answer
 
@@ -217,7 +211,7 @@ Method = Annotated[
     Field(description="auto: the data set where it meets the tolerance, else the solver; cube, solver: only this one"),
 ]
 AbsoluteTolerance = Annotated[
-    float, Field(description="largest absolute error of an interpolated peak_rotation [-]", ge=0, allow_inf_nan=False)
+    float, said("largest absolute error of an interpolated peak_rotation", unit="-", ge=0, allow_inf_nan=False)
 ]
 Format = _format("json", "csv", "nc", default="JSON")
 BodyFormat = _format("json", "csv", "nc", default="that of the body")

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import Any
 from urllib.parse import quote
 
-from pydantic import BaseModel, create_model
+from pydantic import BaseModel
 
 from rocking_api.models.answer import BY_SOLVER, InUnits, Q
-from rocking_api.models.blocks import NOTES, Edge, ScaleThreshold
+from rocking_api.models.blocks import ScaleThreshold
 from rocking_api.models.body_params import BodyParams, JsonBody
+from rocking_api.models.fields import Ended, ManySolved, OfBlock, OfEdges, Peaked, UnderRecord, of
+from rocking_api.models.params import Params
 from rocking_api.models.quantity import (
     SCALES,
     BaselineOrder,
@@ -20,6 +21,7 @@ from rocking_api.models.quantity import (
     Decimal,
     Delimiter,
     Format,
+    Mass,
     RecordFormat,
     Scale,
     Skip,
@@ -29,7 +31,7 @@ from rocking_api.models.quantity import (
     between,
     said,
 )
-from rocking_api.models.responses import OF_SOLVER, ContactResponse, Motion, declared, with_fields
+from rocking_api.models.responses import ContactResponse, Motion
 from rocking_api.models.suites import SuiteRecord
 
 MAX_SCALES = 2000  # most factors of a curve over the scale [-]
@@ -58,6 +60,7 @@ class RecordFileParams(BodyParams):
     vertical: Column = said("column or channel of the vertical component, upwards", None)
     allow_unusual: bool = said("accept a PGA above 5 g, a PGV above 10 m/s, a step above 0.1 s", False)
     baseline_order: BaselineOrder = None
+    mirrored: bool = said("the record with the other sign", False)
 
 
 class RecordParams(RecordFileParams):
@@ -76,24 +79,27 @@ class RecordResponseParams(RecordParams):
 class RecordHistoryParams(RecordParams):
     """The same, and which samples are wanted."""
 
-    samples: int | None = between(2, math.inf, "uniform samples [-]; absent: those of the record", default=None)
+    samples: int | None = between(2, math.inf, "uniform samples; absent: those of the record", default=None, unit="-")
     contact: Contact = False
+    mass: Mass = None
     format: Format = None
 
 
 class RecordScalesParams(RecordFileParams):
     """The same, and the window of the factor."""
 
-    scale_min: float | None = between(*SCALES, "smallest factor [-]; absent: that of uplift", default=None)
-    scale_max: float | None = between(*SCALES, "largest factor [-]; absent: ten times that of uplift", default=None)
-    points: int = between(2, MAX_SCALES, "factors, evenly spaced in their logarithm [-]", default=200)
+    scale_min: float | None = between(*SCALES, "smallest factor; absent: that of uplift", default=None, unit="-")
+    scale_max: float | None = between(
+        *SCALES, "largest factor; absent: ten times that of uplift", default=None, unit="-"
+    )
+    points: int = between(2, MAX_SCALES, "factors, evenly spaced in their logarithm", default=200, unit="-")
     format: Format = None
 
 
 class RecordPulseParams(RecordParams):
     """The same, and the samples for a drawing."""
 
-    samples: int = between(2, MAX_DRAWN, "most samples of the drawing [-]", default=2000)
+    samples: int = between(2, MAX_DRAWN, "most samples of the drawing", default=2000, unit="-")
 
 
 def as_parameter(name: str, value: Any) -> str:
@@ -104,20 +110,27 @@ def as_parameter(name: str, value: Any) -> str:
     return f"{name}={'...' if value is ... else str(value).lower() if value is True else quote(str(value))}"
 
 
-class RecordBody(RecordFileParams):
-    """A record in a JSON body, with the parameters of its route."""
+class RecordText(Params):
+    """What a JSON body with a record has beside the parameters of its route."""
 
-    record: str = said("text of the file")
-    body: JsonBody  # type: ignore[assignment]  # a text once it is read
+    record: str = said("text of the file", exclude=True)
+    body: JsonBody  # a text once it is read
 
 
-@cache
-def with_record(kind: type[RecordFileParams]) -> type[RecordBody]:
-    """The model of a JSON body with the fields of `kind` and the record."""
-    bases: Any = (RecordBody, kind)
-    doc = f"The record, and: {kind.__doc__}"
-    model: type[RecordBody] = create_model(f"{kind.__name__}WithRecord", __base__=bases, __doc__=doc)
-    return model
+class RecordResponseBody(RecordText, RecordResponseParams):
+    """The record, and the parameters of /v1/records/response."""
+
+
+class RecordHistoryBody(RecordText, RecordHistoryParams):
+    """The record, and the parameters of /v1/records/history."""
+
+
+class RecordScalesBody(RecordText, RecordScalesParams):
+    """The record, and the parameters of /v1/records/scales."""
+
+
+class RecordPulseBody(RecordText, RecordPulseParams):
+    """The record, and the parameters of /v1/records/pulse."""
 
 
 class RecordDescription(SuiteRecord):
@@ -125,12 +138,12 @@ class RecordDescription(SuiteRecord):
 
     source: str = said("file, format, and what was done to the record")
     remarks: list[str] = said("warnings of the reader of the file")
-    samples: int = said("number of samples [-]")
-    peak_vertical_acceleration: float | None = said("largest vertical acceleration [m/s2]; null: there is none")
-    peak_displacement: float = said("PGD [m]")
-    arias_intensity: float = said("Arias intensity [m/s]")
-    significant_duration: float = said("between 5 % and 95 % of the Arias intensity [s]")
-    final_velocity: float = said("velocity at the last sample [m/s]; large if the acceleration has an offset")
+    samples: int = said("number of samples", unit="-")
+    peak_vertical_acceleration: float | None = said("largest vertical acceleration; null: there is none", unit="m/s2")
+    peak_displacement: float = said("PGD", unit="m")
+    arias_intensity: float = said("Arias intensity", unit="m/s")
+    significant_duration: float = said("between 5 % and 95 % of the Arias intensity", unit="s")
+    final_velocity: float = said("velocity at the last sample; large if the acceleration has an offset", unit="m/s")
 
 
 class RecordAnswer(InUnits[Q]):
@@ -144,69 +157,68 @@ class FittedPulse(BaseModel):
     """A pulse fitted to the velocity of the record: a description, not a substitute."""
 
     pulse: str = said("kind of pulse")
-    period: float = said("T_p [s]")
-    peak_acceleration: float = said("a_g [m/s2]")
-    centre: float = said("time of its centre from the first sample [s]")
-    cycles: float | None = said("gamma of Mavroeidis & Papageorgiou [-]; null for others")
-    phase: float | None = said("nu of Mavroeidis & Papageorgiou [rad]; null for others")
-    explained: float = said("share of the sum of squares of the velocity that the pulse explains [-]")
+    period: float = said("T_p", unit="s")
+    peak_acceleration: float = said("a_g", unit="m/s2")
+    centre: float = said("time of its centre from the first sample", unit="s")
+    cycles: float | None = said("gamma of Mavroeidis & Papageorgiou; null for others", unit="-")
+    phase: float | None = said("nu of Mavroeidis & Papageorgiou; null for others", unit="rad")
+    explained: float = said("share of the sum of squares of the velocity that the pulse explains", unit="-")
     scale_ratio: float | None = said(
-        "lowest scale at which the pulse overturns the block over that of the record [-]; above 1: unconservative; "
-        "null: one of them does not overturn it"
+        "lowest scale at which the pulse overturns the block over that of the record; above 1: unconservative; "
+        "null: one of them does not overturn it",
+        unit="-",
     )
 
 
 _SCALES = said("all scales at which the outcome changes, ascending; null: not asked for, or not found in time")
 
 
-@with_fields("record", "block")
-class RecordResponse(RecordAnswer[RecordResponseParams]):
+class RecordResponse(UnderRecord, OfBlock, RecordAnswer[RecordResponseParams]):
     """Response of the block; the fields mean the same as those of /v1/blocks/response."""
 
+    amplification: float | None = of("amplification")
+    peak_is_determined: bool = of("peak_is_determined")
+    overturned_resampled: bool | None = of("overturned_resampled")
+    peak_rotation_resampled: float | None = of("peak_rotation_resampled")
     thresholds: list[ScaleThreshold] | None = _SCALES
-    notes: list[str] = NOTES
     pulse: FittedPulse | None = said("null unless requested", None)
 
 
-@with_fields("record", "edges")
-class RecordBodyResponse(RecordAnswer[RecordResponseParams]):
+class RecordBodyResponse(UnderRecord, OfEdges, RecordAnswer[RecordResponseParams]):
     """What happens to a body whose centre of mass is not that of the block."""
 
-    edge: Edge
     thresholds: list[ScaleThreshold] | None = _SCALES
-    notes: list[str] = NOTES
 
 
-@declared(OF_SOLVER[:-1])
-class RecordHistoryResponse(Motion, RecordAnswer[RecordHistoryParams]):
+class RecordHistoryResponse(Motion, Peaked, RecordAnswer[RecordHistoryParams]):
     """A motion under a record."""
 
-    time: list[float] = said("from the first sample [s]")
-    impact_time: list[float] = said("times of the impacts [s]")
-    vertical_acceleration: list[float] | None = said("of the ground over g, upwards [-]; null: there is none", None)
+    time: list[float] = said("from the first sample", unit="s")
+    impact_time: list[float] = said("times of the impacts", unit="s")
+    vertical_acceleration: list[float] | None = said(
+        "of the ground over g, upwards; null: there is none", None, unit="-"
+    )
 
 
-@declared(OF_SOLVER[1:-1])
-class RecordBodyHistoryResponse(RecordAnswer[RecordHistoryParams]):
+class RecordBodyHistoryResponse(Ended, RecordAnswer[RecordHistoryParams]):
     """Motion under a record of a body whose edges differ from those of a block, in SI units."""
 
-    time: list[float] = said("from the first sample [s]")
-    impact_time: list[float] = said("times of the impacts [s]")
-    rotation: list[float] = said("theta, positive about the right edge [rad]")
-    angular_velocity: list[float] = said("theta' [rad/s]")
-    edge: list[int] = said("edge in contact: 1 right, -1 left, 0 both [-]")
-    ground_acceleration: list[float] = said("horizontal [m/s2]")
-    vertical_acceleration: list[float] = said("upwards [m/s2]")
-    top_displacement: list[float] = said("horizontal displacement of the top [m]")
+    time: list[float] = said("from the first sample", unit="s")
+    impact_time: list[float] = said("times of the impacts", unit="s")
+    rotation: list[float] = said("theta, positive about the right edge", unit="rad")
+    angular_velocity: list[float] = said("theta'", unit="rad/s")
+    edge: list[int] = said("edge in contact: 1 right, -1 left, 0 both", unit="-")
+    ground_acceleration: list[float] = said("horizontal", unit="m/s2")
+    vertical_acceleration: list[float] = said("upwards", unit="m/s2")
+    top_displacement: list[float] = said("horizontal displacement of the top", unit="m")
     contact: ContactResponse | None = said("null unless requested", None)
 
 
-@declared(OF_SOLVER, many=True)
-class RecordScalesResponse(RecordAnswer[RecordScalesParams]):
+class RecordScalesResponse(ManySolved, RecordAnswer[RecordScalesParams]):
     """The response over the scale of a record, and every scale at which the outcome changes."""
 
-    scale: list[float] = said("factors of the record [-]")
-    peak_acceleration: list[float] = said("PGA of the scaled record [m/s2]")
+    scale: list[float] = said("factors of the record", unit="-")
+    peak_acceleration: list[float] = said("PGA of the scaled record", unit="m/s2")
     thresholds: list[ScaleThreshold] = said(
         "scales at which the outcome changes, ascending, from that of uplift to the largest: of factors at most "
         "0.5 % apart up to the lowest, 0.2 % above it"
@@ -217,9 +229,9 @@ class RecordPulseResponse(RecordAnswer[RecordPulseParams]):
     """The pulse fitted to the velocity of a record, and both motions for a drawing."""
 
     pulse: FittedPulse = said("parameters of the pulse")
-    time: list[float] = said("from the first sample [s]; every few samples of a long record")
-    record_acceleration: list[float] = said("of the record, factor included [m/s2]")
-    pulse_acceleration: list[float] = said("of the pulse, factor included [m/s2]")
-    record_velocity: list[float] = said("of the record, factor included [m/s]")
-    pulse_velocity: list[float] = said("of the pulse, factor included [m/s]")
+    time: list[float] = said("from the first sample; every few samples of a long record", unit="s")
+    record_acceleration: list[float] = said("of the record, factor included", unit="m/s2")
+    pulse_acceleration: list[float] = said("of the pulse, factor included", unit="m/s2")
+    record_velocity: list[float] = said("of the record, factor included", unit="m/s")
+    pulse_velocity: list[float] = said("of the pulse, factor included", unit="m/s")
     caution: str = said("why the pulse does not replace the record", CAUTION)

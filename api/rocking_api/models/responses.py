@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
-from pydantic import BaseModel, create_model
+from pydantic import BaseModel
 
-from rocking._dimensional.fields import SHOWN
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model import fields as own
-from rocking._model.fields import COLUMN_FIELDS, ResponseField
+from rocking._model.fields import COLUMN_FIELDS
 from rocking._model.outcome import Outcome
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.encoding import Column, columns_as_they_are
-from rocking_api.models.answer import Bare, Echoed, InGroups, ListAnswer, Q, Solved
+from rocking_api.models.answer import Bare, InGroups, ListAnswer, Solved
+from rocking_api.models.fields import OUTCOMES, LookedUp, ManyLookedUp, Peaked
 from rocking_api.models.params import (
     HistoryParams,
     ListParams,
@@ -28,55 +26,16 @@ from rocking_api.models.params import (
 )
 from rocking_api.models.quantity import said
 
-Model = TypeVar("Model", bound=BaseModel)
-
-OUTCOMES = [outcome.name for outcome in Outcome]
+SOURCES = ("solver", "cube")  # by whether a response is from a data set
 
 _WORDS = {int(outcome): (outcome.name, outcome.sentence) for outcome in Outcome}
 
-SOURCES = ("solver", "cube")  # by whether a response is from a data set
-
 _OF_POINT = [field for field in own.BOUNDED_FIELDS if field is not own.FROM_CUBE]
-
-OF_SOLVER = (own.PEAK_ROTATION, own.OVERTURNED, own.OUTCOME, own.IMPACTS, own.EXCEEDED_ALPHA)
-"""Fields of each response of the solver."""
-
-_LOOKED_UP = [
-    replace(one, missing="where a data set leaves it open, method=solver counts") if one is own.IMPACTS else one
-    for one in COLUMN_FIELDS
-]
-
-_DETAILS = {
-    own.OUTCOME.name: f"one of {', '.join(OUTCOMES)}",
-    own.EXCEEDED_ALPHA.name: "the ground can bring a block back from there",
-}
 
 _DATA = said("sha256 of the data set that answered, of several that next below the restitution; null: the solver did")
 
 
-def declared(fields: Iterable[ResponseField], *, many: bool = False) -> Callable[[type[Model]], type[Model]]:
-    """A decorator that adds declared fields to a model, unless it has them; lists of them if `many`."""
-
-    def add(model: type[Model]) -> type[Model]:
-        found: dict[str, Any] = {}
-        for one in fields:
-            text = "; ".join(filter(None, (one.description(unit=one.label_unit), _DETAILS.get(one.name))))
-            kind: Any = str if one.name == "outcome" else {"f": float, "?": bool, "U": str, "i": int}[one.dtype[0]]
-            kind = kind | None if one.missing else kind
-            if one.label not in model.model_fields:
-                found[one.label] = (list[kind] if many else kind), said(text)
-        return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **found)
-
-    return add
-
-
-def with_fields(*kinds: str) -> Callable[[type[Model]], type[Model]]:
-    """`declared` with what is found of one body, for responses of some kinds."""
-    return declared([one for one in SHOWN if one.dtype != "O" and one.kinds >= {*kinds}])
-
-
-@declared(_LOOKED_UP)
-class PointResponse(InGroups[ResponseParams]):
+class PointResponse(LookedUp, InGroups[ResponseParams]):
     """One block."""
 
     meaning: str = said("the outcome in words")
@@ -84,40 +43,36 @@ class PointResponse(InGroups[ResponseParams]):
     data_version: str | None = _DATA
 
 
-class Columns(InGroups[Q]):
+class BatchQuery(LookupOptions):
+    """What the answer repeats of a batch."""
+
+    points: int = said("number of points", unit="-")
+    pulse_digest: str | None = said("sha256 of the samples of the pulse; null for a pulse by its name", None)
+
+
+class BatchResponse(ManyLookedUp, InGroups[BatchQuery]):
     """Many blocks, in the order of the request."""
 
     data_versions: list[str] = said("sha256 of each data set used")
 
 
-class BatchQuery(LookupOptions):
-    """What the answer repeats of a batch."""
-
-    points: int = said("number of points [-]")
-
-
-@declared(_LOOKED_UP, many=True)
-class BatchResponse(Echoed[BatchQuery], Columns[BatchQuery]):
-    """A batch."""
-
-
-@declared(_LOOKED_UP, many=True)
-class SpectrumResponse(Echoed[SpectrumParams], Columns[SpectrumParams]):
+class SpectrumResponse(ManyLookedUp, InGroups[SpectrumParams]):
     """A spectrum."""
 
-    frequency_ratio: list[float] = said("omega_g/p [-]")
+    frequency_ratio: list[float] = said("omega_g/p", unit="-")
+    data_versions: list[str] = said("sha256 of each data set used")
 
 
 class Curve(BaseModel):
     """One boundary curve."""
 
     outcome: str = said("outcome on the side where the block overturns")
-    impacts: int = said("impacts before it overturns there; -1: more than 12, or not counted [-]")
-    slenderness: list[float] = said("1/a [-]")
-    frequency_ratio: list[float] = said("omega_g/p [-]")
+    impacts: int = said("impacts before it overturns there; -1: more than 12, or not counted", unit="-")
+    slenderness: list[float] = said("1/a", unit="-")
+    frequency_ratio: list[float] = said("omega_g/p", unit="-")
 
 
-class OverturningResponse(Echoed[OverturningParams], InGroups[OverturningParams]):
+class OverturningResponse(InGroups[OverturningParams]):
     """The boundary curves of a pulse and a restitution."""
 
     curves: list[Curve] = said("boundary curves")
@@ -128,16 +83,24 @@ class OverturningResponse(Echoed[OverturningParams], InGroups[OverturningParams]
 class ContactResponse(BaseModel):
     """Reactions of the ground during a motion; of a block that overturns, until it passes alpha for the last time."""
 
-    horizontal_reaction: list[float] = said("H/(m g) at the pivot [-]; 0 in the slender limit")
-    normal_reaction: list[float] = said("N/(m g) [-]; 0 and below: the block lifts off")
-    friction_demand: list[float | None] = said("|H|/N [-]; null where N <= 0; 0 in the slender limit")
+    horizontal_reaction: list[float] = said("H/(m g) at the pivot; 0 in the slender limit", unit="-")
+    normal_reaction: list[float] = said("N/(m g); 0 and below: the block lifts off", unit="-")
+    friction_demand: list[float | None] = said("|H|/N; null where N <= 0; 0 in the slender limit", unit="-")
     friction_demand_over_slope: list[float | None] | None = said(
-        "|H|/(N tan alpha) [-]; null where N <= 0, and without one alpha", None
+        "|H|/(N tan alpha); null where N <= 0, and without one alpha", None, unit="-"
     )
-    largest_friction_demand: float | None = said("largest |H|/N, also between the samples [-]; null if it lifts off")
-    largest_friction_demand_over_slope: float | None = said("the same over tan alpha [-]", None)
-    smallest_normal_reaction: float = said("smallest N/(m g), also between the samples [-]; 0 and below: it lifts off")
-    impulse_ratio: float | None = said("horizontal over vertical impulse at impacts [-]; 0 without; null: infinite")
+    largest_friction_demand: float | None = said(
+        "largest |H|/N, also between the samples; null if it lifts off", unit="-"
+    )
+    largest_friction_demand_over_slope: float | None = said("the same over tan alpha", None, unit="-")
+    smallest_normal_reaction: float = said(
+        "smallest N/(m g), also between the samples; 0 and below: it lifts off", unit="-"
+    )
+    impulse_ratio: float | None = said(
+        "horizontal over vertical impulse at impacts; 0 without; null: infinite", unit="-"
+    )
+    horizontal_force: list[float] | None = said("H; null unless the mass is stated", None, unit="N")
+    normal_force: list[float] | None = said("N; null unless the mass is stated", None, unit="N")
     lifts_off: bool = said("whether the block leaves the ground")
     warnings: str = said("where the assumption of pure rocking is doubtful, in words")
 
@@ -145,26 +108,33 @@ class ContactResponse(BaseModel):
 class Motion(BaseModel):
     """A motion: outcome and samples, over time in seconds or in p t."""
 
-    rotation: list[float] = said("theta/alpha [-]")
-    angular_velocity: list[float] = said("d(theta/alpha)/d tau, tau = p t [-]")
-    ground_acceleration: list[float] = said("u_g/(g tan alpha) [-]; under a pulse a f")
+    rotation: list[float] = said("theta/alpha", unit="-")
+    angular_velocity: list[float] = said("d(theta/alpha)/d tau, tau = p t", unit="-")
+    ground_acceleration: list[float] = said("u_g/(g tan alpha); under a pulse a f", unit="-")
     contact: ContactResponse | None = said("null unless requested", None)
 
 
-@declared(OF_SOLVER[:-1])
-class HistoryResponse(Echoed[HistoryParams], Motion, Solved[HistoryParams]):
+class HistoryResponse(Motion, Peaked, Solved[HistoryParams]):
     """A motion under a pulse."""
 
-    tau: list[float] = said("time p t from the start of the pulse [-]")
-    impact_time: list[float] = said("times p t of the impacts [-]")
+    tau: list[float] = said("time p t from the start of the pulse", unit="-")
+    impact_time: list[float] = said("times p t of the impacts", unit="-")
 
 
 class Link(BaseModel):
     """A link, as in a STAC item."""
 
-    rel: str = said("self: the description; data: the file; version: this version of it; subset; zarr")
+    rel: str = said("self: the description; data: the file; subset: a part of it")
     href: str = said("path on this service")
     type: str = said("media type")
+
+
+class Extent(BaseModel):
+    """Ends of the axes of a data set."""
+
+    alpha: tuple[float, float] | None = said("slenderness angle", None, unit="rad")
+    slenderness: tuple[float, float] | None = said("g tan(alpha)/a_g", None, unit="-")
+    frequency_ratio: tuple[float, float] | None = said("omega_g/p", None, unit="-")
 
 
 class DatasetSummary(BaseModel):
@@ -173,22 +143,19 @@ class DatasetSummary(BaseModel):
     name: str = said("name: the path below the results folder, without suffix")
     title: str = said("title")
     pulse: str | None = said("pulse, see /v1/pulses; null: several or none")
-    restitution: float | None = said("coefficient of restitution eta [-]; null: several or none")
-    extent: dict[str, tuple[float, float]] = said("ends of alpha [rad], slenderness [-] and frequency_ratio [-]")
-    size: int = said("size of the netCDF file [byte]")
-    sha256: str = said("sha256 of the netCDF file")
+    restitution: float | None = said("coefficient of restitution eta; null: several or none", unit="-")
+    extent: Extent = said("ends of the axes; null: it has no such axis")
+    size: int = said("size of the netCDF file", unit="byte")
+    sha256: str | None = said("sha256 of the netCDF file; null: it was not read yet, ask again in a moment")
     metadata: str = said("path of its description")
     netcdf: str = said("path of the file, for a download or xarray over HTTP (Range)")
-    version_url: str = said("path of this version of the file; immutable")
-    zarr: str = said("path for xarray.open_zarr(...)")
     links: list[Link] = said("the same paths with relation and media type")
 
 
-class PulseCubes(BaseModel):
-    """The spectrum cubes of one pulse, which are also one zarr store."""
+class PulseStore(BaseModel):
+    """The spectrum cubes of one pulse as one zarr store."""
 
-    name: str = said("folder of the cubes, and name of the store")
-    restitution: list[float] = said("coefficients of restitution of the cubes, ascending [-]")
+    name: str = said("pulse")
     zarr: str = said("path for xarray.open_zarr(...), over the dimension restitution too")
 
 
@@ -196,14 +163,14 @@ class DatasetCatalogue(ListAnswer[ListParams]):
     """Data sets."""
 
     datasets: list[DatasetSummary] = said("in the order of their names")
-    pulses: list[PulseCubes] = said("the spectrum cubes of these by pulse, in the order of their names")
+    pulses: list[PulseStore] = said("zarr stores of the spectrum cubes, one a pulse")
 
 
 class VariableDescription(BaseModel):
     """A variable of a data set."""
 
     dimensions: list[str] = said("names of its dimensions, in order")
-    shape: list[int] = said("its size along each of them [-]")
+    shape: list[int] = said("its size along each of them", unit="-")
     dtype: str = said("type of its values")
     attributes: dict[str, Any] = said("CF attributes: units, long_name, equation and others")
 
@@ -211,7 +178,7 @@ class VariableDescription(BaseModel):
 class DatasetDescription(DatasetSummary, Bare):
     """Contents of a data set."""
 
-    dimensions: dict[str, int] = said("size of each dimension [-]")
+    dimensions: dict[str, int] = said("size of each dimension", unit="-")
     coordinates: dict[str, VariableDescription] = said("coordinates by name")
     variables: dict[str, VariableDescription] = said("variables by name")
     attributes: dict[str, Any] = said("CF and ACDD attributes, digests of code and settings")
@@ -221,13 +188,13 @@ class Health(Bare):
     """State of the service."""
 
     status: str = said("ok, or degraded: data sets are missing or damaged, and the solver replaces them")
-    datasets: int = said("data sets found [-]")
-    unchecked: int = said("number of data sets not yet checked; retry in a moment [-]", 0)
+    datasets: int = said("data sets found", unit="-")
+    unchecked: int = said("number of data sets not yet checked; retry in a moment", 0, unit="-")
     problems: dict[str, str] = said("what is missing or damaged, by name")
 
 
 def columns_of(result: BatchResult) -> dict[str, Column]:
-    """The fields of `Columns` with one value for each point."""
+    """The fields of `ManyLookedUp`, a value for each point."""
     codes, impacts, from_cube = result.fields[own.OUTCOME.name], result.fields[own.IMPACTS.name], result.from_cube
     columns = columns_as_they_are(result.fields) | {
         own.OVERTURNED.name: lambda part: (codes[part] >= Outcome.OVERTURNED_DIRECTLY).tolist(),
@@ -238,7 +205,9 @@ def columns_of(result: BatchResult) -> dict[str, Column]:
     return {field.name: columns[field.name] for field in COLUMN_FIELDS}
 
 
-def point_response(params: ResponseParams, found: BoundedResponse, versions: tuple[str, ...]) -> PointResponse:
+def point_response(
+    params: ResponseParams, found: BoundedResponse, versions: tuple[str, ...], url: str
+) -> PointResponse:
     """The response for one block."""
     fields: dict[str, Any] = {one.name: getattr(found, one.name).item() for one in _OF_POINT}
     fields |= {name: values.item() for name, values in found.derived.items()}
@@ -257,4 +226,4 @@ def point_response(params: ResponseParams, found: BoundedResponse, versions: tup
     fields["outcome"], fields["meaning"] = _WORDS[outcome]
     fields["overturned"], fields["source"] = outcome >= Outcome.OVERTURNED_DIRECTLY, SOURCES[from_cube]
     version = versions[0] if versions and from_cube else None
-    return PointResponse(query=params, warnings=warnings, note=note, data_version=version, **fields)
+    return PointResponse(query=params, url=url, warnings=warnings, note=note, data_version=version, **fields)

@@ -13,32 +13,34 @@ from fastapi import APIRouter, Query, Request, Response
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import GROUPS
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.response import BodyResponse as Found
+from rocking._dimensional.response import BodyResponse as SolvedBody
 from rocking._dimensional.response import respond
 from rocking._dimensional.table import BlockTable, read_table, respond_table
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
-from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, csv_response, json_response, negotiated_form
+from rocking_api.http.encoding import JsonOrFile, body_form, body_of, csv_response, stated
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.parameters import ParamsRoute
 from rocking_api.models import blocks as m
-from rocking_api.models.bodies import body_of, json_content, text_content
+from rocking_api.models.answer import Url
 from rocking_api.models.params import ResponseParams
+from rocking_api.models.pulses import digest_of, name_of
 from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, WithUnit, served
-from rocking_api.models.responses import SOURCES, PointResponse, point_response
+from rocking_api.models.responses import PointResponse, point_response
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
-router = APIRouter(prefix="/v1/blocks", tags=["response"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1/blocks", tags=["response"])
 
-MAX_BODY = 4 * 1024 * 1024  # largest body with blocks [bytes]
+MAX_BODY = 4 * 1024 * 1024  # largest table of blocks [bytes]
 
-_EXAMPLE = {
+_CSV = "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n"
+
+_JSON = {
+    "pulse": "sine",
     "blocks": [
         {"name": "vase", "width": 0.2, "height": 0.8, "peak_acceleration": 4.0, "period": 0.5},
         {"name": "column", "width": 1.0, "height": 6.0, "peak_acceleration": 4.0, "period": 0.5},
-    ]
+    ],
 }
 
 BY_SOLVER = "no data set covers this block within the tolerance; the solver was used, with its own error bound"
@@ -46,47 +48,59 @@ BY_SOLVER = "no data set covers this block within the tolerance; the solver was 
 
 @router.get("/response", summary="A block in SI units")
 async def get_block(
-    params: Annotated[m.BlockParams, Query()], request: Request, service: ServiceDep
+    params: Annotated[m.BlockParams, Query()], request: Request, service: ServiceDep, url: Url
 ) -> m.BlockResponse | m.BodyResponse:
     """Outcome, rotation in degrees, displacement in metres, distance to another outcome, friction, by (2.2).
 
     A body with other edges than those of a block is solved by them, and has no response in groups.
     """
-    return await service.run_heavy(lambda stop: _block(service, params, stop), request)
+    return await service.solve_one(lambda stop: _block(service, params, url, stop), request)
 
 
 @router.post(
     "/response",
     summary="Many blocks in SI units",
     response_model=m.BlocksResponse,
-    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
-    openapi_extra=body_of(
-        {
-            **json_content(m.BlockRows, _EXAMPLE),
-            **text_content(
-                MEDIA_TYPES["csv"], "name,width [m],height [cm],peak_acceleration [g],period [s]\nvase,0.2,80,0.4,0.5\n"
-            ),
-        },
-        m.BlocksParams,
-    ),
+    responses={200: {"content": {"text/csv": {}}}},
+    openapi_extra=body_of(_JSON, {"text/csv": _CSV}),
 )
-async def post_blocks(request: Request, service: ServiceDep) -> Response:
-    """JSON, or CSV with units in its header; the response has the same format, or that of `format` or `Accept`.
+async def post_blocks(
+    body: JsonOrFile[m.BlockRows],
+    params: Annotated[m.BlocksParams, Query()],
+    request: Request,
+    service: ServiceDep,
+    url: Url,
+) -> Any:
+    """JSON, or CSV with units in its header; the response has the same format, or that of `format`.
 
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
     optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`.
     """
-    given = body_form(request, TABLE_FORMS)
-    params, body = await service.read(request, m.BlocksParams, given, m.BlockRows, MAX_BODY)
-    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
-    table = await service.run_parser(lambda stop: _read_table(body, params, stop), request, large=True)
-    return await service.run_heavy(lambda stop: _blocks(service, params, request, table, form, stop), request)
+    given = body_form(request, ("json", "csv"))
+    shared = stated(body, params)
+
+    def work(stop: StopFlag) -> m.BlocksResponse | Response:
+        table = _read_table(body, shared, stop)
+        columns: dict[str, Any] = {**respond_table(table, stop)}
+        if (shared.format or given) == "csv":
+            return csv_response(columns, "blocks")
+        columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
+        query = m.BlocksQuery.model_construct(  # the name of samples is no name of a pulse
+            pulse=name_of(shared.pulse),
+            restitution=shared.restitution,
+            format=shared.format,
+            pulse_digest=digest_of(shared.pulse),
+        )
+        answer = m.BlocksResponse.model_construct(query=query, url=url, **columns)
+        return Response(answer.model_dump_json(), media_type="application/json")
+
+    return await service.solve_one(work, request)
 
 
-def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams, stop: StopFlag) -> BlockTable:
+def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams | m.BlockRows, stop: StopFlag) -> BlockTable:
     """The blocks of a body, each checked."""
     if params.pulse is None:
-        raise InvalidArgumentError("pulse", None, "required in the query, or in a JSON body")
+        raise InvalidArgumentError("pulse", None, "required in the query beside CSV, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
         table = read_table(text, params.pulse, params.restitution, most=m.MAX_BLOCKS, stop=stop, limited=served)
@@ -111,36 +125,24 @@ def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams, stop: StopFla
     return table
 
 
-def _blocks(
-    service: Service, params: m.BlocksParams, request: Request, table: BlockTable, form: str, stop: StopFlag
-) -> Response:
-    columns: dict[str, Any] = {**respond_table(table, stop)}
-    service.metrics.points("solver", len(table.problems))
-    if form == "csv":
-        return csv_response(columns, "blocks")
-    columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
-    return json_response(m.BlocksResponse.model_construct(query=params, **columns), request)
-
-
-def _block(service: Service, params: m.BlockParams, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:
+def _block(service: Service, params: m.BlockParams, url: str, stop: StopFlag) -> m.BlockResponse | m.BodyResponse:
     peak = params.peak_acceleration
     problem = Problem.of(params.rocking_body, params.pulse, peak, params.period, params.restitution)
     problem = replace(problem, unit_is_stated=isinstance(peak, WithUnit))
     if not problem.is_block:
         if params.method == "cube":
             raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")
-        service.metrics.points("solver", 1)
         found = respond(problem, stop=stop)
-        said: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
-        return m.BodyResponse(query=params, **said)
+        fields: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
+        return m.BodyResponse(query=params, url=url, **fields)
     point, bounded = _point(service, params, problem, stop)
     seconds = SEARCH_SHARE * service.settings.max_seconds
-    served = FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
-    found = Found(bounded, problem, seconds=seconds, served=served, stop=stop)
-    about: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
-    about["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *about["notes"]]
-    about["margins"] = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
-    return m.BlockResponse(query=params, response=point, data_version=point.data_version, **about)
+    limits = FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
+    found = SolvedBody(bounded, problem, seconds=seconds, served=limits, stop=stop)
+    fields = {"thresholds": found.changes, **found.summary()}
+    fields["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *fields["notes"]]
+    fields["margins"] = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
+    return m.BlockResponse(query=params, url=url, response=point, data_version=point.data_version, **fields)
 
 
 def _point(
@@ -148,15 +150,14 @@ def _point(
 ) -> tuple[PointResponse, BoundedResponse]:
     """The response in groups, by a data set or by the solver, as a model too."""
     groups = problem.groups
-    for one in (SLENDERNESS, FREQUENCY_RATIO):
-        one.convert(groups[one.name])
-    given: dict[str, Any] = groups | {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
-    dimensionless = ResponseParams.model_construct(**given, alpha_deg=math.degrees(given.pop("alpha")))
-    points = np.array([groups[one.name] for one in GROUPS]).reshape(4, 1)
+    for quantity in (SLENDERNESS, FREQUENCY_RATIO):
+        quantity.convert(groups[quantity.name])
+    values: dict[str, Any] = {name: value for name, value in groups.items() if name != "alpha"}
+    values |= {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
+    dimensionless = ResponseParams.model_construct(**values, alpha_deg=math.degrees(groups["alpha"]))
+    points = np.array([groups[quantity.name] for quantity in GROUPS]).reshape(4, 1)
     found, versions = evaluate(service.cubes, dimensionless, points, stop)
     if not found.from_cube:
         found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres
-    answer = point_response(dimensionless, found, versions)
-    service.metrics.points(SOURCES[found.from_cube.item()], 1)
-    answer.url = f"/v1/response?{urlencode(dict(dimensionless))}"
-    return answer, found.reshape(())
+    url = f"/v1/response?{urlencode(dict(dimensionless))}"
+    return point_response(dimensionless, found, versions, url), found.reshape(())

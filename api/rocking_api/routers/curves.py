@@ -1,53 +1,71 @@
-"""Blocks in groups along a curve, over a window or against time: spectrum, history, thresholds, map."""
+"""Blocks in groups along a curve, over a window or against time: spectrum, history, thresholds, map.
+
+Each has a GET with the parameters in the query, and a POST with the same in a JSON body, where the pulse may be
+given by samples.
+"""
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from numpy.typing import NDArray
-from pydantic import BaseModel, Field
+from pydantic import BaseModel
 
 from rocking._base.arrays import Array
 from rocking._base.errors import finite
 from rocking._boundary.amplitude import thresholds
 from rocking._datasets.cube import AXES
+from rocking._dimensional.fields import CONTACT_FORCES
 from rocking._history.contact import ATTRIBUTES, COLUMNS
 from rocking._history.time_history import time_history
 from rocking._model.checks import check_window
 from rocking._model.outcome import Outcome
-from rocking._model.response import Response as Found
+from rocking._model.response import Response as SolverResponse
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.peak_response import peak_response
 from rocking_api.execution.evaluation import evaluate_many
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import Echoed, Solved
-from rocking_api.models.params import BlockInGroups, HistoryParams, ShapeParams, SpectrumParams, alpha_of
-from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, Format, FrequencyRatio, Slenderness, between, said
-from rocking_api.models.responses import OUTCOMES, ContactResponse, HistoryResponse, SpectrumResponse, columns_of
-from rocking_api.routers.twin import pair
+from rocking_api.models.answer import Solved, Url, no_query
+from rocking_api.models.fields import OUTCOMES
+from rocking_api.models.params import HistoryParams, MapParams, SpectrumParams, ThresholdsParams, alpha_of
+from rocking_api.models.pulses import HistoryBody, MapBody, SpectrumBody, ThresholdsBody
+from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, said
+from rocking_api.models.responses import ContactResponse, HistoryResponse, SpectrumResponse, columns_of
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", tags=["curves"])
+
+SAMPLED = ", under a pulse given by samples"  # what the summaries of POST add to those of GET
 
 
-@pair(
-    router,
+@router.get(
     "/spectrum",
-    "Peak rotation against frequency ratio",
+    summary="Peak rotation against frequency ratio",
     response_model=SpectrumResponse,
     responses=encoding.CONTENT,
 )
-async def get_spectrum(params: Annotated[SpectrumParams, Query()], request: Request, service: ServiceDep) -> Response:
+async def get_spectrum(
+    params: Annotated[SpectrumParams, Query()], request: Request, service: ServiceDep, url: Url
+) -> Any:
     """Blocks of one slenderness over a window of the frequency ratio."""
-    form = encoding.negotiated_form(request, params.format)
     ratio = _axis(service, params)
-    return await service.run_heavy(lambda stop: _spectrum(service, params, request, ratio, form, stop), request)
+    return await service.solve(lambda stop: _spectrum(service, params, ratio, url, stop), request)
+
+
+@router.post(
+    "/spectrum",
+    summary=f"Peak rotation against frequency ratio{SAMPLED}",
+    response_model=SpectrumResponse,
+    responses=encoding.CONTENT,
+    dependencies=[Depends(no_query)],
+)
+async def post_spectrum(params: SpectrumBody, request: Request, service: ServiceDep, url: Url) -> Any:
+    """The same with the parameters in a JSON body."""
+    return await get_spectrum(params, request, service, url)
 
 
 def _axis(service: Service, params: SpectrumParams) -> Array:
@@ -59,8 +77,8 @@ def _axis(service: Service, params: SpectrumParams) -> Array:
 
 
 def _spectrum(
-    service: Service, params: SpectrumParams, request: Request, frequency_ratio: Array, form: str, stop: StopFlag
-) -> Response:
+    service: Service, params: SpectrumParams, frequency_ratio: Array, url: str, stop: StopFlag
+) -> SpectrumResponse | Response:
     shape = frequency_ratio.shape
     groups = {
         "slenderness": np.broadcast_to(np.float64(params.slenderness), shape),
@@ -68,37 +86,55 @@ def _spectrum(
         "restitution": np.broadcast_to(np.float64(params.restitution), shape),
     }
     result = evaluate_many(service.cubes, params, groups, stop)
-    if form == "nc":
+    if params.format == "nc":
         attributes = params.model_dump(exclude={"format"}, exclude_none=True)
         return encoding.netcdf_response(
             encoding.dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum"
         )
     curve = encoding.columns_as_they_are({"frequency_ratio": frequency_ratio}) | columns_of(result)
-    if form == "csv":
+    if params.format == "csv":
         return encoding.csv_stream(curve, frequency_ratio.size, "spectrum")
     lists: dict[str, Any] = {name: column(slice(None)) for name, column in curve.items()}
-    return encoding.json_response(
-        SpectrumResponse.model_construct(query=params, data_versions=list(result.versions), **lists), request
+    return json_of(
+        SpectrumResponse.model_construct(query=params, url=url, data_versions=list(result.versions), **lists)
     )
 
 
-SAMPLED = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "top_displacement")
+def json_of(answer: BaseModel) -> Response:
+    """An answer with long lists as JSON, which FastAPI would validate number by number."""
+    return Response(answer.model_dump_json(), media_type="application/json")
+
+
+SERIES = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "top_displacement")
 """Variables of motions that are sent where they are known."""
 
 
-@pair(router, "/history", "Motion of one block", response_model=HistoryResponse, responses=encoding.CONTENT)
-async def get_history(params: Annotated[HistoryParams, Query()], request: Request, service: ServiceDep) -> Response:
+@router.get("/history", summary="Motion of one block", response_model=HistoryResponse, responses=encoding.CONTENT)
+async def get_history(
+    params: Annotated[HistoryParams, Query()], request: Request, service: ServiceDep, url: Url
+) -> Any:
     """Rotation and angular velocity from the start of the pulse through free rocking, always computed by the solver.
 
     With `contact`, also the reactions of the ground and the friction demand.
     """
     if params.samples > service.settings.max_samples:
         raise TooLargeError("samples", params.samples, f"at most {service.settings.max_samples}")
-    form = encoding.negotiated_form(request, params.format)
-    return await service.run_heavy(lambda stop: _history(params, request, form, stop), request)
+    return await service.solve(lambda stop: _history(params, url, stop), request)
 
 
-def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag) -> Response:
+@router.post(
+    "/history",
+    summary=f"Motion of one block{SAMPLED}",
+    response_model=HistoryResponse,
+    responses=encoding.CONTENT,
+    dependencies=[Depends(no_query)],
+)
+async def post_history(params: HistoryBody, request: Request, service: ServiceDep, url: Url) -> Any:
+    """The same with the parameters in a JSON body."""
+    return await get_history(params, request, service, url)
+
+
+def _history(params: HistoryParams, url: str, stop: StopFlag) -> Response:
     motion = time_history(
         params.pulse,
         slenderness=params.slenderness,
@@ -108,31 +144,31 @@ def _history(params: HistoryParams, request: Request, form: str, stop: StopFlag)
         contact=params.contact,
         stop=stop,
     )
-    if form == "nc":
+    if params.format == "nc":
         return encoding.netcdf_response(motion, "history")
     columns, reactions = motion_columns(motion, "tau")
-    if form == "csv":
+    if params.format == "csv":
         return encoding.csv_response(columns | reactions, "history")
-    return encoding.json_response(
-        HistoryResponse.model_construct(query=params, **motion_fields(motion, reactions), **columns), request
-    )
+    fields = motion_fields(motion, reactions)
+    return json_of(HistoryResponse.model_construct(query=params, url=url, **fields, **columns))
 
 
 def motion_columns(motion: xr.Dataset, time: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """The samples of a motion against its variable of time, and of the reactions, if it has any."""
-    columns = {name: motion[name].values.tolist() for name in (time, *SAMPLED) if name in motion}
-    return columns, {name: motion[name].values.tolist() for name in COLUMNS if name in motion}
+    columns = {name: motion[name].values.tolist() for name in (time, *SERIES) if name in motion}
+    reactions = (*COLUMNS, *CONTACT_FORCES)
+    return columns, {name: motion[name].values.tolist() for name in reactions if name in motion}
 
 
 def motion_fields(motion: xr.Dataset, reactions: dict[str, Any]) -> dict[str, Any]:
     """The fields of `Motion` beside the samples; of another body without a peak."""
-    about = motion.attrs
-    peak = {"peak_rotation": finite(float(about["peak_rotation"]))} if "peak_rotation" in about else {}
+    attributes = motion.attrs
+    peak = {"peak_rotation": finite(float(attributes["peak_rotation"]))} if "peak_rotation" in attributes else {}
     return peak | {
-        "overturned": Outcome[about["outcome"]] >= Outcome.OVERTURNED_DIRECTLY,
-        "outcome": about["outcome"],
-        "impacts": int(about["impacts"]),
-        "warnings": [about["warnings"]] if reactions and about["warnings"] else [],
+        "overturned": Outcome[attributes["outcome"]] >= Outcome.OVERTURNED_DIRECTLY,
+        "outcome": attributes["outcome"],
+        "impacts": int(attributes["impacts"]),
+        "warnings": [attributes["warnings"]] if reactions and attributes["warnings"] else [],
         "impact_time": motion["impact_time"].values.tolist(),
         "contact": _contact(motion, reactions) if reactions else None,
     }
@@ -147,48 +183,49 @@ def _contact(motion: xr.Dataset, reactions: dict[str, Any]) -> ContactResponse:
     )
 
 
-class AmplitudeParams(BlockInGroups):
-    """A block and a pulse without amplitude."""
-
-    highest: float = said("largest a = a_g/(g tan alpha) searched [-]", 100.0, gt=1, le=1e6)
-
-
 class AmplitudeThreshold(BaseModel):
     """An amplitude at which the outcome changes."""
 
-    amplitude: float = said("a = a_g/(g tan alpha) [-]")
-    slenderness: float = said("1/a [-]")
+    amplitude: float = said("a = a_g/(g tan alpha)", unit="-")
+    slenderness: float = said("1/a", unit="-")
     overturns_above: bool = said("true: overturns just above and survives just below it; false: the reverse")
     outcome: str = said("outcome on the side where it overturns")
     meaning: str = said("that outcome in words")
-    impacts: int = said("impacts before it overturns there [-]")
+    impacts: int = said("impacts before it overturns there", unit="-")
 
 
-class AmplitudeResponse(Echoed[AmplitudeParams], Solved[AmplitudeParams]):
+class AmplitudeResponse(Solved[ThresholdsParams]):
     """All amplitudes at which the outcome changes."""
 
     thresholds: list[AmplitudeThreshold] = said("ascending in amplitude")
-    largest_surviving_amplitude: float | None = said("amplitude below which it does not overturn [-]; null: none found")
+    largest_surviving_amplitude: float | None = said(
+        "amplitude below which it does not overturn; null: none found", unit="-"
+    )
 
 
-@pair(
-    router,
-    "/thresholds",
-    "Amplitudes at which the outcome of a block changes",
-    tag="response",
-    response_model=AmplitudeResponse,
-)
+@router.get("/thresholds", summary="Amplitudes at which the outcome of a block changes", tags=["response"])
 async def get_thresholds(
-    params: Annotated[AmplitudeParams, Query()], request: Request, service: ServiceDep
+    params: Annotated[ThresholdsParams, Query()], request: Request, service: ServiceDep, url: Url
 ) -> AmplitudeResponse:
     """Every threshold between survival and overturning, by the solver, each accurate to 1e-12 in 1/a.
 
     Where a block of restitution 1 overturns after more than 200 impacts, they are accurate to 1e-6.
     """
-    return await service.run_heavy(lambda stop: _answer(params, stop), request)
+    return await service.solve(lambda stop: _thresholds(params, url, stop), request)
 
 
-def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
+@router.post(
+    "/thresholds",
+    summary=f"Amplitudes at which the outcome of a block changes{SAMPLED}",
+    tags=["response"],
+    dependencies=[Depends(no_query)],
+)
+async def post_thresholds(params: ThresholdsBody, request: Request, service: ServiceDep, url: Url) -> AmplitudeResponse:
+    """The same with the parameters in a JSON body."""
+    return await get_thresholds(params, request, service, url)
+
+
+def _thresholds(params: ThresholdsParams, url: str, stop: StopFlag) -> AmplitudeResponse:
     found = thresholds(params.pulse, **params.groups, highest=params.highest, stop=stop)
     listed = [
         AmplitudeThreshold(
@@ -200,62 +237,64 @@ def _answer(params: AmplitudeParams, stop: StopFlag) -> AmplitudeResponse:
             impacts=impacts,
         )
         for amplitude, above, code, impacts in zip(
-            *(one.tolist() for one in (found.amplitude, found.overturns_above, found.outcome, found.impacts)),
+            found.amplitude.tolist(),
+            found.overturns_above.tolist(),
+            found.outcome.tolist(),
+            found.impacts.tolist(),
             strict=True,
         )
     ]
     lowest = listed[0].amplitude if listed else None
-    return AmplitudeResponse(query=params, thresholds=listed, largest_surviving_amplitude=lowest)
+    return AmplitudeResponse(query=params, url=url, thresholds=listed, largest_surviving_amplitude=lowest)
 
 
 DIGITS = 4  # decimals of the peaks in JSON [-]: enough for a picture, at a third of the length
-MAX_AGE = 600  # how long a client may store a map without revalidation [s]
+MAX_AGE = {"Cache-Control": "max-age=600"}  # how long a client may store a map
 
 
-class MapParams(ShapeParams):
-    """A window of the control space: columns uniform in log frequency ratio, rows uniform in slenderness."""
-
-    frequency_ratio_min: FrequencyRatio = Field(0.5, examples=[0.5])
-    frequency_ratio_max: FrequencyRatio = Field(12.0, examples=[12.0])
-    slenderness_min: Slenderness = Field(0.01, examples=[0.01])
-    slenderness_max: Slenderness = Field(1.05, examples=[1.05])
-    columns: int = between(2, math.inf, "frequency ratios [-]", default=120)
-    rows: int = between(2, math.inf, "slendernesses [-]", default=90)
-    format: Format = None
-
-
-class MapResponse(Echoed[MapParams], Solved[MapParams]):
+class MapResponse(Solved[MapParams]):
     """The map, row by row: the first row has the smallest slenderness and starts at the smallest frequency ratio."""
 
-    frequency_ratio: list[float] = said("omega_g/p of the columns [-]")
-    slenderness: list[float] = said("1/a of the rows [-]")
+    frequency_ratio: list[float] = said("omega_g/p of the columns", unit="-")
+    slenderness: list[float] = said("1/a of the rows", unit="-")
     peak_rotation: list[float | None] = said(
-        f"max |theta|/alpha [-] to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned"
+        f"max |theta|/alpha to {DIGITS} decimals (CSV and netCDF hold all digits); null if overturned", unit="-"
     )
-    outcome: list[int] = said("final outcome as an index into `outcomes` [-]")
+    outcome: list[int] = said("final outcome as an index into `outcomes`", unit="-")
     outcomes: list[str] = said("names of the outcomes")
 
 
-@pair(
-    router,
+@router.get(
     "/map",
-    "Outcome and peak rotation over a window of frequency ratio and slenderness",
+    summary="Outcome and peak rotation over a window of frequency ratio and slenderness",
     response_model=MapResponse,
     responses=encoding.CONTENT,
 )
-async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep) -> Response:
+async def get_map(params: Annotated[MapParams, Query()], request: Request, service: ServiceDep, url: Url) -> Any:
     """Many blocks in few bytes, for pictures; always computed by the solver, without error bounds."""
-    form = encoding.negotiated_form(request, params.format)
-    axes = _axes(service, params)
-    response = await service.run_heavy(lambda stop: _map(params, request, *axes, form, stop), request)
-    if request.method == "GET":
-        response.headers["Cache-Control"] = f"max-age={MAX_AGE}"
+    response = await _solved_map(params, request, service, url)
+    response.headers.update(MAX_AGE)
     return response
 
 
-def _map(
-    params: MapParams, request: Request, frequency_ratio: Array, slenderness: Array, form: str, stop: StopFlag
-) -> Response:
+@router.post(
+    "/map",
+    summary=f"Outcome and peak rotation over a window of frequency ratio and slenderness{SAMPLED}",
+    response_model=MapResponse,
+    responses=encoding.CONTENT,
+    dependencies=[Depends(no_query)],
+)
+async def post_map(params: MapBody, request: Request, service: ServiceDep, url: Url) -> Any:
+    """The same with the parameters in a JSON body."""
+    return await _solved_map(params, request, service, url)
+
+
+async def _solved_map(params: MapParams, request: Request, service: Service, url: str) -> Response:
+    axes = _axes(service, params)
+    return await service.solve(lambda stop: _map(params, *axes, url, stop), request)
+
+
+def _map(params: MapParams, frequency_ratio: Array, slenderness: Array, url: str, stop: StopFlag) -> Response:
     found = peak_response(
         params.pulse,
         slenderness=slenderness[:, None],
@@ -264,25 +303,25 @@ def _map(
         alpha=alpha_of(params.alpha_deg),
         stop=stop,
     )
-    if form == "nc":
+    if params.format == "nc":
         return encoding.netcdf_response(_dataset(params, frequency_ratio, slenderness, found), "map")
-    if form == "csv":
+    if params.format == "csv":
         s, w = np.meshgrid(slenderness, frequency_ratio, indexing="ij")
         columns: dict[str, NDArray[Any]] = {"slenderness": s, "frequency_ratio": w}
         columns |= {"peak_rotation": found.peak_rotation, "overturned": found.overturned}
         columns |= {"outcome": np.array(OUTCOMES)[found.outcome], "impacts": found.impacts}
         columns |= {"exceeded_alpha": found.exceeded_alpha}
         return encoding.csv_response({name: values.ravel().tolist() for name, values in columns.items()}, "map")
-    return encoding.json_response(
+    return json_of(
         MapResponse.model_construct(
             query=params,
+            url=url,
             frequency_ratio=frequency_ratio.tolist(),
             slenderness=slenderness.tolist(),
             peak_rotation=found.peak_rotation.ravel().round(DIGITS).tolist(),
             outcome=found.outcome.ravel().tolist(),
             outcomes=OUTCOMES,
-        ),
-        request,
+        )
     )
 
 
@@ -297,7 +336,7 @@ def _axes(service: Service, params: MapParams) -> tuple[Array, Array]:
     return np.geomspace(left, right, params.columns), np.linspace(low, high, params.rows)
 
 
-def _dataset(params: MapParams, frequency_ratio: Array, slenderness: Array, found: Found) -> xr.Dataset:
+def _dataset(params: MapParams, frequency_ratio: Array, slenderness: Array, found: SolverResponse) -> xr.Dataset:
     """The map with the names, types and attributes of the data sets."""
     axes = ("slenderness", "frequency_ratio")
     names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")

@@ -1,53 +1,43 @@
-"""Data sets: catalogue, description, netCDF file, zarr store, a part of a cube."""
+"""Data sets: catalogue, description, netCDF and zarr files, a part of a cube."""
 
 from __future__ import annotations
 
 import math
 from contextlib import suppress
-from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, HTTPException, Path, Query, Request, Response
 from numpy.typing import NDArray
-from starlette.exceptions import HTTPException
-from starlette.responses import StreamingResponse
 
 from rocking._base.errors import DatasetError, InvalidArgumentError
-from rocking._datasets.catalogue import DataFile, DatasetFile, UnknownDatasetError, version_of
+from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._datasets.cube import DIMENSIONS
-from rocking_api.dataset_archive import archive
 from rocking_api.dataset_summaries import summarized
 from rocking_api.http import encoding
-from rocking_api.http.caching import IMMUTABLE, REVALIDATE, not_modified, validators
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.files import file_response
-from rocking_api.http.parameters import ParamsRoute
+from rocking_api.models.answer import Url
 from rocking_api.models.params import ListParams, Params
 from rocking_api.models.quantity import FileFormat, said
 from rocking_api.models.responses import (
     DatasetCatalogue,
     DatasetDescription,
     DatasetSummary,
-    PulseCubes,
+    PulseStore,
     VariableDescription,
 )
 from rocking_api.service import Service, ServiceDep
-from rocking_api.zarr_store import SPECTRA, is_metadata
 
-router = APIRouter(prefix="/v1/datasets", tags=["datasets"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1/datasets", tags=["datasets"])
+
+STORES = "zarr"  # folder of the zarr stores below the results folder
 
 DatasetName = Annotated[
     str, Path(description="name of a data set, see /v1/datasets", examples=["spectra/sine/eta-0.85"])
 ]
+StoreName = Annotated[str, Path(description="name of a pulse, see /v1/datasets", examples=["sine"])]
 ZarrKey = Annotated[str, Path(description="key of the zarr store", examples=[".zmetadata"])]
-
-
-class FileParams(Params):
-    """Which version of a file."""
-
-    sha256: str | None = said("only this version: 404 once the file has changed", None)
 
 
 VARIABLES = "peak_rotation,outcome,impacts,exceeded_alpha"  # variables that are sent unless others are named
@@ -71,12 +61,12 @@ AXES = {
 class SubsetParams(Params):
     """Ranges of the axes, both ends included; an absent end is that of the cube."""
 
-    alpha_deg_min: float | None = said("smallest slenderness angle [deg]; 0: the slender limit", None)
-    alpha_deg_max: float | None = said("largest slenderness angle [deg]", None)
-    slenderness_min: float | None = said("smallest g tan(alpha)/a_g [-]", None, examples=[0.5])
-    slenderness_max: float | None = said("largest g tan(alpha)/a_g [-]", None, examples=[0.6])
-    frequency_ratio_min: float | None = said("smallest omega_g/p [-]", None, examples=[2.0])
-    frequency_ratio_max: float | None = said("largest omega_g/p [-]", None, examples=[3.0])
+    alpha_deg_min: float | None = said("smallest slenderness angle; 0: the slender limit", None, unit="deg")
+    alpha_deg_max: float | None = said("largest slenderness angle", None, unit="deg")
+    slenderness_min: float | None = said("smallest g tan(alpha)/a_g", None, examples=[0.5], unit="-")
+    slenderness_max: float | None = said("largest g tan(alpha)/a_g", None, examples=[0.6], unit="-")
+    frequency_ratio_min: float | None = said("smallest omega_g/p", None, examples=[2.0], unit="-")
+    frequency_ratio_max: float | None = said("largest omega_g/p", None, examples=[3.0], unit="-")
     variables: str = said("names of variables, separated by commas; see the description", VARIABLES)
     format: FileFormat = None
 
@@ -97,18 +87,13 @@ class SubsetParams(Params):
 
 
 @router.get("/{name:path}/subset", summary="A part of a cube", response_class=Response, responses=FOUND)
-async def get_subset(
-    name: DatasetName, params: Annotated[SubsetParams, Query()], request: Request, service: ServiceDep
-) -> Response:
+async def get_subset(name: DatasetName, params: Annotated[SubsetParams, Query()], service: ServiceDep) -> Response:
     """Nodes of a cube within ranges of its axes: a netCDF-3 file, or one row of CSV for each node."""
     ranges = params.ranges()
-    form = encoding.negotiated_form(request, params.format, ("nc", "csv"))
-    return await service.run_io(partial(_subset, service, name, params, ranges, form))
+    return await service.read(lambda _: _subset(service, name, params, ranges))
 
 
-def _subset(
-    service: Service, name: str, params: SubsetParams, ranges: dict[str, tuple[float, float]], form: str
-) -> Response:
+def _subset(service: Service, name: str, params: SubsetParams, ranges: dict[str, tuple[float, float]]) -> Response:
     product, cube = service.cubes.catalogue.dataset(name)
     if any(axis not in cube.dims for axis in DIMENSIONS):
         raise InvalidArgumentError("name", name, f"a cube, with axes {', '.join(DIMENSIONS)}")
@@ -131,7 +116,7 @@ def _subset(
     points = math.prod(part.sizes.values())
     if points > service.settings.max_points:
         raise TooLargeError("points", points, f"at most {service.settings.max_points}")
-    if form == "nc":
+    if params.format != "csv":
         part = part.drop_vars("pulse").drop_encoding()
         part.attrs = {**part.attrs, "source_sha256": product.sha256}
         return encoding.netcdf_response(part, "subset")
@@ -146,136 +131,80 @@ def _columns(part: xr.Dataset, wanted: list[str]) -> dict[str, NDArray[Any]]:
     return {name: values.ravel() for name, values in columns.items()}
 
 
-@router.get("", summary="Catalogue", response_model=DatasetCatalogue)
-async def get_datasets(params: Annotated[ListParams, Query()], request: Request, service: ServiceDep) -> Response:
-    """The data sets in the results folder that can be read."""
-
-    def work() -> tuple[list[DatasetSummary], str | None]:
-        found = []
-        names, cursor = params.part(service.cubes.catalogue.names())
-        for name in names:
-            with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or damaged: see /health
-                found.append(service.summaries.summary(name))
-        return found, cursor
-
-    summaries, cursor = await service.run_io(work)
-    catalogue = DatasetCatalogue(query=params, datasets=summaries, pulses=_pulses(summaries), next_cursor=cursor)
-    return encoding.json_response(catalogue, request, {"Cache-Control": REVALIDATE})
+@router.get("", summary="Catalogue")
+async def get_datasets(params: Annotated[ListParams, Query()], service: ServiceDep, url: Url) -> DatasetCatalogue:
+    """The data sets in the results folder that can be read, and the zarr stores of their cubes."""
+    names, cursor = params.part(await service.read(lambda _: service.cubes.catalogue.names()))
+    datasets = await service.read(lambda _: _summaries(service, names))
+    stores = await service.read(lambda _: sorted((service.settings.results / STORES).glob("*.zarr")))
+    pulses = [PulseStore(name=store.stem, zarr=f"/v1/datasets/spectra/{store.name}") for store in stores]
+    return DatasetCatalogue(query=params, url=url, datasets=datasets, pulses=pulses, next_cursor=cursor)
 
 
-@router.get(
-    ".zip",
-    summary="All data sets in one archive",
-    response_class=Response,
-    responses={200: {"content": {"application/zip": {}}}},
-)
-async def get_archive(request: Request, service: ServiceDep) -> Response:
-    """The netCDF files of all data sets that can be read, and their SHA256SUMS."""
-    catalogue = service.cubes.catalogue
-
-    def work() -> tuple[list[str], int]:
-        names = catalogue.names()
-        versions = (version_of(catalogue.results / f"{name}.nc") for name in names)
-        return names, max((version.size for version in versions if version is not None), default=0)
-
-    names, largest = await service.run_io(work)
-    service.reservation(request).replace(largest)
-    headers = {"Content-Disposition": 'attachment; filename="rocking-data.zip"', "Cache-Control": REVALIDATE}
-    return StreamingResponse(archive(catalogue, names), media_type="application/zip", headers=headers)
+def _summaries(service: Service, names: list[str]) -> list[DatasetSummary]:
+    summaries = []
+    for name in names:
+        with suppress(UnknownDatasetError, DatasetError):  # removed meanwhile, or damaged: see /health
+            summaries.append(service.summaries.summary(name))
+    return summaries
 
 
-@router.head("/{name:path}.nc", include_in_schema=False)
+async def only_byte_ranges(request: Request) -> None:
+    """Ignore a Range of another unit than bytes (RFC 9110, 14.2), which Starlette would refuse."""
+    headers = request.scope["headers"]
+    request.scope["headers"] = [
+        (name, value) for name, value in headers if name != b"range" or value.lstrip().lower().startswith(b"bytes")
+    ]
+
+
 @router.get(
     "/{name:path}.nc",
     summary="netCDF file",
     response_class=Response,
-    responses={
-        200: {"content": {"application/x-netcdf": {}}},
-        206: {"description": "the requested ranges"},
-        304: {"description": "not modified"},
-    },
+    responses={200: {"content": {"application/x-netcdf": {}}}, 206: {"description": "the requested ranges"}},
+    dependencies=[Depends(only_byte_ranges)],
 )
-async def get_netcdf(
-    name: DatasetName, params: Annotated[FileParams, Query()], request: Request, service: ServiceDep
-) -> Response:
-    """The file as written by the workflow; its ETag is its sha256, and ranges are supported.
+async def get_netcdf(name: DatasetName, request: Request, service: ServiceDep) -> Response:
+    """The file as written by the workflow; with ETag and ranges. Its sha256 is in the catalogue.
 
     `xarray.open_dataset(URL + "#mode=bytes", engine="netcdf4")` reads only what it needs.
     """
-    file, product = await service.run_io(partial(_sound, service, name))
-    if params.sha256 is None:
-        return file_response(request, file, product)
-    if params.sha256 != product.sha256:
-        file.close()
-        raise HTTPException(404, f"`{name}` has another version now: sha256 {product.sha256}")
-    return file_response(request, file, product, IMMUTABLE)
+    await service.read(lambda _: service.cubes.catalogue.open(name).close())  # names what cannot be read
+    return await service.files.get_response(f"{name}.nc", request.scope)
 
 
-@router.head("/{name:path}.zarr/{key:path}", include_in_schema=False)
 @router.get(
-    "/{name:path}.zarr/{key:path}",
+    "/spectra/{pulse}.zarr/{key:path}",
     summary="zarr store",
     response_class=Response,
-    responses={304: {"description": "not modified"}},
+    dependencies=[Depends(only_byte_ranges)],
 )
-async def get_zarr(name: DatasetName, key: ZarrKey, request: Request, service: ServiceDep) -> Response:
-    """The keys of a zarr store (format 2, consolidated) with the same content.
+async def get_zarr(pulse: StoreName, key: ZarrKey, request: Request, service: ServiceDep) -> Response:
+    """The files of the zarr store (format 2, consolidated) with the cubes of a pulse over the restitution.
 
-    `xarray.open_zarr(".../{name}.zarr")` reads it. `spectra/PULSE.zarr` has the cubes of a pulse over the dimension
-    `restitution`; those whose axes or variables are not those of most of them are named by its attribute `left_out`.
+    `xarray.open_zarr(".../spectra/{pulse}.zarr")` reads it.
     """
-    sha256, value = await service.run_io(partial(service.zarr_stores.value, name, key))
-    if value is None:
-        raise HTTPException(404, f"the zarr store of `{name}` has no key `{key}`")
-    unchanged = not_modified(request, sha256)
-    if unchanged is not None:
-        return unchanged
-    media_type = "application/json" if is_metadata(key) else "application/octet-stream"
-    return Response(value, media_type=media_type, headers=validators(sha256))
+    if ".." in key.split("/"):  # other files of the results folder
+        raise HTTPException(404)
+    return await service.files.get_response(f"{STORES}/{pulse}.zarr/{key}", request.scope)
 
 
-@router.get("/{name:path}", summary="Description", response_model=DatasetDescription)
-async def get_dataset(name: DatasetName, request: Request, service: ServiceDep) -> Response:
+@router.get("/{name:path}", summary="Description")
+async def get_dataset(name: DatasetName, service: ServiceDep, url: Url) -> DatasetDescription:
     """Dimensions, variables and attributes of a data set, its size and its sha256."""
-    description = await service.run_io(partial(_description, service, name))
-    return encoding.json_response(description, request, {"Cache-Control": REVALIDATE})
+    return await service.read(lambda _: _description(service, name, url))
 
 
-def _sound(service: Service, name: str) -> tuple[DataFile, DatasetFile]:
-    """The open file of a data set."""
-    file = service.cubes.catalogue.open(name)
-    try:
-        product = service.cubes.catalogue.product_of(file)
-        problem = service.cubes.problem_of(file)
-        if problem is not None:
-            raise DatasetError(problem)
-    except BaseException:
-        file.close()
-        raise
-    return file, product
-
-
-def _description(service: Service, name: str) -> DatasetDescription:
+def _description(service: Service, name: str, url: str) -> DatasetDescription:
     product, dataset = service.cubes.catalogue.dataset(name)
     return DatasetDescription(
-        **dict(summarized(product, dataset)),
+        url=url,
+        **dict(summarized(product.name, product.size, product.sha256, dataset)),
         dimensions={str(dimension): size for dimension, size in dataset.sizes.items()},
         coordinates={str(key): _variable(dataset[key]) for key in dataset.coords},
         variables={str(key): _variable(dataset[key]) for key in dataset.data_vars},
         attributes=_attributes(dataset.attrs),
     )
-
-
-def _pulses(summaries: list[DatasetSummary]) -> list[PulseCubes]:
-    restitutions: dict[str, list[float]] = {}
-    for summary in summaries:
-        folder = summary.name.rpartition("/")[0]
-        if folder.startswith(f"{SPECTRA}/") and summary.restitution is not None:
-            restitutions.setdefault(folder, []).append(summary.restitution)
-    return [
-        PulseCubes(name=folder, restitution=sorted(values), zarr=f"/v1/datasets/{folder}.zarr")
-        for folder, values in restitutions.items()
-    ]
 
 
 def _variable(variable: xr.DataArray) -> VariableDescription:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Annotated
+from typing import Annotated, Any
 from urllib.parse import urlencode
 
 import numpy as np
 import xarray as xr
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError
@@ -16,16 +16,16 @@ from rocking._boundary.curves import curves_at, points_of
 from rocking._boundary.tracing import overturning_boundary
 from rocking._datasets.catalogue import UnknownDatasetError
 from rocking._numba.cancellation import StopFlag, run_with_timeout
-from rocking_api.execution.executor import TimeLimitError
-from rocking_api.http.encoding import CONTENT, csv_response, json_response, negotiated_form, netcdf_response
-from rocking_api.http.parameters import ParamsRoute
+from rocking_api.execution.work import TimeLimitError
+from rocking_api.http.encoding import CONTENT, csv_response, netcdf_response
+from rocking_api.models.answer import Url, no_query
+from rocking_api.models.fields import OUTCOMES
 from rocking_api.models.params import OverturningParams, alpha_of
-from rocking_api.models.pulses import sampled_pulse
-from rocking_api.models.responses import OUTCOMES, Curve, OverturningResponse
-from rocking_api.routers.twin import pair
+from rocking_api.models.pulses import OverturningBody
+from rocking_api.models.responses import Curve, OverturningResponse
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", tags=["curves"])
 
 NODES = 201
 """Nodes of the grid on which curves are traced on request [-]: half as fine as the workflow, seconds for wavelets."""
@@ -40,38 +40,49 @@ processor time with 0.98 and 50 s with 1: four fifths of the impacts are those o
 MAX_KEPT = 64  # requests whose traced curves are cached [-]: some tens of kB each
 
 
-@pair(router, "/overturning", "Boundary curves", response_model=OverturningResponse, responses=CONTENT)
+@router.get("/overturning", summary="Boundary curves", response_model=OverturningResponse, responses=CONTENT)
 async def get_overturning(
-    params: Annotated[OverturningParams, Query()], request: Request, service: ServiceDep
-) -> Response:
+    params: Annotated[OverturningParams, Query()], request: Request, service: ServiceDep, url: Url
+) -> Any:
     """The curves of the workflow; without those for this restitution they are traced, and cached."""
-    form = negotiated_form(request, params.format)
     try:
-        return await service.run_heavy(lambda stop: _overturning(service, params, request, form, stop), request)
+        return await service.solve(lambda stop: _overturning(service, params, url, stop), request)
     except TimeLimitError as error:
-        given = params.model_dump(include={"pulse", "restitution", "alpha_deg"}, exclude_none=True)
-        where = f"/v1/map?{urlencode(given)}" if sampled_pulse(params) is None else "POST /v1/map"
+        parts = params.model_dump(include={"pulse", "restitution", "alpha_deg"}, exclude_none=True)
+        where = f"/v1/map?{urlencode(parts)}" if isinstance(params.pulse, str) else "POST /v1/map"
         instead = f"ask for the outcomes on a grid, {where}, or for another restitution"
         raise TimeLimitError(error.seconds, instead) from None
 
 
-def _overturning(service: Service, params: OverturningParams, request: Request, form: str, stop: StopFlag) -> Response:
+@router.post(
+    "/overturning",
+    summary="Boundary curves, under a pulse given by samples",
+    response_model=OverturningResponse,
+    responses=CONTENT,
+    dependencies=[Depends(no_query)],
+)
+async def post_overturning(params: OverturningBody, request: Request, service: ServiceDep, url: Url) -> Any:
+    """The same with the parameters in a JSON body."""
+    return await get_overturning(params, request, service, url)
+
+
+def _overturning(
+    service: Service, params: OverturningParams, url: str, stop: StopFlag
+) -> OverturningResponse | Response:
     curves, version = _read(service, params)
     if curves is None:
         curves = _traced(service, params, stop)
-    if form == "nc":
+    if params.format == "nc":
         return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
-    if form == "csv":
+    if params.format == "csv":
         return csv_response(points_of(curves), "overturning")
     source = "dataset" if version else "solver"
-    return json_response(
-        OverturningResponse(query=params, curves=_curves(curves), source=source, data_version=version), request
-    )
+    return OverturningResponse(query=params, url=url, curves=_curves(curves), source=source, data_version=version)
 
 
 def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | None, str | None]:
     """The curves for the parameters from the data set, and its sha256; None if there are none."""
-    if sampled_pulse(params) is not None:
+    if not isinstance(params.pulse, str):
         return None, None
     # a mirrored pulse overturns the same blocks
     name = f"overturning/{params.pulse.removeprefix('-')}/eta-{params.restitution:.2f}"
@@ -89,8 +100,7 @@ def _read(service: Service, params: OverturningParams) -> tuple[xr.Dataset | Non
 def _traced(service: Service, params: OverturningParams, stop: StopFlag) -> xr.Dataset:
     """Traced curves, cached."""
     pulse, eta, alpha = params.pulse, params.restitution, alpha_of(params.alpha_deg)
-    sampled = sampled_pulse(params)
-    kept = _kept(pulse if sampled is None else (sampled.name, sampled.digest), eta, alpha)
+    kept = _kept(pulse if isinstance(pulse, str) else (pulse.name, pulse.digest), eta, alpha)
     if not kept:
         seconds = service.settings.max_seconds * (ELASTIC_SHARE if alpha and eta > NEARLY_ELASTIC else 1.0)
         curves = run_with_timeout(

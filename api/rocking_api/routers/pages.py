@@ -14,12 +14,10 @@ from fastapi import APIRouter, FastAPI, Request, Response
 from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.staticfiles import StaticFiles
-from starlette.types import Receive, Scope, Send
+from starlette.types import Scope
 
 from rocking_api.extension import MenuEntry, extensions
-from rocking_api.http.caching import revalidated
-from rocking_api.http.errors import KINDS, OTHERS, PROBLEMS
-from rocking_api.http.files import without_range
+from rocking_api.http.errors import FULL, KINDS, OTHERS, PROBLEMS
 from rocking_api.settings import Settings, has_data
 
 STATIC = Path(__file__).parents[1] / "static"
@@ -87,8 +85,7 @@ PAGES = (
         template="datasets.html",
         exists=lambda settings: has_data(settings.results),
     ),
-    # the files that `make docs` built
-    Page("/guide/", "Guide", title="Guide", exists=lambda settings: (settings.guide / "index.html").is_file()),
+    Page("/guide/", "Guide", title="Guide"),  # guide.py
     Page("/docs", "API", title="Routes of the API", template="docs.html", policy=_SWAGGER_POLICY),
     Page("/state", "Status", title="Service status", template="state.html"),
 )
@@ -119,9 +116,7 @@ def settings_of(request: Request) -> Settings:
 def _add(page: Page) -> None:
     async def get_page(request: Request) -> Response:
         headers = {"Content-Security-Policy": page.policy, **NO_CACHE}
-        return revalidated(
-            request, HTMLResponse(html(page.template, page.title, page.path, settings_of(request)), headers=headers)
-        )
+        return HTMLResponse(html(page.template, page.title, page.path, settings_of(request)), headers=headers)
 
     router.add_api_route(page.path, get_page, methods=["GET"], summary=page.title)
 
@@ -129,10 +124,10 @@ def _add(page: Page) -> None:
 @router.get(PROBLEMS)
 async def get_problems(request: Request) -> Response:
     """The kinds of errors, which their `type` refers to."""
-    kinds = sorted((*KINDS.values(), *OTHERS), key=lambda kind: (kind.status, kind.name))
+    kinds = sorted((*KINDS.values(), *OTHERS, FULL), key=lambda kind: (kind.status, kind.name))
     headers = {"Content-Security-Policy": POLICY, **NO_CACHE}
     text = html("problems.html", "Kinds of errors", settings=settings_of(request), kinds=kinds)
-    return revalidated(request, HTMLResponse(text, headers=headers))
+    return HTMLResponse(text, headers=headers)
 
 
 for _page in PAGES:
@@ -161,12 +156,9 @@ def _with_page(handler: Callable[..., Any]) -> Callable[[Request, Exception], Aw
 
 
 class PageFiles(StaticFiles):
-    """Scripts, styles and libraries of the pages, without ranges."""
+    """Scripts, styles and libraries of the pages."""
 
     headers: ClassVar = NO_CACHE
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        await super().__call__(without_range(scope), receive, send)
 
     def file_response(
         self, full_path: str | os.PathLike[str], stat_result: os.stat_result, scope: Scope, status_code: int = 200

@@ -13,12 +13,11 @@ from pydantic import BaseModel
 from rocking._base.errors import InvalidArgumentError
 from rocking._excitation import pulses
 from rocking._excitation.impulse import impulse_of
-from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import ListAnswer
+from rocking_api.models.answer import ListAnswer, Url
 from rocking_api.models.params import ListParams
 from rocking_api.models.quantity import between, said
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", tags=["response"])
 
 MAX_DRAWN = 2000  # most samples of a pulse for a drawing [-]
 
@@ -29,7 +28,7 @@ DIGITS = 4  # decimals of the samples [-]: enough for a drawing, at a fifth of t
 class PulsesParams(ListParams):
     """How finely the pulses are sampled, and a part of their list."""
 
-    samples: int = between(2, MAX_DRAWN, "samples of each pulse [-]", default=65)
+    samples: int = between(2, MAX_DRAWN, "samples of each pulse", default=65, unit="-")
 
 
 class PulseParameter(BaseModel):
@@ -39,7 +38,7 @@ class PulseParameter(BaseModel):
     symbol: str = said("as in the definition")
     unit: str = said("unit of the default and the range; a text states its unit")
     range: str = said("values that are allowed")
-    default: float = said("value unless another is stated [-]; with a unit, that of `unit`")
+    default: float = said("value unless another is stated; with a unit, that of `unit`", unit="-")
     description: str = said("meaning")
 
 
@@ -49,13 +48,15 @@ class PulseDescription(BaseModel):
     name: str = said("name; with a leading minus it is mirrored")
     definition: str = said("f(phi) and its window of the phase phi, with its source")
     parameters: list[PulseParameter] = said("parameters, if it has any")
-    phase_start: float = said("phase at the first instant [rad]")
-    phase_end: float = said("phase at the last instant [rad]")
-    duration: float = said("duration over the period T_p [-]")
-    peak_velocity: float = said("largest velocity of the ground, which starts at rest, over a_g T_p [-]")
+    phase_start: float = said("phase at the first instant", unit="rad")
+    phase_end: float = said("phase at the last instant", unit="rad")
+    duration: float = said("duration over the period T_p", unit="-")
+    peak_velocity: float = said("largest velocity of the ground, which starts at rest, over a_g T_p", unit="-")
     ends_at_rest: bool = said("whether the ground has no velocity after it")
-    time: list[float] = said("times from the first instant over T_p [-], to four decimals, for a drawing")
-    acceleration: list[float] = said("f at these times [-], to four decimals; the largest absolute value of f is 1")
+    time: list[float] = said("times from the first instant over T_p, to four decimals, for a drawing", unit="-")
+    acceleration: list[float] = said(
+        "f at these times, to four decimals; the largest absolute value of f is 1", unit="-"
+    )
 
 
 class PulsesResponse(ListAnswer[PulsesParams]):
@@ -65,7 +66,7 @@ class PulsesResponse(ListAnswer[PulsesParams]):
 
 
 @router.get("/pulses", summary="The excitations")
-async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse:
+async def get_pulses(params: Annotated[PulsesParams, Query()], url: Url) -> PulsesResponse:
     """Name, definition, parameters and duration of each pulse; `period` of the other routes is T_p."""
     names = pulses.pulse_names()
     if params.cursor not in (None, *names):
@@ -75,7 +76,7 @@ async def get_pulses(params: Annotated[PulsesParams, Query()]) -> PulsesResponse
     part, cursor = asked.part(list(place.values()))
     described = [_described(names[int(k)], params.samples) for k in part]
     following = None if cursor is None else names[int(cursor)]
-    return PulsesResponse.model_construct(query=params, pulses=described, next_cursor=following)
+    return PulsesResponse.model_construct(query=params, url=url, pulses=described, next_cursor=following)
 
 
 def _described(name: str, samples: int) -> PulseDescription:

@@ -8,32 +8,31 @@ from typing import Annotated, Any
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._base.errors import InvalidArgumentError
 from rocking._lookup.cube import UnreadError
 from rocking._numba.cancellation import StopFlag
-from rocking_api.execution.evaluation import BYTES_PER_POINT, evaluate, evaluate_many
+from rocking_api.execution.evaluation import evaluate, evaluate_many
 from rocking_api.http import encoding
-from rocking_api.http.body import body_form
-from rocking_api.http.parameters import ParamsRoute
+from rocking_api.http.errors import TooLargeError
+from rocking_api.models.answer import Url
 from rocking_api.models.batch import Batch, Columns, batch_of, parse_csv, parse_netcdf
-from rocking_api.models.bodies import body_of, json_content, text_content
-from rocking_api.models.params import BatchOptions, BatchParams, LookupOptions, ResponseParams, TableParams
-from rocking_api.models.pulses import options_of, with_samples
-from rocking_api.models.responses import SOURCES, BatchResponse, PointResponse, columns_of, point_response
+from rocking_api.models.params import GROUPS, LookupOptions, ResponseParams, TableParams
+from rocking_api.models.pulses import BatchBody, digest_of, name_of
+from rocking_api.models.responses import BatchQuery, BatchResponse, PointResponse, columns_of, point_response
 from rocking_api.service import Service, ServiceDep
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
-
-MAX_JSON = 2 * 1024 * 1024
-"""Largest JSON body [bytes], fifty thousand blocks: pydantic holds the interpreter lock for 0.015 s to read it."""
-
+router = APIRouter(prefix="/v1", tags=["response"])
 
 MAX_INLINE_RESTITUTION = 0.9
 """Restitution above which one block is computed in a thread [-]. Up to it a block has at most a few hundred impacts,
 half a millisecond; an elastic one has up to `IMPACT_LIMIT` impacts, a third of a second."""
 
+MAX_JSON_POINTS = 100_000
+"""Most points of a response in JSON [-], which is held as a whole; CSV and netCDF have no such limit."""
+
 
 @router.get("/response", summary="One block")
-async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep) -> PointResponse:
+async def get_response(params: Annotated[ResponseParams, Query()], service: ServiceDep, url: Url) -> PointResponse:
     """Whether it overturns, and its peak rotation."""
     if not service.kernels.is_loaded:
         await service.kernels.wait()
@@ -44,9 +43,14 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
             raise UnreadError
         found = evaluate(service.cubes, params, points, may_read=False)
     except UnreadError:
-        found = await service.single.run(lambda stop: evaluate(service.cubes, params, points, stop))
-    service.metrics.points(SOURCES[found[0].from_cube.item()], 1)
-    return point_response(params, *found)
+        found = await service.cheap.run(lambda stop: evaluate(service.cubes, params, points, stop))
+    return point_response(params, *found, url)
+
+
+_GROUPS_CSV = "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"
+_JSON = {"pulse": "sine", "slenderness": [0.4, 0.2, 1.2], "frequency_ratio": 5, "restitution": 0.85}
+_BODY = encoding.body_of(_JSON, {"text/csv": _GROUPS_CSV})
+_BODY["requestBody"]["content"]["application/x-netcdf"] = {"schema": {"type": "string", "format": "binary"}}
 
 
 @router.post(
@@ -54,59 +58,56 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     summary="Many blocks",
     response_model=BatchResponse,
     responses=encoding.CONTENT,
-    openapi_extra=body_of(
-        {
-            **json_content(
-                with_samples(BatchParams),
-                {"pulse": "sine", "slenderness": [0.4, 0.2, 1.2], "frequency_ratio": 5, "restitution": 0.85},
-            ),
-            **text_content(
-                encoding.MEDIA_TYPES["csv"], "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"
-            ),
-            encoding.MEDIA_TYPES["nc"]: {"schema": {"type": "string", "format": "binary"}},
-        },
-        BatchOptions,
-    ),
+    openapi_extra=_BODY,
 )
-async def post_response(request: Request, service: ServiceDep) -> Response:
-    """Arrays as JSON, CSV or netCDF-3; the response has the same format, or that of `format` or `Accept`.
+async def post_response(
+    body: encoding.JsonOrFile[BatchBody],
+    params: Annotated[TableParams, Query()],
+    request: Request,
+    service: ServiceDep,
+    url: Url,
+) -> Any:
+    """Arrays as JSON, CSV or netCDF-3; the response has the same format, or that of `format`.
 
-    The three groups, where the body does not hold them, are query parameters, too.
+    JSON holds all parameters; beside CSV and netCDF they are in the query, also groups that the table does not hold.
     """
-    batch, form = await _read(request, service)
-    service.reservation(request).replace(batch.nbytes + batch.points * BYTES_PER_POINT)  # the body is released
-    return await service.run_heavy(lambda stop: _answered(service, batch, request, form, stop), request)
+    given = encoding.body_form(request, ("json", "csv", "nc"))
+    shared = encoding.stated(body, params)
+    if shared.pulse is None:
+        raise InvalidArgumentError("pulse", None, "required in the query")
+
+    def work(stop: StopFlag) -> BatchResponse | Response:
+        batch = _batch(body, shared, given, service.settings.max_points, stop)
+        return _answered(service, batch, shared.format or given, url, stop)
+
+    return await service.solve_one(work, request)
 
 
-async def _read(request: Request, service: Service) -> tuple[Batch, encoding.Form]:
-    """The points of a request, and the format of its response."""
-    given, most = body_form(request, ("json", "csv", "nc")), service.settings.max_points
-    limit, hint = service.settings.max_body_bytes, ""
-    if given == "json":
-        limit, hint = min(limit, MAX_JSON), " in JSON; send larger tables as CSV or netCDF"
-    params, body = await service.read(request, TableParams, given, with_samples(BatchParams), limit, hint)
-
-    def read(stop: StopFlag) -> Batch:
-        columns: Columns = {}
-        if isinstance(body, bytes):
-            columns = parse_csv(body, most, stop) if given == "csv" else parse_netcdf(body, most)
-        return batch_of(options_of(params, LookupOptions), columns, dict(params), most)
-
-    batch = await service.run_parser(read, request)
-    return batch, encoding.negotiated_form(request, params.format, default=given)
+def _batch(body: BatchBody | bytes, params: BatchBody | TableParams, given: str, most: int, stop: StopFlag) -> Batch:
+    """The points of a request."""
+    options = LookupOptions.model_construct(**{name: getattr(params, name) for name in LookupOptions.model_fields})
+    columns: Columns = {}
+    if isinstance(body, bytes):
+        columns = parse_csv(body, most, stop) if given == "csv" else parse_netcdf(body, most)
+    return batch_of(options, columns, {name: getattr(params, name) for name in GROUPS}, most)
 
 
-def _answered(service: Service, batch: Batch, request: Request, form: encoding.Form, stop: StopFlag) -> Response:
+def _answered(
+    service: Service, batch: Batch, form: encoding.Form, url: str, stop: StopFlag
+) -> BatchResponse | Response:
+    if form == "json" and batch.points > MAX_JSON_POINTS:
+        raise TooLargeError("points", batch.points, f"at most {MAX_JSON_POINTS} in JSON; ask for format csv or nc")
     result = evaluate_many(service.cubes, batch.options, batch.groups, stop)
-    from_cubes = int(result.from_cube.sum())
-    service.metrics.points("cube", from_cubes)
-    service.metrics.points("solver", batch.points - from_cubes)
-    query: dict[str, Any] = batch.options.model_dump() | {"points": batch.points}
-    if form == "nc":
-        attributes = {name: value for name, value in query.items() if value is not None}
-        return encoding.netcdf_response(encoding.dataset_of(batch.groups, result, attributes), "response")
-    columns = columns_of(result)  # JSON and CSV are written while they are sent
+    options = {name: getattr(batch.options, name) for name in LookupOptions.model_fields}
+    columns = columns_of(result)
     if form == "csv":
         return encoding.csv_stream(encoding.columns_as_they_are(batch.groups) | columns, batch.points, "response")
-    answer = BatchResponse.model_construct(query=query, data_versions=list(result.versions))
-    return encoding.json_stream(answer, request, columns, batch.points)
+    pulse = batch.options.pulse
+    options |= {"pulse": name_of(pulse), "pulse_digest": digest_of(pulse), "points": batch.points}
+    if form == "nc":
+        attributes = {name: value for name, value in options.items() if value is not None}
+        return encoding.netcdf_response(encoding.dataset_of(batch.groups, result, attributes), "response")
+    lists: dict[str, Any] = {name: column(slice(None)) for name, column in columns.items()}
+    query = BatchQuery.model_construct(**options)
+    answer = BatchResponse.model_construct(query=query, url=url, data_versions=list(result.versions), **lists)
+    return Response(answer.model_dump_json(), media_type="application/json")

@@ -141,6 +141,8 @@ def _site(file: Path, rows: list[list[str]], prefix: str) -> tuple[Array, Array]
     header, *sites = rows
     if len(sites) != 1:
         raise _refused(file, f"{len(sites)} sites", "one: leave only its row")
+    if len(sites[0]) != len(header):
+        raise _refused(file, f"a row of {len(sites[0])} cells", f"{len(header)}, as in the header")
     columns = [k for k, name in enumerate(header) if re.fullmatch(rf"{prefix}[0-9.]+(e[+-]?[0-9]+)?", name, re.I)]
     levels = [float(header[k].removeprefix(prefix)) for k in columns]
     return np.array(levels), np.array([float(sites[0][k]) for k in columns])

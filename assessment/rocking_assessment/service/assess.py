@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request, Response
-from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, Form, json_response, negotiated_form, text_response
+from fastapi import APIRouter, Query, Request, Response
+from rocking_api.http.encoding import JsonOrFile, body_form, body_of, stated, text_response
 from rocking_api.http.errors import TooLargeError
-from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.bodies import body_of, json_content, text_content
+from rocking_api.models.answer import Url
+from rocking_api.routers.curves import json_of
 from rocking_api.service import ServiceDep
 
 from rocking.extension import InvalidArgumentError, StopFlag
@@ -18,51 +18,52 @@ from rocking_assessment._objects.site import Site
 from rocking_assessment._objects.tables import ObjectTable, objects_of_text
 from rocking_assessment.service.models import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", tags=["response"])
 
 MAX_BODY = 8 * 1024 * 1024  # largest table with records [bytes]
 MAX_PAIRS = 500_000  # most objects times motions, a pair of components being twelve [-]
 
-_ROW = {"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}
+_JSON = {
+    "objects": [{"name": "bust", "width": 0.4, "depth": 0.3, "height": 1.6, "friction": 0.5}],
+    "pga": 3.0,
+    "pgv": 0.3,
+    "shapes": "sine,ricker",
+}
+_CSV = "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n"
 
 
 @router.post(
     "/assess",
     summary="Many objects at a site",
     response_model=AssessResponse,
-    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
-    openapi_extra=body_of(
-        {
-            **json_content(
-                AssessBody,
-                {"objects": [_ROW], "pga": 3.0, "pgv": 0.3, "shapes": "sine,ricker"},
-                {"type": "array", "items": {"type": "object"}, "maxItems": MAX_OBJECTS},
-            ),
-            **text_content(MEDIA_TYPES["csv"], "name,width [cm],depth [cm],height [m],friction\nbust,40,30,1.6,0.5\n"),
-        },
-        AssessParams,
-        "table of objects; the columns are those of `rocking_assessment.Object`",
-    ),
+    responses={200: {"content": {"text/csv": {}}}},
+    openapi_extra=body_of(_JSON, {"text/csv": _CSV}, "table of objects; the columns are those of `Object`"),
 )
-async def post_assess(request: Request, service: ServiceDep) -> Response:
+async def post_assess(
+    body: JsonOrFile[AssessBody],
+    query: Annotated[AssessParams, Query()],
+    request: Request,
+    service: ServiceDep,
+    url: Url,
+) -> Any:
     """Which objects the motions of a site overturn, each with the lowest factor that does so, the worst first.
 
-    The table is CSV with units in its header or cells, or a JSON list of objects in SI units; or a JSON object with
-    that list, records of the site and a hazard curve. The response has the format of the body, or that of `format` or
-    `Accept`; CSV ends with the rows that were not read.
+    The table is CSV with units in its header or cells, or a JSON list of objects in SI units, with the site in the
+    query; or a JSON object with that list, the site, its records and a hazard curve. The response has the format of the
+    body, or that of `format`; CSV ends with the rows that were not read.
     """
-    given = body_form(request, TABLE_FORMS)
-    params, body = await service.read(request, AssessParams, given, AssessBody, MAX_BODY)
-    table, site = await service.run_parser(lambda stop: _read(body, given, params, stop), request, large=True)
-    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
-    return await service.run_heavy(lambda stop: _assess(params, request, site, table, form, stop), request)
+    given = body_form(request, ("json", "csv"))
+    is_list = isinstance(body, AssessBody) and body.model_fields_set <= {"objects"}
+    params = query if is_list else stated(body, query)
 
+    def work(stop: StopFlag) -> Response:
+        raw = body if isinstance(body, bytes) else json.dumps(body.objects).encode()
+        table = objects_of_text(raw, json=given == "json", most=MAX_OBJECTS, stop=stop)
+        check_table(table, "objects")
+        site = params.site(None if isinstance(body, bytes) else body)
+        return _assessed(params, site, table, params.format or given, url, stop)
 
-def _read(body: AssessBody | bytes, form: Form, params: AssessParams, stop: StopFlag) -> tuple[ObjectTable, Site]:
-    given, raw = (None, body) if isinstance(body, bytes) else (body, json.dumps(body.objects).encode())
-    table = objects_of_text(raw, json=form == "json", most=MAX_OBJECTS, stop=stop)
-    check_table(table, "objects")
-    return table, params.site(given)
+    return await service.solve_one(work, request)
 
 
 def check_table(table: ObjectTable, name: str) -> None:
@@ -72,32 +73,30 @@ def check_table(table: ObjectTable, name: str) -> None:
         raise InvalidArgumentError(name, reasons, "one object or more")
 
 
-def _assess(
-    params: AssessParams, request: Request, site: Site, table: ObjectTable, form: Form, stop: StopFlag
-) -> Response:
-    size = sum(len(one.planes) for one in table.objects) * len(site.find_motions(stop))
+def _assessed(params: AssessParams, site: Site, table: ObjectTable, form: str, url: str, stop: StopFlag) -> Response:
+    size = sum(len(item.planes) for item in table.objects) * len(site.find_motions(stop))
     if size > MAX_PAIRS:
         raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
-    kept = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed", "resolution", "standards")}
-    found = assess(table.objects, site, **kept, stop=stop)
+    options = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed", "resolution", "standards")}
+    assessment = assess(table.objects, site, **options, stop=stop)
     if form == "csv":
-        return text_response(found.to_csv(bad_rows=table.bad_rows), "assessment")
+        return text_response(assessment.to_csv(bad_rows=table.bad_rows), "assessment")
     unread = len(table.bad_rows)
-    return json_response(
+    return json_of(
         AssessResponse.model_validate(
             {
                 "query": params,
+                "url": url,
                 "warnings": [f"rows that were not read: {unread}, see `bad_rows`"] if unread else [],
-                "rows": found.rows,
-                "details": found.details,
-                "motions": found.motions,
-                "highest_factor": found.highest_factor,
-                "resolution": found.resolution,
-                "bad_rows": [vars(one) for one in table.bad_rows],
+                "rows": assessment.rows,
+                "details": assessment.details,
+                "motions": assessment.motions,
+                "highest_factor": assessment.highest_factor,
+                "resolution": assessment.resolution,
+                "bad_rows": [vars(row) for row in table.bad_rows],
                 "columns": table.columns,
                 "skipped": table.skipped,
                 "totals": table.totals,
             }
-        ),
-        request,
+        )
     )

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from rocking_api.extension import Extension, MenuEntry
+from rocking_api.http.limits import Limit
 
-from rocking_assessment.service import assess, fragility_model, identify, object_page, objects_page
+from rocking_assessment.service import assess, fragility_model, identify, mesh_reader, object_page, objects_page
 
 FOLDER = Path(__file__).parent
 
@@ -20,4 +21,11 @@ EXTENSION = Extension(
     menu=(MenuEntry(objects_page.PATH, "Objects"), MenuEntry(object_page.PATH, "One object")),
     templates=FOLDER / "templates",
     static=FOLDER / "static",
+    body_limits={
+        "/v1/assess": Limit(assess.MAX_BODY, assess.MAX_BODY),
+        "/v1/identify": Limit(identify.MAX_BODY, identify.MAX_BODY),
+        "/objects/text": Limit(assess.MAX_BODY, assess.MAX_BODY),
+        "/objects": Limit(3 * assess.MAX_BODY, 3 * assess.MAX_BODY),  # with signs that are escaped
+        "/object": Limit(mesh_reader.MAX_MESH, mesh_reader.MAX_MESH),
+    },
 )

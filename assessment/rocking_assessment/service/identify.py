@@ -6,14 +6,11 @@ import math
 from typing import Annotated, Any
 
 import numpy as np
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import Field
-from rocking_api.http.body import body_form
-from rocking_api.http.encoding import MEDIA_TYPES, TABLE_FORMS, Form, csv_response, json_response, negotiated_form
+from rocking_api.http.encoding import JsonOrFile, body_form, body_of, csv_response, stated
 from rocking_api.http.errors import refusal
-from rocking_api.http.parameters import ParamsRoute
-from rocking_api.models.answer import InGroups
-from rocking_api.models.bodies import body_of, json_content, text_content
+from rocking_api.models.answer import InGroups, Url
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import (
     Column,
@@ -26,9 +23,9 @@ from rocking_api.models.quantity import (
     TimeUnit,
     between,
     said,
-    with_intervals,
 )
 from rocking_api.models.records import as_parameter
+from rocking_api.routers.curves import json_of
 from rocking_api.service import ServiceDep
 
 from rocking.extension import (
@@ -42,7 +39,7 @@ from rocking.extension import (
     read_rotations,
 )
 
-router = APIRouter(prefix="/v1", tags=["response"], route_class=ParamsRoute)
+router = APIRouter(prefix="/v1", tags=["response"])
 
 MAX_SAMPLES = 20_000  # most samples of a trace [-]: a fit takes up to 18 s of processor time, and cannot be stopped
 
@@ -52,8 +49,10 @@ Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 class IdentifyParams(Params):
     """How a trace is laid out as columns, and fitted."""
 
-    edges: int = between(1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge [-]", default=1)
-    confidence: float = said("confidence of the intervals [-]", 0.95, gt=0, le=0.999)
+    edges: int = between(
+        1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge", default=1, unit="-"
+    )
+    confidence: float = said("confidence of the intervals", 0.95, gt=0, le=0.999, unit="-")
     format: TableFormat = None
     rotation: Column = said("column of the rotations: its name, or its number from 1", None)
     time: Column = said("column of the times: its name, or its number from 1", None)
@@ -71,27 +70,33 @@ LAYOUT = IdentifyParams.model_fields.keys() - {"edges", "confidence", "format"}
 class Trace(IdentifyParams):
     """A trace in a JSON body, and how it is fitted."""
 
-    time: Samples = said("times, ascending [s]")  # type: ignore[assignment]  # samples in place of a column
-    rotation: Samples = said("rotation; positive values turn on the right edge [rad]")  # type: ignore[assignment]
+    time: Samples = said("times, ascending", unit="s", exclude=True)  # type: ignore[assignment]  # samples in place of a column
+    rotation: Samples = said("rotation; positive values turn on the right edge", unit="rad", exclude=True)  # type: ignore[assignment]
 
 
-@with_intervals(
-    restitution=(list[float], "eta of the impacts after which it turns on the edge", "-"),
-    alpha=(list[float], "slenderness angle", "rad"),
-    frequency_parameter=(list[float], "p", "rad/s"),
-    drift=(float, "drift of the sensor", "rad/s"),
-)
 class IdentifyResponse(InGroups[IdentifyParams]):
     """The block that rocks as measured: one value for each edge, angles in radians, and the fitted trace."""
 
+    restitution: list[float] = said("eta of the impacts after which it turns on the edge", unit="-")
+    restitution_lower: list[float] = said("lower end of its interval", unit="-")
+    restitution_upper: list[float] = said("upper end of its interval", unit="-")
+    alpha: list[float] = said("slenderness angle", unit="rad")
+    alpha_lower: list[float] = said("lower end of its interval", unit="rad")
+    alpha_upper: list[float] = said("upper end of its interval", unit="rad")
+    frequency_parameter: list[float] = said("p", unit="rad/s")
+    frequency_parameter_lower: list[float] = said("lower end of its interval", unit="rad/s")
+    frequency_parameter_upper: list[float] = said("upper end of its interval", unit="rad/s")
+    drift: float = said("drift of the sensor", unit="rad/s")
+    drift_lower: float = said("lower end of its interval", unit="rad/s")
+    drift_upper: float = said("upper end of its interval", unit="rad/s")
     edge: list[str] = said("both, or right and left")
-    impact_time: list[float] = said("times of the impacts of the fit [s]")
-    offset: float = said("rotation at rest, at the first impact [rad]")
-    noise: float = said("standard deviation of the residual [rad]")
-    sample_noise: float = said("standard deviation of independent errors of the samples [rad]")
-    time: list[float] = said("times of the samples [s]")
-    rotation: list[float] = said("rotation as given [rad]")
-    fitted: list[float | None] = said("rotation of the block [rad]; null where nothing is fitted")
+    impact_time: list[float] = said("times of the impacts of the fit", unit="s")
+    offset: float = said("rotation at rest, at the first impact", unit="rad")
+    noise: float = said("standard deviation of the residual", unit="rad")
+    sample_noise: float = said("standard deviation of independent errors of the samples", unit="rad")
+    time: list[float] = said("times of the samples", unit="s")
+    rotation: list[float] = said("rotation as given", unit="rad")
+    fitted: list[float | None] = said("rotation of the block; null where nothing is fitted", unit="rad")
     warnings: list[str] = said("why the intervals are wider than the samples alone would have them")
 
 
@@ -133,45 +138,49 @@ _CSV = "time [s],rotation [rad]\n" + "".join(f"{t},{r}\n" for t, r in zip(*EXAMP
     "/identify",
     summary="The block from a measured free rocking",
     response_model=IdentifyResponse,
-    responses={200: {"content": {MEDIA_TYPES["csv"]: {}}}},
+    responses={200: {"content": {"text/csv": {}}}},
     openapi_extra=body_of(
-        {**json_content(Trace, EXAMPLE), **text_content(MEDIA_TYPES["csv"], _CSV)},
-        IdentifyParams,
-        "times and rotations of a sensor or a video, with noise and an offset",
+        EXAMPLE, {"text/csv": _CSV}, "times and rotations of a sensor or a video, with noise and an offset"
     ),
 )
-async def post_identify(request: Request, service: ServiceDep) -> Response:
-    """Return what `rocking_assessment.identify_free_rocking` finds, with intervals.
+async def post_identify(
+    body: JsonOrFile[Trace],
+    query: Annotated[IdentifyParams, Query()],
+    request: Request,
+    service: ServiceDep,
+    url: Url,
+) -> Any:
+    """Restitution, slenderness angle and frequency parameter with intervals, as `identify_free_rocking`.
 
     The body is JSON, or CSV with the columns `time [s],rotation [rad]`, or in a layout that the parameters state.
-    The response has the same format, or that of `format` or `Accept`. CSV has a row for each edge.
+    The response has the format of the body, or that of `format`. CSV has a row for each edge.
     """
-    given = body_form(request, TABLE_FORMS)
-    params, body = await service.read(request, IdentifyParams, given, Trace, MAX_BODY)
-    if isinstance(body, Trace):
-        params = params.model_copy(update={"time": None, "rotation": None})  # the samples are no parameters
-    form = negotiated_form(request, params.format, TABLE_FORMS, default=given)
-    time, rotation = await service.run_parser(lambda stop: _read(params, body, stop), request, large=True)
-    return await service.run_heavy(lambda stop: _identified(params, request, time, rotation, form, stop), request)
+    given = body_form(request, ("json", "csv"))
+    params = stated(body, query)
+
+    def work(stop: StopFlag) -> Response:
+        time, rotation = _read(params, body, stop)
+        return _identified(params, time, rotation, params.format or given, url, stop)
+
+    return await service.solve(work, request)
 
 
 def _read(params: IdentifyParams, body: Trace | bytes, stop: StopFlag) -> tuple[Array, Array]:
     """Times [s] and rotations [rad]."""
-    stated = {name: getattr(params, name) for name in LAYOUT}
     if isinstance(body, Trace):
-        for name, value in stated.items():
-            if name != "unit" and value != IdentifyParams.model_fields[name].default:
+        for name in sorted(LAYOUT - {"time", "rotation", "unit"}):
+            value = getattr(params, name)
+            if value != IdentifyParams.model_fields[name].default:
                 raise InvalidArgumentError(name, value, "nothing about columns beside JSON, whose times are in s")
         return np.array(body.time), UNITS["rad"][params.unit or "rad"] * np.array(body.rotation)
+    layout = {name: getattr(params, name) for name in LAYOUT}
     try:
-        return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, **stated)
+        return read_rotations(TextFile("trace", body, stop), MAX_SAMPLES, **layout)
     except RecordFileError as error:
         raise refusal(error.message(as_parameter, "?", "&"), "record", error.value, error.expected) from None
 
 
-def _identified(
-    params: IdentifyParams, request: Request, time: Array, rotation: Array, form: Form, stop: StopFlag
-) -> Response:
+def _identified(params: IdentifyParams, time: Array, rotation: Array, form: str, url: str, stop: StopFlag) -> Response:
     # scipy.stats takes longer to import than the service to start
     from rocking_assessment._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
 
@@ -183,4 +192,4 @@ def _identified(
     columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
     columns |= {name: found[name].item() for name in TRACE_NUMBERS}
     columns["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
-    return json_response(IdentifyResponse.model_construct(query=params, **edges, **columns), request)
+    return json_of(IdentifyResponse.model_construct(query=params, url=url, **edges, **columns))

@@ -1,20 +1,23 @@
-"""Mesh files of clients, read by another process: `rocking_assessment.service.mesh_process`."""
+"""Mesh files of clients, read by the helper process, which loads trimesh and little else."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
+from rocking_api.execution.helper import Helper, read_from_file
 from rocking_api.http.errors import UnsupportedBodyError
-from rocking_api.limited_process import result_of
 
-from rocking.extension import UNITS, PolygonProperties, StopFlag, one_of
+from rocking.extension import UNITS, PolygonProperties, one_of
 from rocking_assessment._objects.objects import STEP, Plane
 
 MAX_MESH = 16 * 1024 * 1024
 """Largest file [bytes]: 330,000 triangles of a binary STL file, which take 5 s of processor time."""
 
 ENDINGS = (".stl", ".ply", ".obj", ".glb")
+
+CORNERS = 200  # most corners of a footprint that are kept, for its drawing [-]
 
 
 @dataclass(frozen=True)
@@ -26,12 +29,30 @@ class MeshShape:
     remarks: list[str]
 
 
-def read_mesh(raw: bytes, name: str, unit: str, stop: StopFlag) -> MeshShape:
-    """The shape of a mesh from the bytes of its file, by another process."""
+async def read_mesh(helper: Helper, raw: bytes, name: str, unit: str) -> MeshShape:
+    """The shape of a mesh from the bytes of its file."""
     one_of("unit", unit, UNITS["m"])
     ending = PurePath(name).suffix.lower()
     if ending not in ENDINGS:
         raise UnsupportedBodyError("mesh", ending or name, f"one of {', '.join(ENDINGS)}")
-    found = result_of("rocking_assessment.service.mesh_process", raw, "mesh", name, stop, (unit, str(STEP)))
-    planes = {float(angle): Plane.of(PolygonProperties(*values)) for angle, values in found["planes"].items()}
-    return MeshShape(planes, [(x, y) for x, y in found["footprint"]], found["remarks"])
+    planes, footprint, remarks = await helper.read("mesh", name, read_from_file, _shape_of, raw, name, unit)
+    return MeshShape({angle: Plane.of(found) for angle, found in planes.items()}, footprint, remarks)
+
+
+def _shape_of(path: Path, unit: str) -> tuple[dict[float, PolygonProperties], list[tuple[float, float]], list[str]]:
+    """The properties of a mesh in the planes in which it is assessed, its footprint, and what was repaired."""
+    from rocking_assessment._meshes.mesh import (  # noqa: PLC0415  # only the helper loads trimesh
+        CONTACT_TOLERANCE,
+        directions_around,
+        mesh_footprint,
+        mesh_properties,
+    )
+
+    footprint = mesh_footprint(path, unit)
+    found = {angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_around(footprint, STEP)}
+    remarks = next(remarks for _, remarks in found.values())
+    height = next(properties.top for properties, _ in found.values())
+    contact = f"stands on its vertices up to {1000.0 * CONTACT_TOLERANCE * height:.2g} mm above the lowest one"
+    corners = footprint[:: len(footprint) // CORNERS + 1].tolist()
+    planes = {angle: properties for angle, (properties, _) in found.items()}
+    return planes, [(x, y) for x, y in corners], [contact, *remarks]

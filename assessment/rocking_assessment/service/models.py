@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator
-from rocking_api.models.answer import Echoed, Solved
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator, model_validator
+from rocking_api.models.answer import Solved
 from rocking_api.models.params import Params
-from rocking_api.models.quantity import BaselineOrder, TableFormat, between, said
+from rocking_api.models.quantity import BaselineOrder, TableFormat, between, read_as, said
 
 from rocking.extension import (
+    PERIOD,
     PGA,
+    PGV,
     RESOLUTION,
     RESOLUTIONS,
     InvalidArgumentError,
@@ -36,27 +38,42 @@ Samples = Annotated[list[float], Field(max_length=MAX_RECORD, fail_fast=True)]
 Levels = Annotated[list[float], Field(max_length=MAX_LEVELS, fail_fast=True)]
 
 
+Pga: Any = read_as(PGA.restricted(*STRENGTHS), f"{PGA.meaning}, required without records", float | None, examples=[3.0])
+Pgv: Any = read_as(
+    PGV.restricted(*STRENGTHS),
+    "PGV, sets the period of each pulse; either this or periods",
+    float | None,
+    examples=[0.3],
+)
+_PERIOD = PERIOD.restricted(*LENGTH)
+PeriodMin: Any = read_as(_PERIOD, "shortest period of the pulses, with `period_max`", float | None)
+PeriodMax: Any = read_as(_PERIOD, "longest period of the pulses, with `period_min`", float | None)
+
+
 class AssessParams(Params):
     """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
-    pga: float | None = between(
-        *STRENGTHS, f"{PGA.meaning} [m/s2], required without records", default=None, examples=[3.0]
-    )
-    pgv: float | None = between(
-        *STRENGTHS, "PGV [m/s], sets the period of each pulse; either this or periods", default=None, examples=[0.3]
-    )
-    period_min: float | None = between(*LENGTH, "shortest period of the pulses, with `period_max` [s]", default=None)
-    period_max: float | None = between(*LENGTH, "longest period of the pulses, with `period_min` [s]", default=None)
+    pga: Pga = None
+    pgv: Pgv = None
+    period_min: PeriodMin = None
+    period_max: PeriodMax = None
     shapes: str | None = said("pulses, with commas; absent: all that end at rest", None, examples=["sine,ricker"])
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
-    floor_periods: str | None = said("periods of the building [s], for objects on a floor, separated by commas", None)
-    floor_damping: str = said("damping ratios of these modes [-], one for all or one for each", "0.05")
-    floor_participation: str = said("participation factors times mode shapes at the floor [-], likewise", "1")
+    floor_periods: str | None = said(
+        "periods of the building, for objects on a floor, separated by commas", None, unit="s"
+    )
+    floor_damping: str = said("damping ratios of these modes, one for all or one for each", "0.05", unit="-")
+    floor_participation: str = said("participation factors times mode shapes at the floor, likewise", "1", unit="-")
     baseline_order: BaselineOrder = None
-    samples: int = between(0, MAX_SAMPLES, "variants of each object in its tolerance and 0.05 of eta [-]", default=0)
-    seed: int = between(0, 2**53, "seed of these variants [-]", default=0)
+    samples: int = between(
+        0, MAX_SAMPLES, "variants of each object in its tolerance and 0.05 of eta", default=0, unit="-"
+    )
+    seed: int = between(0, 2**53, "seed of these variants", default=0, unit="-")
     resolution: float = between(
-        *RESOLUTIONS, "largest relative step of factors on a record, 2.5 times that on a pulse [-]", default=RESOLUTION
+        *RESOLUTIONS,
+        "largest relative step of factors on a record, 2.5 times that on a pulse",
+        default=RESOLUTION,
+        unit="-",
     )
     sensitivity: bool = said("find the factors of changed objects, and the sizes that survive", True)
     standards: str = said("checks by standards, with commas between, or all", "", examples=["static,asce43"])
@@ -83,7 +100,7 @@ class AssessParams(Params):
         return Site(
             self.pga,
             self.pgv,
-            None if ends == (None, None) else ends,  # type: ignore[arg-type]  # one of them alone is refused there
+            None if ends == (None, None) else ends,  # one of them alone is refused there
             [one.motion(k, self.baseline_order) for k, one in motions],
             None if hazard is None else (hazard.intensity, hazard.annual_rate),
             None if self.shapes is None else split_pulses(self.shapes),
@@ -116,9 +133,9 @@ class SuiteRecordBody(BaseModel):
     acceleration: Samples = said("horizontal acceleration at uniform steps, in `unit`")
     second: Samples | None = said("other horizontal component; the pair counts as one record at all angles", None)
     vertical: Samples | None = said("vertical acceleration, upwards", None)
-    time_step: float = said("time between samples [s]")
+    time_step: float = said("time between samples", unit="s")
     unit: str = said("unit of the samples", "m/s2")
-    name: str = said("name for the answer", "", max_length=40)
+    name: str = said("name for the answer", "", max_length=200)
 
     def motion(self, number: int, order: int | None) -> Record | tuple[Record, Record]:
         """The record, or the pair, without a baseline of a degree."""
@@ -136,28 +153,32 @@ class HazardBody(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    intensity: Levels = said("peak ground accelerations, ascending [m/s2]")
-    annual_rate: Levels = said("annual rates of exceedance [1/year]")
+    intensity: Levels = said("peak ground accelerations, ascending", unit="m/s2")
+    annual_rate: Levels = said("annual rates of exceedance", unit="1/year")
 
 
 class AssessBody(AssessParams):
     """Objects, a site, and its records and hazard curve, if it has any."""
 
-    takes_lists: ClassVar = True
-
     objects: list[dict[str, Any]] = said(
-        "one a row, with the columns of `rocking_assessment.Object`", max_length=MAX_OBJECTS
+        "one a row, with the columns of `rocking_assessment.Object`", max_length=MAX_OBJECTS, exclude=True
     )
-    records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS)
-    hazard: HazardBody | None = said("hazard curve of the site, with records", None)
+    records: list[SuiteRecordBody] = said("suite of records of the site", [], max_length=MAX_RECORDS, exclude=True)
+    hazard: HazardBody | None = said("hazard curve of the site, with records", None, exclude=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_list(cls, value: Any) -> Any:
+        """A list is one of objects, with the site in the query."""
+        return {"objects": value} if isinstance(value, list) else value
 
 
 def _field(column: Quantity) -> Any:
     kinds: dict[str, Any] = {"": str, "bool": bool}
-    unit = f" [{column.unit}]" if column.unit not in ("", "bool") else ""
+    unit = column.unit if column.unit != "bool" else ""
     optional = column.name != "uplifts" and column.unit != ""
     kind = kinds.get(column.unit, float)
-    return (kind | None if optional else kind), said(f"{column.meaning}{unit}")
+    return (kind | None if optional else kind), said(column.meaning, unit=unit)
 
 
 AssessedRow: type[BaseModel] = create_model(
@@ -170,18 +191,20 @@ AssessedRow: type[BaseModel] = create_model(
 class UnreadRow(BaseModel):
     """A row of the table that was not read."""
 
-    row: int = said("number in the table, from 1 [-]")
+    row: int = said("number in the table, from 1", unit="-")
     column: str = said("name of the column; empty: the whole row")
     reason: str = said("what was found and what is allowed")
 
 
-class AssessResponse(Echoed[AssessParams], Solved[AssessParams]):
+class AssessResponse(Solved[AssessParams]):
     """Objects at a site, the worst first."""
 
     rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]
     motions: list[str] = said("motions of the site; each acts from both sides")
-    highest_factor: float = said("highest factor searched [-]")
-    resolution: float = said("largest relative distance between the factors tried on records, 0 without records [-]")
+    highest_factor: float = said("highest factor searched", unit="-")
+    resolution: float = said(
+        "largest relative distance between the factors tried on records, 0 without records", unit="-"
+    )
     bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
     details: dict[str, list[str]] = said("unchanged cells of the object of each row, by the headers of the table", {})
     columns: dict[str, str] = said("meaning of the columns that were read, by header")

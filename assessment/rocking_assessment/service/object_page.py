@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
 
@@ -10,19 +9,18 @@ import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse
-from rocking_api.http.caching import revalidated
-from rocking_api.http.parameters import query_parameters
 from rocking_api.routers.pages import POLICY, html
-from rocking_api.service import Service, ServiceDep
+from rocking_api.service import ServiceDep
 from rocking_api.settings import Settings
 
-from rocking.extension import RESTITUTION, Array, InvalidArgumentError, Scalar
+from rocking.extension import RESTITUTION, Array, InvalidArgumentError, Scalar, StopFlag
 from rocking_assessment._objects.directions import factors_by_direction
-from rocking_assessment._objects.objects import Object, Plane
+from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.search import HIGHEST_FACTOR
 from rocking_assessment._objects.site import Site
+from rocking_assessment._objects.summary import number_of
 from rocking_assessment.service.dial import dial_of, worst_directions
-from rocking_assessment.service.mesh_reader import ENDINGS, MAX_MESH, read_mesh
+from rocking_assessment.service.mesh_reader import ENDINGS, read_mesh
 from rocking_assessment.service.models import modes_of
 
 PATH = "/object"
@@ -47,8 +45,23 @@ LENGTHS = {
 
 UNITS_SHOWN = ("cm", "m", "mm", "ft", "in")
 
-SITE = {"pga": "0.3", "pga_unit": "g", "pgv": "30", "pgv_unit": "cm/s", "floor_periods": "", "floor_participation": "1"}
+SITE = {
+    "pga": "0.3",
+    "pga_unit": "g",
+    "pgv": "30",
+    "pgv_unit": "cm/s",
+    "period_min": "",
+    "period_max": "",
+    "floor_periods": "",
+    "floor_participation": "1",
+}
 """Fields of a site, and what they hold at first."""
+
+USUAL_PGV = (
+    "a number, usually about 100 cm/s for each g of PGA on firm ground, 30 cm/s at 0.3 g; or in its place the shortest "
+    "and the longest period of the pulses"
+)
+"""What is asked for where the PGV is empty."""
 
 EXAMPLES = {
     "rectangle": {"width": "40", "depth": "30", "height": "160"},
@@ -67,39 +80,36 @@ router = APIRouter(prefix=PATH, include_in_schema=False)
 @router.get("")
 async def get_object_page(request: Request, service: ServiceDep) -> Response:
     """The page with the object of its address, or an example."""
-    asked = query_parameters(request)
+    asked = dict(request.query_params)
     given = fields_of(asked)
     if given["shape"] == "mesh" or not (_is_asked(asked) or service.kernels.is_loaded):
-        return revalidated(request, page_of(given, settings=service.settings))
+        return page_of(given, settings=service.settings)
+
+    def work(stop: StopFlag) -> tuple[Object, xr.Dataset]:
+        one = _object(given)
+        return one, factors_by_direction(one.planes_around, one.restitution, site_of(given).find_motions(stop), stop)
+
     try:
-        site, one = await service.run_io(lambda: (site_of(given), _object(given)))
-        found = await _assessed(one.planes_around, one.restitution, site, request, service)
+        one, found = await service.solve_one(work, request)
     except InvalidArgumentError as error:
         return page_of(given, error=error, settings=service.settings)
-    page = page_of(given, found=found, footprint=one.footprint, settings=service.settings)
-    return revalidated(request, page)
+    return page_of(given, found=found, footprint=one.footprint, settings=service.settings)
 
 
 @router.post("")
 async def post_mesh(request: Request, service: ServiceDep, file: str = "") -> Response:
     """The page with the object of a mesh, the body; `file` is its name."""
-    given = fields_of(query_parameters(request) | {"shape": "mesh"})
-    raw = await service.read_body(request, MAX_MESH)
+    given = fields_of({**request.query_params, "shape": "mesh"})
     site, restitution = site_of(given), _restitution(given)
-    mesh = await service.run_parser(lambda stop: read_mesh(raw, file, given["unit"], stop), request, in_process=True)
-    found = await _assessed(mesh.planes, restitution, site, request, service)
+    mesh = await read_mesh(service.helper, await request.body(), file, given["unit"])
+
+    def work(stop: StopFlag) -> xr.Dataset:
+        return factors_by_direction(mesh.planes, restitution, site.find_motions(stop), stop)
+
+    found = await service.solve(work, request)
     notes = [f"The mesh {remark}." for remark in mesh.remarks]
     given |= {"name": file}
     return page_of(given, found=found, footprint=np.array(mesh.footprint), notes=notes, settings=service.settings)
-
-
-async def _assessed(
-    planes: Mapping[float, Plane], restitution: Scalar, site: Site, request: Request, service: Service
-) -> xr.Dataset:
-    await service.kernels.wait()
-    return await service.executor.run(
-        lambda stop: factors_by_direction(planes, restitution, site.find_motions(stop), stop), request
-    )
 
 
 def site_of(given: dict[str, str]) -> Site:
@@ -108,7 +118,20 @@ def site_of(given: dict[str, str]) -> Site:
     if given["floor_periods"].strip():
         for name in ("floor_periods", "floor_participation"):
             modes[name] = modes_of(name, given[name])
-    return Site(quantity_of(given, "pga"), quantity_of(given, "pgv"), **modes)
+    periods = periods_of(given)
+    if periods is None and not given["pgv"].strip():
+        raise InvalidArgumentError("pgv", None, USUAL_PGV)
+    pgv = quantity_of(given, "pgv") if given["pgv"].strip() else None
+    return Site(quantity_of(given, "pga"), pgv, periods, **modes)
+
+
+def periods_of(given: dict[str, str]) -> tuple[str, str] | None:
+    """The shortest and the longest period of the pulses from the fields of a form; None if both are empty."""
+    texts = {name: given[name].strip().replace(",", ".") for name in ("period_min", "period_max")}
+    for name, text in texts.items():
+        if not text and any(texts.values()):
+            raise InvalidArgumentError(name, None, "a number of seconds: the shortest and the longest period")
+    return (f"{texts['period_min']} s", f"{texts['period_max']} s") if any(texts.values()) else None
 
 
 def address_of(one: Object, given: dict[str, str]) -> str:
@@ -207,6 +230,7 @@ def page_of(
         worst=worst,
         dial=dial_of(found, footprint) if worst and found is not None and footprint is not None else None,
         highest=HIGHEST_FACTOR,
+        number_of=number_of,
         notes=notes or [],
         depth_missing=given["shape"] == "rectangle" and not given["depth"].strip(),
     )
@@ -217,5 +241,7 @@ def page_of(
 def _words(error: InvalidArgumentError) -> str:
     """What is wrong with a field, in the words that the other pages have."""
     name = error.parameter.replace("_", " ")
+    if error.value is None:
+        return f"{name} is missing; needed: {error.allowed}"
     value = str(error.value)
     return f"{name} is {value if len(value) <= 60 else 'wrong'}; allowed: {error.allowed}"

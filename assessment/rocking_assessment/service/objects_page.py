@@ -15,20 +15,20 @@ from urllib.parse import unquote_to_bytes
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, PlainTextResponse
-from rocking_api.http.caching import revalidated
 from rocking_api.http.encoding import text_response
 from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
-from rocking_api.limited_process import result_of
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
 from rocking.extension import (
     MARK,
+    MAX_CHARACTERS,
     SHEETS,
     BadRow,
     InvalidArgumentError,
     StopFlag,
+    csv_of_sheet,
     delimiter_of,
     plain_numbers,
     rows_of_csv,
@@ -42,7 +42,7 @@ from rocking_assessment._objects.summary import counts_of, lines_of, names_in_sh
 from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_csv
 from rocking_assessment.service.assess import MAX_BODY, check_table
 from rocking_assessment.service.models import MAX_OBJECTS
-from rocking_assessment.service.object_page import SITE, address_of, quantity_of, site_of
+from rocking_assessment.service.object_page import SITE, address_of, periods_of, quantity_of, site_of
 
 MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
 
@@ -70,19 +70,24 @@ router = APIRouter(prefix=PATH, include_in_schema=False)
 
 
 @router.get("")
-async def get_objects_page(request: Request, service: ServiceDep) -> Response:
+async def get_objects_page(service: ServiceDep) -> Response:
     """The page with the table of the guide as an example."""
     table = EXAMPLE.read_text("utf-8")
-    return revalidated(request, _page(DEFAULTS | {"table": table}, service.settings))
+    return _page(DEFAULTS | {"table": table}, service.settings)
 
 
 @router.post("")
 async def post_objects_page(request: Request, service: ServiceDep) -> Response:
     """The page with the assessment of the table in its form, and fields for what was not read."""
-    given = await _form(request, service)
-    table = await _read(given, request, service)
-    found = await _assessed(table, given, request, service) if table.objects or not table.bad_rows else None
-    return await service.run_io(lambda: _page(given, service.settings, table, found))
+    raw = await request.body()
+
+    def work(stop: StopFlag) -> Response:
+        given = _fields(raw, stop)
+        table = objects_of_csv(given["table"], MAX_OBJECTS, stop)
+        found = _assessed(table, given, stop) if table.objects or not table.bad_rows else None
+        return _page(given, service.settings, table, found)
+
+    return await service.solve_one(work, request)
 
 
 @router.post("/report")
@@ -90,14 +95,18 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
     given, table, found = await _answer(request, service)
     words = ["rocking", "assess", "TABLE"]
-    for name in ("pga", "pgv"):
-        words += [f"--{name}", quantity_of(given, name).replace(" ", "")]
+    words += ["--pga", quantity_of(given, "pga").replace(" ", "")]
+    periods = periods_of(given)
+    if given["pgv"].strip():
+        words += ["--pgv", quantity_of(given, "pgv").replace(" ", "")]
+    elif periods is not None:
+        words += ["--period-min", periods[0].replace(" ", ""), "--period-max", periods[1].replace(" ", "")]
     if given["floor_periods"].strip():
-        periods, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
-        words += ["--floor", ",".join(f"{one}s" for one in periods)]
+        modes, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
+        words += ["--floor", ",".join(f"{period}s" for period in modes)]
         words += ["--floor-participation", ",".join(map(str, participation))]
     project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(words))
-    text = await service.executor.run(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
+    text = await service.solve_one(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
 
@@ -107,51 +116,48 @@ async def post_file(request: Request, service: ServiceDep) -> Response:
     """The assessment as CSV or as a workbook, as its address ends."""
     _, table, found = await _answer(request, service)
     if request.url.path.endswith(".csv"):
-        return text_response(await service.run_io(lambda: found.to_csv(bad_rows=table.bad_rows)), "assessment")
+        return text_response(await service.read(lambda _: found.to_csv(bad_rows=table.bad_rows)), "assessment")
     headers = {"Content-Disposition": 'attachment; filename="assessment.xlsx"'}
-    raw = await service.run_io(lambda: found.to_xlsx(bad_rows=table.bad_rows))
+    raw = await service.read(lambda _: found.to_xlsx(bad_rows=table.bad_rows))
     return Response(raw, headers=headers, media_type=WORKBOOK)
 
 
 async def _answer(request: Request, service: Service) -> tuple[dict[str, str], ObjectTable, Assessment]:
     """The fields of the form, its table and its assessment."""
-    given = await _form(request, service)
-    table = await _read(given, request, service)
-    return given, table, await _assessed(table, given, request, service)
+    raw = await request.body()
+
+    def work(stop: StopFlag) -> tuple[dict[str, str], ObjectTable, Assessment]:
+        given = _fields(raw, stop)
+        table = objects_of_csv(given["table"], MAX_OBJECTS, stop)
+        return given, table, _assessed(table, given, stop)
+
+    return await service.solve_one(work, request)
 
 
 @router.post("/text")
 async def post_text(request: Request, service: ServiceDep, name: str = "") -> Response:
     """The text of a file, of a sheet as CSV."""
-    body = await service.read_body(request, MAX_BODY)
-    in_process = _ending(name) in SHEETS
-    text = await service.run_parser(lambda stop: _text(body, name, stop), request, True, in_process=in_process)
-    return PlainTextResponse(text)
-
-
-def _ending(name: str) -> str:
-    return PurePath(name).suffix.lower()
-
-
-def _text(raw: bytes, name: str, stop: StopFlag) -> str:
-    ending = _ending(name)
+    raw = await request.body()
+    ending = PurePath(name).suffix.lower()
     if ending not in SHEETS:
-        return text_of(raw, "table")
+        return PlainTextResponse(await service.read(lambda _: text_of(raw, "table")))
     if find_spec("python_calamine") is None:
         raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
     try:
-        size = sum(one.file_size for one in zipfile.ZipFile(io.BytesIO(raw)).infolist())
+        size = sum(member.file_size for member in zipfile.ZipFile(io.BytesIO(raw)).infolist())
     except zipfile.BadZipFile:
         raise InvalidArgumentError("table", name, "a sheet, which is a zip archive") from None
-    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the process
+    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the helper
         raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
-    text: str = result_of("rocking_assessment.service.sheet_process", raw, "table", name, stop)["text"]
+    return PlainTextResponse(await service.helper.read("table", name, _sheet_text, raw))
+
+
+def _sheet_text(raw: bytes) -> str:
+    """The first sheet of a file as CSV."""
+    text = csv_of_sheet(raw, "table")
+    if len(text) > MAX_CHARACTERS:
+        raise InvalidArgumentError("table", len(text), f"a table of at most {MAX_CHARACTERS} characters")
     return text
-
-
-async def _form(request: Request, service: Service) -> dict[str, str]:
-    body = await service.read_body(request, 3 * MAX_BODY)  # with signs that are escaped
-    return await service.run_parser(lambda stop: _fields(body, stop), request, large=True)
 
 
 def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
@@ -206,19 +212,9 @@ def _unescaped(raw: bytes, stop: StopFlag) -> str:
     return found.decode("utf-8", "replace")
 
 
-async def _read(given: dict[str, str], request: Request, service: Service) -> ObjectTable:
-    return await service.run_parser(lambda stop: objects_of_csv(given["table"], MAX_OBJECTS, stop), request, large=True)
-
-
-async def _assessed(table: ObjectTable, given: dict[str, str], request: Request, service: Service) -> Assessment:
-    site = site_of(given)
+def _assessed(table: ObjectTable, given: dict[str, str], stop: StopFlag) -> Assessment:
     check_table(table, "table")
-
-    def run(stop: StopFlag) -> Assessment:
-        return assess(table.objects, site, sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
-
-    await service.kernels.wait()
-    return await service.executor.run(run, request)
+    return assess(table.objects, site_of(given), sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
 
 
 def _page(

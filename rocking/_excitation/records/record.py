@@ -231,6 +231,11 @@ class Record:
 
         return self._processed(corrected, self.time_step, f"baseline of order {order} removed")
 
+    def mirrored(self) -> Record:
+        """The record with the other sign of its horizontal acceleration."""
+        name = f"{self.name}, mirrored" if self.name else ""
+        return Record(-self.acceleration, self.time_step, "m/s2", name, self.source, self.remarks, self.vertical)
+
     def resampled(self, time_step: Scalar) -> Record:
         """The record at another step, by band-limited interpolation with anti-aliasing.
 

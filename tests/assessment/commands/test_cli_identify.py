@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
-from tests.assessment.objects.objects.objects.objects.objects.evidence.test_free_rocking import trace
+from tests.assessment.evidence.test_free_rocking import trace
 from tests.cli.test_cli import read_csv, refused, run
 
 

@@ -133,6 +133,7 @@ def test_pgv_is_in_centimetres_a_second(tmp_path):
         (OPENQUAKE.replace("=50.0", "=0"), "a.csv", "year"),
         (OPENQUAKE + OPENQUAKE.splitlines()[-1], "a.csv", "2 sites"),
         (CURVES, "SA0P2/curves.csv", "measure SA0P2"),
+        (CURVES.replace(",3.0e-05", ""), "PGA/curves.csv", "cells"),
         (CURVES.replace("2.1e-02", "much"), "PGA/curves.csv", "much"),
         (CURVES.replace("2.1e-02", "0.9"), "PGA/curves.csv", "do not increase"),
         (CURVES.replace("5.2e-01", "0").replace("2.1e-02", "0").replace("1.4e-03", "0"), "PGA/a.csv", "two at least"),

@@ -13,7 +13,7 @@ from rocking_assessment._objects.tables import objects_of_csv, objects_of_json, 
 
 from rocking._base.errors import InvalidArgumentError
 from rocking._dimensional.table_reader import TooManyRowsError, csv_of_sheet
-from tests.assessment.objects.objects.objects.objects.objects.objects.dialects import Writer, errors_of
+from tests.assessment.objects.dialects import Writer, errors_of
 from tests.sampling import SEED, number
 from tests.sheets import xlsx_bytes
 

@@ -13,8 +13,8 @@ from rocking_assessment.service.models import AssessedRow
 
 import rocking
 from rocking._base.errors import InvalidArgumentError
-from tests.api.conftest import CSV, post
-from tests.assessment.objects.objects.objects.objects.objects.objects.dialects import Writer, errors_of
+from tests.api.conftest import CSV, assert_problem, post
+from tests.assessment.objects.dialects import Writer, errors_of
 from tests.sampling import SEED
 from tests.sheets import xlsx_bytes
 
@@ -49,8 +49,8 @@ def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
     pair = {"acceleration": x.tolist(), "second": y.tolist(), "vertical": z.tolist(), "name": "A", **about}
     curve = {"intensity": [0.5, 3.0, 9.0], "annual_rate": [1e-2, 1e-3, 1e-5]}
     body = {"objects": ROWS[1:], "records": [pair, {"acceleration": y.tolist(), **about}], "hazard": curve}
-    query = "pga=2&sensitivity=false&samples=8&seed=3&shapes=sine&floor_periods=0.5,0.1&floor_participation=1.2,-0.2"
-    answer = client.post(f"/v1/assess?{query}", json=body)
+    site = {"pga": "2 m/s2", "shapes": "sine", "floor_periods": "0.5,0.1", "floor_participation": "1.2,-0.2"}
+    answer = client.post("/v1/assess", json=body | site | {"sensitivity": False, "samples": 8, "seed": 3})
     assert answer.status_code == 200, answer.text
     first = rocking.Record(x, 0.05, "m/s2", "A", vertical=z)
     second, other = (rocking.Record(y, 0.05, "m/s2", name) for name in ("A", "record 2"))
@@ -67,7 +67,7 @@ def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
     )
     assert answer.json()["rows"] == expected.rows
     assert len(answer.json()["motions"]) == 13
-    without = client.post("/v1/assess?sensitivity=false", json=body | {"hazard": None})
+    without = client.post("/v1/assess", json=body | {"hazard": None, "sensitivity": False})
     assert without.json()["rows"][0]["annual_rate"] is None
 
 
@@ -109,6 +109,18 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert list(rows[0])[: len(given[0])] == list(given[0])  # as they stand, also those that are not read
     assert [{name: row.pop(name) for name in given[0]} for row in rows] == [given[2], given[0], given[0], given[1]]
     assert answer["details"]["colour"] == ["", "red", "red"]
-    accepted = client.post(URL, json=ROWS, headers={"accept": "text/csv"})
+    accepted = client.post(f"{URL}&format=csv", json=ROWS)
     assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]
     assert {"name", "width", "height"} <= {*answer["columns"].values()}
+
+
+def test_strengths_and_periods_take_units_and_records_keep_their_names(client):
+    numbers = client.post("/v1/assess?pga=2.941995&pgv=0.3&shapes=sine&sensitivity=false", json=ROWS[:1]).json()
+    texts = client.post("/v1/assess?pga=0.3g&pgv=30 cm/s&shapes=sine&sensitivity=false", json=ROWS[:1]).json()
+    assert texts["rows"] == numbers["rows"]
+    assert texts["query"]["pgv"] == 0.3
+    assert assert_problem(client.post("/v1/assess?pga=3&pgv=0.3 m", json=ROWS[:1]), 422, "pgv")["value"] == "0.3 m"
+    name = "South Napa 2014-08-24, station NHC, component 90, as processed"
+    record = {"acceleration": [0.0, 2.0, -2.0, 0.0], "time_step": 0.1}
+    body = {"objects": ROWS[:1], "records": [record | {"name": name}, record], "sensitivity": False}
+    assert client.post("/v1/assess", json=body).json()["motions"] == [name, "record 2"]

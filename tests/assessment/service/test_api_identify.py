@@ -31,7 +31,7 @@ def as_csv(trace, factor=1.0, header="time [s],rotation [rad]"):
 
 def test_the_block_is_that_of_a_direct_call(client, trace):
     expected = rocking_assessment.identify_free_rocking(trace["time"], trace["rotation"], confidence=0.9)
-    answer = client.post(URL, params={"confidence": 0.9}, json=trace).json()
+    answer = client.post(URL, json=trace | {"confidence": 0.9}).json()
     for name in EDGE_COLUMNS:
         assert answer[name] == expected[name].values.tolist()
     assert answer["restitution"] == pytest.approx([ETA], abs=0.01)
@@ -60,11 +60,13 @@ def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
 
 def test_frames_are_no_times(client):
     body = (Path(__file__).parents[2] / "data/field/frame_counter.csv").read_bytes()
-    headers = {"Content-Type": "text/csv", "Accept": "application/json"}
+    headers = {"Content-Type": "text/csv"}
     problem = assert_problem(client.post("/v1/identify", content=body, headers=headers), 422)
     assert "found frame, rotation [deg]" in problem["detail"]
     assert "`time_step`" in problem["detail"]
-    found = client.post("/v1/identify", params={"time_step": 1.0 / 60.0}, content=body, headers=headers).json()
+    found = client.post(
+        "/v1/identify", params={"time_step": 1.0 / 60.0, "format": "json"}, content=body, headers=headers
+    ).json()
     assert found["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]
-    json = client.post(URL, params={"time_step": 0.01}, json={"time": [*range(20)], "rotation": [0.1] * 20})
-    assert_problem(json, 422, "time_step")  # no parameter beside the times of JSON
+    json = client.post(URL, json={"time": [*range(20)], "rotation": [0.1] * 20, "time_step": 0.01})
+    assert assert_problem(json, 422)["parameter"] == "time_step"

@@ -3,17 +3,13 @@
 import io
 import re
 import struct
-import subprocess
-import sys
-import threading
 from html import unescape
 from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 import pytest
 import rocking_assessment
-from rocking_api import limited_process
-from rocking_api.routers import object_page
+from rocking_assessment.service import mesh_reader, object_page
 from rocking_assessment.service.dial import worst_directions
 
 from tests.api.conftest import assert_problem
@@ -139,7 +135,6 @@ def test_what_is_wrong_is_said_beside_its_field(client, fields, name):
 
 def test_other_faults_of_an_address(client):
     assert_problem(client.get("/object", params={"shape": "sphere"}), 422, "shape")
-    assert_problem(client.get("/object?shape=mesh&shape=outline"), 422, "shape")
     assert client.get("/object?shape=mesh&pga=0.3").status_code == 200
     assert client.put("/object").status_code == 405
     for shape in object_page.SHAPES:
@@ -203,31 +198,15 @@ def test_meshes_of_other_formats_units_and_sizes_are_refused(client, slab):
     assert_problem(posted(client, content, "slab.stl", unit="furlong"), 422, "unit")
     assert_problem(posted(client, content, "slab.stl", pga="much"), 422, "pga")
     assert_problem(posted(client, content, "slab.stl", restitution="2"), 422, "restitution")
-    assert_problem(posted(client, bytes(object_page.MAX_MESH + 1), "slab.stl"), 413, "body")
+    assert_problem(posted(client, bytes(mesh_reader.MAX_MESH + 1), "slab.stl"), 413, "body")
 
 
-def test_the_process_of_a_mesh_that_takes_long_ends_at_the_limit(client, monkeypatch):
-    monkeypatch.setattr(client.app.state.service.parser, "_seconds", 1.0)
-    run, ended = limited_process._run, threading.Event()
-
-    def slow(_, stop):
-        try:
-            return run(["python", "-c", "import time; time.sleep(60)"], stop)
-        finally:
-            ended.set()
-
-    monkeypatch.setattr(limited_process, "_run", slow)
-    assert_problem(posted(client, b"", "a.stl"), 504)
-    assert ended.wait(10)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="limits of a process are those of Linux")
-def test_the_process_of_a_mesh_stays_within_its_limits(slab, tmp_path):
-    path = tmp_path / "slab.stl"
-    slab.subdivide_loop(7).export(path)  # 196,608 triangles, of 50 bytes each
-    for limit in number(["MEMORY = 2**20"], ["MEMORY = 2**20", "SECONDS = 0"]):
-        code = "from rocking_api import limited_process as m, mesh_process"
-        code += f"; m.{limit}; mesh_process.main({str(path)!r}, 'mm', '15')"
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, timeout=60)
-        assert b"planes" not in done.stdout
-        assert done.returncode or b"allowed" in done.stdout
+def test_a_pga_suffices_with_periods_and_an_empty_pgv_is_asked_for_with_a_usual_value(client):
+    given = {"shape": "rectangle", "width": "40", "height": "160", "pga": "0.3", "pga_unit": "g", "pgv": ""}
+    page = client.get("/object", params=given)
+    assert page.status_code == 422
+    assert "pgv is missing; needed: a number, usually about 100 cm/s for each g of PGA" in unescape(page.text)
+    assert client.get("/object", params=given | {"period_min": "0.2"}).status_code == 422
+    page = client.get("/object", params=given | {"period_min": "0.2", "period_max": "0,4"})
+    assert page.status_code == 200
+    assert "0.3 g and periods from 0.2 to 0,4 s" in page.text

@@ -17,12 +17,12 @@ const filters = [filter, ...Object.values(choices)];
 const showAll = element("button", "Show all", { type: "button" });
 
 let datasets = []; // of the catalogue, each with its row
-let stores = {}; // of the cubes of one pulse, by the folder of these
+let stores = {}; // zarr stores of the cubes of one pulse, by the folder of these
 
 async function show() {
   try {
     const found = await ask("/v1/datasets", {}, new AbortController().signal);
-    stores = Object.fromEntries(found.pulses.map((one) => [one.name, one]));
+    stores = Object.fromEntries(found.pulses.map((one) => [`spectra/${one.name}`, one]));
     datasets = found.datasets.map((one) => ({ ...one, row: row(one), kind: one.name.split("/")[0] }));
     for (const [name, select] of Object.entries(choices)) {
       const values = [...new Set(datasets.map((one) => one[name]).filter((value) => value !== null))].sort();
@@ -30,7 +30,6 @@ async function show() {
     }
     const kinds = [...new Set([...Object.keys(GROUPS), ...datasets.map(({ kind }) => kind)])];
     groups.replaceChildren(...kinds.map(group).filter(Boolean));
-    document.getElementById("archive").textContent = `All as one archive, ${sizeOf(datasets)}`;
     recall();
     select();
   } catch (problem) {
@@ -89,8 +88,8 @@ function row(one) {
   return element("tr", [title, ...cells.map((cell) => element("td", cell))]);
 }
 
-async function copyLine({ name, zarr }) {
-  const line = `xarray.open_zarr("${location.origin}${zarr}")`;
+async function copyLine({ name, zarr, netcdf }) {
+  const line = zarr ? `xarray.open_zarr("${location.origin}${zarr}")` : `xarray.open_dataset("${location.origin}${netcdf}#mode=bytes", engine="netcdf4")`;
   try {
     await navigator.clipboard.writeText(line);
     setStatus(status, `Copied the line for ${name}.`);
@@ -109,7 +108,7 @@ function centre({ slenderness: [low, high], frequency_ratio: [from, to] }) {
 
 /** The ranges of the axes, each in one line. */
 function extent({ extent: ranges }) {
-  const parts = Object.entries(ranges).map(([name, ends]) => {
+  const parts = Object.entries(ranges).filter(([, ends]) => ends).map(([name, ends]) => {
     const texts = new Set(ends.map((end) => (name === "alpha" ? `${number(end * DEGREES)}°` : number(end))));
     return element("span", `${SYMBOLS[name]} ${[...texts].join(" to ")}`);
   });
@@ -164,7 +163,7 @@ function select() {
 }
 
 document.getElementById("sums").addEventListener("click", () => {
-  const lines = chosen().map(({ sha256, netcdf }) => `${sha256}  ${netcdf.replace("/v1/datasets/", "")}\n`);
+  const lines = chosen().filter(({ sha256 }) => sha256).map(({ sha256, netcdf }) => `${sha256}  ${netcdf.replace("/v1/datasets/", "")}\n`);
   save(new Blob(lines), "SHA256SUMS");
   setStatus(status, "The browser saves SHA256SUMS.");
 });

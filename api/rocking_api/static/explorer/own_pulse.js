@@ -14,8 +14,8 @@ export function samplesOf(text) {
 export async function blockUnderSamples(params, signal) {
   const { pulse, restitution, ...block } = params;
   const acceleration = pulse.split(" ").map(Number);
-  const body = new Blob([JSON.stringify({ blocks: [block], pulse: { acceleration } })], { type: "application/json" });
-  const found = await send("/v1/blocks/response", { restitution }, body, signal);
+  const body = new Blob([JSON.stringify({ blocks: [block], pulse: { acceleration }, restitution })], { type: "application/json" });
+  const found = await send("/v1/blocks/response", {}, body, signal);
   const columns = Object.entries(found).filter(([, value]) => Array.isArray(value) && value.length === 1);
   const row = Object.fromEntries(columns.map(([name, [value]]) => [name, value]));
   const { slenderness, frequency_ratio, alpha_deg, outcome, uplift_acceleration: uplift } = row;

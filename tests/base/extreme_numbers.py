@@ -1,10 +1,10 @@
 """Every number that enters through Python or the command line, from 1e-300 to 1e300, under a limit of memory.
 
-`python -m tests.api.extreme_numbers RESULTS` replaces one number of an ordinary call at a time and prints the faults:
+`python -m tests.base.extreme_numbers RESULTS` replaces one number of an ordinary call at a time and prints the faults:
 errors other than those about an argument, warnings, calls beyond the time limit. The parameters are read from the
 signatures, where one that has no ordinary value here is a fault as well. `--only NAME` restricts it to the
 calls whose name contains NAME, and `--sample SEED` to some of the calls, with a few of the values of each number, drawn
-at random. Those of HTTP are sent by `fuzzer.py`.
+at random.
 """
 
 import argparse
