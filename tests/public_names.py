@@ -106,7 +106,7 @@ def schema_fields(document: dict[str, Any], schema: dict[str, Any], path: str = 
     for name, field in schema.get("properties", {}).items():
         yield f"{path}{name}"
         yield from schema_fields(document, field, f"{path}{name}.")
-    for part in (*schema.get("anyOf", ()), *schema.get("allOf", ()), schema.get("items")):
+    for part in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ()), schema.get("items")):
         if isinstance(part, dict):
             yield from schema_fields(document, part, path)
 
