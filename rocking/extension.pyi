@@ -4,6 +4,7 @@ from ._base.arrays import Index as Index
 from ._base.cells import name_and_unit as name_and_unit
 from ._base.cells import named as named
 from ._base.cells import plain_name as plain_name
+from ._base.constants import STANDARD_GRAVITY as STANDARD_GRAVITY
 from ._base.equality import EqualByValue as EqualByValue
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RecordFileError as RecordFileError
@@ -48,7 +49,6 @@ from ._base.quantities import TIME_STEP as TIME_STEP
 from ._base.quantities import TOLERANCE as TOLERANCE
 from ._base.quantities import WIDTH as WIDTH
 from ._base.quantity import Quantity as Quantity
-from ._base.units import STANDARD_GRAVITY as STANDARD_GRAVITY
 from ._base.units import UNITS as UNITS
 from ._base.units import Scalar as Scalar
 from ._base.units import Values as Values

@@ -1,4 +1,7 @@
-"""The command `rocking serve`, found through the entry point `serve` of the group `rocking.commands`."""
+"""The command `rocking serve`, found through the entry point `serve` of the group `rocking.commands`.
+
+`rocking --help` loads this module, so that the service is imported when it starts.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,6 @@ from contextlib import ExitStack
 from typing import Annotated, Any
 
 import typer
-import uvicorn
-from pydantic import ValidationError
-
-from rocking_api.execution.kernels import compile_command
-from rocking_api.settings import EXAMPLE, Settings, has_data, unknown_variables, variables
 
 LOG: dict[str, Any] = {
     "version": 1,
@@ -47,6 +45,12 @@ def serve(
     workers: Annotated[int, typer.Option(help="Processes that serve.", metavar="[NUMBER]", min=1, max=256)] = 1,
 ) -> None:
     """Run the HTTP service until interrupted; the routes are described under /docs."""
+    import uvicorn
+    from pydantic import ValidationError
+
+    from rocking_api.execution.kernels import compile_command
+    from rocking_api.settings import EXAMPLE, Settings, has_data, unknown_variables, variables
+
     for variable in unknown_variables(os.environ):
         typer.echo(f"Error: {variable} is not allowed; allowed: {', '.join(variables())}", err=True)
         raise typer.Exit(2)

@@ -14,7 +14,7 @@ import time
 import openseespy.opensees as ops
 
 from benchmarks.accuracy.siconos import HEIGHT, PERIOD, WIDTH, rows
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 
 DENSITY = 2500.0
 DURATION = 3.0

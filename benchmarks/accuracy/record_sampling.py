@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measure import arguments
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import read_record
 from rocking._excitation.records.record import Record
 from rocking._solver.records.record_response import record_response

@@ -15,7 +15,7 @@ from scipy.io import loadmat
 
 import rocking
 from benchmarks.measure import arguments
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 
 RECORD, STEP, WINDOW = "a4", 0.025, slice(120, 521)
 """The record that the figure fits, its step [s], and the samples that `example.m` takes, 3 to 13 s."""

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 
 WIDTH, HEIGHT, PERIOD = 0.4, 1.6, 0.5
 LEVELS = (0.3, 0.4, 0.6)

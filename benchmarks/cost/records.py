@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from benchmarks.accuracy.reference_problems import by_scipy
 from benchmarks.cost.made_up_records import made_up_record, made_up_suite
 from benchmarks.measure import arguments, finish, progress, shortest, versions
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record
 from rocking._numba.cancellation import NEVER_STOPPED
 from rocking._numba.simd import LANES

@@ -19,7 +19,7 @@ from distributed import Client, LocalCluster
 import rocking
 from benchmarks.cost.made_up_records import made_up_suite
 from benchmarks.measure import arguments
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 
 ANGLES = {"slender": None, "rigid": 0.25}
 """alpha [rad]."""

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.quantity import Quantity
-from rocking._base.units import STANDARD_GRAVITY
 
 # fmt: off
 # The groups of a response

@@ -14,6 +14,8 @@ from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
 
+from rocking._base.constants import STANDARD_GRAVITY
+
 
 class WithUnit(Protocol):
     """A number with a unit, or several, as the library pint has them."""
@@ -25,8 +27,6 @@ class WithUnit(Protocol):
 Scalar = float | str | WithUnit
 """A number in the SI unit, a text such as "40 cm", or a quantity."""
 Values = ArrayLike | WithUnit  # the same, or an array
-
-STANDARD_GRAVITY = 9.80665  # standard acceleration of gravity [m/s2] (ISO 80000-3)
 
 UNITS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048},

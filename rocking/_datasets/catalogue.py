@@ -18,8 +18,8 @@ from typing import Generic, NamedTuple, Self, TypeVar
 import xarray as xr
 
 from rocking._base.errors import DatasetError
+from rocking._datasets.checksum import sha256_of
 from rocking._datasets.cube import decode_dataset, reject_large
-from rocking._datasets.netcdf import sha256_of
 
 CLOCK_TICK = 20_000_000
 """Changes of a file within this time may have the same time stamp [ns]: file system clocks advance by 1 to 10 ms."""

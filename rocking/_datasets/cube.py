@@ -24,7 +24,8 @@ from rocking._base.errors import DatasetError, RockingError
 from rocking._base.installation import AUTHORS, __version__
 from rocking._base.output_file import replacement_of
 from rocking._base.quantities import FREQUENCY_RATIO, SLENDERNESS
-from rocking._datasets.netcdf import append_checksum, find_damage, open_netcdf, write_netcdf
+from rocking._datasets.checksum import append_checksum, find_damage
+from rocking._datasets.netcdf import open_netcdf, write_netcdf
 from rocking._excitation.pulses import PULSE_NAMES, as_pulse, pulse_number
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.stencils import NO_STENCIL, OVERTURNS, PEAK, SQUARED

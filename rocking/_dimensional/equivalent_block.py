@@ -14,9 +14,10 @@ import math
 from dataclasses import dataclass
 from typing import Self, final
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, number, positive
 from rocking._base.quantities import FREQUENCY_PARAMETER, RESTITUTION
-from rocking._base.units import STANDARD_GRAVITY, Scalar
+from rocking._base.units import Scalar
 from rocking._dimensional.body import RespondingBody
 from rocking._model.block import AbstractBlock, RectangularBlock
 from rocking._model.linkage import LinearEquation

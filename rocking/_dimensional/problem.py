@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 import rocking._base.quantities as q
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, needed, reject_given
-from rocking._base.units import STANDARD_GRAVITY, Scalar, Values
+from rocking._base.units import Scalar, Values
 from rocking._boundary.search import Solve
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 
 import rocking._base.quantities as q
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, positive
-from rocking._base.units import STANDARD_GRAVITY, Scalar, Values
+from rocking._base.units import Scalar, Values
 from rocking._dimensional.body import RespondingBody
 from rocking._model.body import Edge, polygon_properties, rebound_of, rigid_edge
 from rocking._model.checks import check_quantities

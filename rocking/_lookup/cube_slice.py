@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rocking._base.errors import DatasetError, InvalidArgumentError
 from rocking._datasets.catalogue import FileVersion, version_of
+from rocking._datasets.checksum import sha256_of
 from rocking._datasets.cube import (
     AXES,
     IMPACTS_BEFORE_REST,
@@ -26,7 +27,7 @@ from rocking._datasets.cube import (
     read_content,
     stored_pulse,
 )
-from rocking._datasets.netcdf import open_netcdf, sha256_of
+from rocking._datasets.netcdf import open_netcdf
 from rocking._excitation.sampled import SampledPulse
 from rocking._interpolation.kernel import NODE, Nodes
 from rocking._interpolation.slices import windows_of

@@ -9,10 +9,11 @@ from typing import Any, Self
 import numpy as np
 
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
 from rocking._base.errors import float_array, number, positive
 from rocking._base.quantities import GRAVITY, HEIGHT, WIDTH
-from rocking._base.units import STANDARD_GRAVITY, Scalar, Values
+from rocking._base.units import Scalar, Values
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.checks import check_quantities
 from rocking._model.reactions import INERTIA_RATIO

@@ -13,9 +13,9 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import float_array, in_range, positive
-from rocking._base.units import STANDARD_GRAVITY
 from rocking.paper.arguments import Array
 
 

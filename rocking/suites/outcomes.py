@@ -11,8 +11,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range
-from rocking._base.units import STANDARD_GRAVITY, Scalar
+from rocking._base.units import Scalar
 from rocking._dimensional.problem import restitution_of
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import flight_text

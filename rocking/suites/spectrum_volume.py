@@ -4,9 +4,10 @@ import numpy as np
 import xarray as xr
 
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, integer
 from rocking._base.quantities import RESTITUTION
-from rocking._base.units import STANDARD_GRAVITY, Scalar
+from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 from rocking._model.labelled import variable
 from rocking._solver.records.record_response import record_response

@@ -59,7 +59,8 @@ def column_file(bytes_wanted):
     """A file of times and accelerations [g] of about that size."""
     rows = bytes_wanted // 20
     values = 0.3 * np.sin(np.arange(rows) * 0.01)
-    return "\n".join(f"{k * 0.005:9.3f},{value:9.6f}" for k, value in enumerate(values.tolist())).encode()
+    lines = (f"{k * 0.005:9.3f},{value:9.6f}" for k, value in enumerate(values.tolist()))
+    return "\n".join(["time [s],acceleration [g]", *lines]).encode()
 
 
 def json_of(values):

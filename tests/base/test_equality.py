@@ -69,8 +69,12 @@ EXAMPLES = {
 
 
 def dataclasses_of_the_package():
-    for module in pkgutil.walk_packages(rocking.__path__, "rocking."):
-        if module.name.split(".")[1] not in ("__main__", "_cli", "plot", "precompile"):
+    modules = [
+        *pkgutil.walk_packages(rocking.__path__, "rocking."),
+        *pkgutil.walk_packages(rocking_assessment.__path__, "rocking_assessment."),
+    ]
+    for module in modules:
+        if module.name.split(".")[1] not in ("__main__", "_cli", "_commands", "plot", "precompile", "service"):
             for value in vars(importlib.import_module(module.name)).values():
                 if (
                     isinstance(value, type)
@@ -135,7 +139,7 @@ RESULTS = (
 @pytest.mark.parametrize("name", RESULTS)
 def test_results_are_said_in_words_and_exported_with_units(name):
     one = example(name)
-    assert repr(one).startswith("<rocking.")
+    assert repr(one).startswith(("<rocking.", "<rocking_assessment."))
     assert repr(one).count("\n") < 2
     labelled = one.to_xarray()
     for variable in labelled.data_vars.values():

@@ -7,7 +7,7 @@ import pytest
 
 import rocking
 from benchmarks.accuracy import siconos
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 
 PAGE = (Path(__file__).parents[2] / "docs" / "other-software.md").read_text(encoding="utf-8")
 OPENSEES, _, SICONOS = PAGE.partition("\n## Siconos\n")

@@ -11,8 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._dimensional import response
 from rocking._model.body import polygon_properties
 from rocking._solver.bodies import outcome_margin_of

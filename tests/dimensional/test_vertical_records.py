@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._dimensional.problem import record_groups, uplift_scale
 from rocking._dimensional.thresholds import overturning_scale
 from tests.sampling import number

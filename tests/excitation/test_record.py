@@ -10,8 +10,8 @@ import pytest
 from scipy.signal import resample_poly
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 
 MOTIONS = Path(__file__).parents[2] / "workflow" / "motions"
 

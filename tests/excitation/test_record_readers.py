@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY as G
 from rocking._base.errors import InvalidArgumentError, RecordFileError, StoppedError
-from rocking._base.units import STANDARD_GRAVITY as G
 from rocking._excitation.records.readers.columns import read_rotations
 from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.readers.text_file import TextFile

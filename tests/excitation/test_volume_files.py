@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import RecordFileError
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import parse_record
 
 COUNT = 37

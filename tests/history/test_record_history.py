@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from tests.solver.records.tables import record
 
 MOTION = record("napa_HNE", 0.005)

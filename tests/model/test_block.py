@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._dimensional.block import Block
 
 lengths = st.floats(1e-3, 1e3)

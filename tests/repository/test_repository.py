@@ -125,7 +125,18 @@ def test_hosted_runs_call_targets_of_make() -> None:
     targets = set(re.findall(r"^([a-z-]+):.*##", TEXTS["Makefile"], re.MULTILINE))
     hosted = [text for name, text in TEXTS.items() if name.startswith(".github/workflows/")]
     commands = [line for text in hosted for line in re.findall(r"^ +(?:- )?run: (.*)$", text, re.MULTILINE)]
-    assert {command.split()[1] for command in commands} == {"test", "test-all", "newest", "oldest", "wheel"} <= targets
+    assert (
+        {command.split()[1] for command in commands}
+        == {
+            "test",
+            "test-all",
+            "test-core",
+            "newest",
+            "oldest",
+            "wheel",
+        }
+        <= targets
+    )
     assert all(command.startswith("make ") for command in commands)
     assert TEXTS[".ci/run"].splitlines()[-1].endswith("exec make --no-print-directory test")
 

@@ -67,7 +67,7 @@ def test_of_restitutions_and_of_mirrored_records() -> None:
 
 def test_command_and_picture(tmp_path: Path) -> None:
     for one in MOTIONS[:3]:
-        (tmp_path / f"{one.name}.csv").write_text("\n".join(map(str, one.acceleration)))
+        (tmp_path / f"{one.name}.csv").write_text("\n".join(["acceleration [m/s2]", *map(str, one.acceleration)]))
     about = {"folder": ".", "pattern": "*.csv", "unit": "m/s2", "time_step": 0.02}
     suite = {"name": "s", "records": about, "measure": "pga", "intensity": [2.0, 4.0]}
     path = tmp_path / "suite.json"

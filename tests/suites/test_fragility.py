@@ -8,9 +8,9 @@ import xarray as xr
 from scipy.stats import norm
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import equal_values
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._boundary.frequency import critical_frequency_ratio
 from rocking._dimensional.thresholds import overturning_scale
 from rocking.suites.configuration import RecordFiles

@@ -38,7 +38,7 @@ def configuration(pulses: list[Any]) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ("saw", "pulses.1: `pulse` = 'saw'; allowed: one of sine, cosine"),
+        ("saw", "pulses.1: `pulse` = 'saw' is not allowed; allowed: one of sine, cosine"),
         ({"acceleration": [0, 1, 0]}, "pulses.1: `name` = None"),
         ({"name": "sine", "acceleration": [0, 1, 0]}, "no name of the catalogue"),
         ({"name": "../up", "acceleration": [0, 1, 0]}, "pulses.1: `name` = '../up'"),

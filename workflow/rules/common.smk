@@ -16,7 +16,7 @@ os.environ.update(PYTHONPATH=os.pathsep.join([str(PROJECT), *os.environ.get("PYT
 
 from rocking._base.source_tree import SourceTree
 from rocking._base.installation import __version__
-from rocking._datasets.netcdf import sha256_of_file
+from rocking._datasets.checksum import sha256_of_file
 from rocking._datasets.provenance import settings_digest, settings_text
 from rocking.suites.configuration import suite_configuration
 from workflow.configuration import BYTES, ConfigurationError, check, chosen, nodes_of_cube, restitutions

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from rocking._base.output_file import PARTIAL, write_output
-from rocking._datasets.netcdf import open_netcdf, sha256_of_file
+from rocking._datasets.checksum import sha256_of_file
+from rocking._datasets.netcdf import open_netcdf
 from workflow.scripts.job import run
 
 TIMESTAMP = ".snakemake_timestamp"  # file that Snakemake adds to a folder which is a product

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
 import rocking._base.quantities as quantities
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.quantity import Quantity
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._dimensional.body import RespondingBody
 from rocking._dimensional.body_kinds import BODIES as KINDS
 from rocking._dimensional.body_kinds import described, signatures

@@ -40,28 +40,25 @@ from numpy.typing import ArrayLike
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.special import ellipj, ellipkinc, fdtri, stdtrit
 
-from rocking.extension import Array, Flags, Index, InvalidArgumentError, Scalar, in_range, integer, number, variable
+from rocking.extension import Array, Flags, InvalidArgumentError, Scalar, number, variable
+from rocking_assessment._evidence.trace import (
+    MAX_ROTATION,
+    MIN_IMPACTS,
+    checked_trace,
+    flights_of,
+    oscillation_text,
+    peak_text,
+    rest_of,
+)
 from rocking_assessment._evidence.variance_components import Mixture, mixture
 
 if TYPE_CHECKING:
     from rocking.extension import StopFlag  # numba takes longer to load than the fit
 
-MAX_ROTATION = 0.8  # largest rotation and alpha [rad]: beyond it a body hardly rocks, and the numbers are degrees
-
-DURATION = 1e-3, 1e5
-"""Shortest and longest trace [s]: bodies of 0.1 mm rock for hundredths of a second, those of 1 km for minutes."""
 
 LOWEST_FREQUENCY = 0.1
 """Smallest p [rad/s], of a block 1 km wide and high: where it is lower, the times are not in seconds."""
 
-SHORTEST_STEP = 1e-7  # shortest step between samples [s]
-MIN_IMPACTS = 3  # fewest impacts from which eta, alpha and p are told apart [-]
-MAX_FLIGHTS = 80  # most flights that are fitted [-]: a fit with a change in each takes some times longer than without
-
-LEVEL = 10.0
-"""Peak of the smallest flight that is used, over the noise [-]; at 6, one trace in 100 had a flight too few."""
-
-MIN_SAMPLES = 5  # fewest samples of a flight that is used [-]
 
 START_SHARES = 0.3, 0.5, 0.7, 0.85, 0.95
 """Shares of alpha that the first peak is tried at [-]: of 200 traces one start in alpha left three at wrong minima."""
@@ -144,10 +141,10 @@ def identify_free_rocking(
     Small rotations alone tell p^2 alpha but not p and alpha: then their intervals are wide. Release the body at half of
     alpha or more.
     """
-    t, theta, sides = _checked(time, rotation, edges)
+    t, theta, sides = checked_trace(time, rotation, edges)
     level = number("confidence", confidence, 0.0, 1.0, closed="neither")
-    offset, noise, _ = _rest(theta)
-    flights, impacts = _flights(t, theta - offset, noise)
+    offset, noise, _ = rest_of(theta)
+    flights, impacts = flights_of(t, theta - offset, noise)
     needed = MIN_IMPACTS * sides
     if impacts.size < needed:
         allowed = f"a trace with at least {needed} impacts between flights that stand out from the noise"
@@ -167,7 +164,7 @@ def identify_free_rocking(
         starts = [fit.x]
         # the first offset is inaccurate, and errors that follow each other hardly differ from sample to sample
         residual = math.sqrt(2.0 * fit.cost / np.count_nonzero(used))
-        flights = _flights(t, theta - _level(t, fit.x), max(noise, residual))[0]
+        flights = flights_of(t, theta - _level(t, fit.x), max(noise, residual))[0]
         if len(flights) <= needed or len(flights) == count or fewer:
             break
         fewer = len(flights) < count
@@ -176,10 +173,10 @@ def identify_free_rocking(
     largest = float(np.abs(peaks).max())
     if fit.x[FIRST_EDGE : FIRST_EDGE + sides].max() >= math.log(0.999 * MAX_ROTATION):
         allowed = f"free rocking in radians, not degrees, of a block with alpha below {MAX_ROTATION:g} rad; none fits"
-        raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or allowed)
+        raise InvalidArgumentError("rotation", peak_text(theta), oscillation_text(impacts, peaks) or allowed)
     if residual > LARGEST_RESIDUAL * largest:
         allowed = "free rocking: no block of the model is within 10 % of the first peak of these samples"
-        raise InvalidArgumentError("rotation", _peak_text(theta), _oscillation(impacts, peaks) or allowed)
+        raise InvalidArgumentError("rotation", peak_text(theta), oscillation_text(impacts, peaks) or allowed)
     bodies = _Bodies(t[used], theta[used], sign, sides, count, stop)
     state = bodies.state(fit.x, np.zeros(2 * count - 1))
     best = _estimated(state)._replace(departure=0.0) if residual < EXACT * largest else _with_changes(bodies, state)
@@ -398,70 +395,6 @@ def _correlated(residual: Array) -> float:
     lags = 2 ** np.arange(max(size // 4, 1).bit_length())
     sums = np.cumsum(covariance[1:] / covariance[0])[lags - 1] if covariance[0] > 0.0 else np.zeros(lags.size)
     return float(1.0 + 2.0 * np.max(sums, where=sums > SIGNIFICANT * np.sqrt(lags / size), initial=0.0))
-
-
-def _oscillation(impacts: Array, peaks: Array) -> str | None:
-    """A text if the flights last as long whatever their peak: those of a block last as its power 1/2 and more."""
-    duration = np.diff(impacts)
-    peak = np.abs(peaks[1 : duration.size + 1])
-    if np.ptp(np.log(peak)) == 0.0 or np.polyfit(np.log(peak), np.log(duration), 1)[0] > 0.25:
-        return None
-    return (
-        "free rocking, whose flights shorten with their peaks: these last "
-        f"{duration.min():.3g} to {duration.max():.3g} s for peaks of {peak.min():.3g} to {peak.max():.3g} rad, as of "
-        f"an oscillation of {0.5 / np.median(duration):.3g} Hz"
-    )
-
-
-def _peak_text(theta: Array) -> str:
-    return f"values up to {np.abs(theta).max():.4g}"
-
-
-def _checked(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Array, Array, int]:
-    t = in_range("time", time, -1e9, 1e9, unit="s")
-    theta = in_range("rotation", rotation, -1e9, 1e9, unit="rad")
-    if t.ndim != 1 or t.shape != theta.shape or t.size < MIN_SAMPLES * MIN_IMPACTS:
-        raise InvalidArgumentError("rotation", theta.shape, f"as many samples as of time, {t.shape}, at least 15")
-    if not np.all(np.diff(t) > 0.0):
-        raise InvalidArgumentError("time", f"a step of {np.diff(t).min():g} s", "ascending times")
-    shortest, duration = float(np.diff(t).min()), float(t[-1] - t[0])
-    if not (shortest >= SHORTEST_STEP and DURATION[0] <= duration <= DURATION[1]):
-        allowed = f"a trace of {DURATION[0]:g} to {DURATION[1]:g} s in steps of {SHORTEST_STEP:g} s or more"
-        raise InvalidArgumentError("time", f"{duration:g} s, the shortest step {shortest:g} s", allowed)
-    if np.abs(theta).max() > MAX_ROTATION:
-        allowed = f"radians, with alpha below {MAX_ROTATION:g} rad: are these degrees?"
-        raise InvalidArgumentError("rotation", _peak_text(theta), allowed)
-    return t, theta, integer("edges", edges, 1, 2)
-
-
-def _rest(theta: Array) -> tuple[float, float, bool]:
-    """Rotation at rest, the median at the end or the middle if the body rocks on; noise; whether it comes to rest."""
-    noise = float(np.median(np.abs(np.diff(theta, 3))) / (0.6745 * math.sqrt(20.0)))  # of normal errors
-    end, half = theta[-max(theta.size // 10, 3) :], theta[theta.size // 2 :]
-    rests = bool(np.std(end) <= LEVEL * noise)
-    return float(np.median(end) if rests else 0.5 * (half.max() + half.min())), noise, rests
-
-
-def _flights(t: Array, theta: Array, noise: float) -> tuple[list[Index], Array]:
-    """Samples of each flight that stands out, in order, and the times of the impacts between them.
-
-    An impact lies between the roots of the parabolas of two flights. The first flight, which may begin in a hand, is no
-    parabola.
-    """
-    threshold = LEVEL * max(noise, 1e-9 * float(np.abs(theta).max()))
-    above = np.flatnonzero(np.abs(theta) > 0.5 * threshold)
-    runs = np.split(above, np.flatnonzero(np.diff(np.sign(theta[above]))) + 1)
-    stands_out = [run.size >= MIN_SAMPLES and bool(np.abs(theta[run]).max() > threshold) for run in runs]
-    first = stands_out.index(True) if any(stands_out) else len(runs)
-    count = next((k for k, one in enumerate(stands_out[first:]) if not one), len(runs) - first)
-    flights = runs[first : first + min(count, MAX_FLIGHTS)]
-    if len(flights) < 2:
-        return flights, np.empty(0)
-    roots = [np.sort(np.roots(np.polyfit(t[run] - t[run[0]], theta[run], 2)).real) + t[run[0]] for run in flights]
-    before = [t[flights[0][-1]], *(ends[-1] for ends in roots[1:-1])]
-    between = [0.5 * (end + ends[0]) for end, ends in zip(before, roots[1:], strict=True)]
-    low, high = ([t[run[place]] for run in part] for place, part in ((-1, flights[:-1]), (0, flights[1:])))
-    return flights, np.clip(between, low, high)
 
 
 def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Array]:

@@ -3,9 +3,9 @@
 import math
 from typing import TYPE_CHECKING, Annotated
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.quantities import DEPTH, GRAVITY, HEIGHT, WIDTH
 from rocking._base.quantity import Quantity
-from rocking._base.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from rocking._dimensional.rigid_body import RigidBody

@@ -7,8 +7,8 @@ from functools import wraps
 from typing import TYPE_CHECKING, Annotated, Any
 
 import rocking._base.quantities as q
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.quantity import Quantity
-from rocking._base.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block

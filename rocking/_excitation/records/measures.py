@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rocking._base.arrays import Array
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 
 MEAN_PERIOD_BAND = 0.25, 20.0  # frequencies of the mean period [Hz]
 MEAN_PERIOD_RESOLUTION = 0.05  # largest spacing of the frequencies of the mean period [Hz] (Rathje et al. 2004)

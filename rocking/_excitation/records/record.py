@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, finite, in_range, number, one_of
-from rocking._base.units import STANDARD_GRAVITY, Scalar
 from rocking._base.units import UNITS as QUANTITIES
+from rocking._base.units import Scalar
 from rocking._excitation.records import measures
 from rocking._excitation.records.processing import baseline, offset_remark, resample
 

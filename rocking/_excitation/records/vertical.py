@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number
-from rocking._base.units import STANDARD_GRAVITY, Scalar
+from rocking._base.units import Scalar
 from rocking._excitation.records.record import Record
 
 HIGHEST_VERTICAL_SCALE = 1e6  # largest factor of a vertical component [-]

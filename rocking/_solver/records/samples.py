@@ -9,8 +9,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._excitation.records.record import Record as RecordedMotion
 from rocking._excitation.shapes import AbstractPulse
 from rocking._numba.compilation import FloatArray, Record, kernel

@@ -6,7 +6,7 @@ And the record that both upload.
 import pytest
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from tests.api.conftest import NAPA
 
 HEADER = "time [s],acceleration [g]\n"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import pytest
 from playwright.sync_api import Page, expect
-from rocking_api.routers.pages import PAGES
+from rocking_api.routers.pages import PAGES, menu
 
 from tests.api.explorer import axe
 from tests.api.explorer.hands import PHONE, choose_record, short_record
@@ -160,7 +160,7 @@ def test_rules_of_every_page(open_page, name):
     page.goto(state.path)
     state.prepare(page)
     links = page.locator("nav[aria-label=Pages] a").evaluate_all("all => all.map((one) => one.getAttribute('href'))")
-    assert links == [one.path for one in PAGES if one.label != "Guide"]
+    assert links == [entry.path for entry in menu()]
     for width, percent in SIZES:
         texts = texts_at(page, width, percent)
         assert {name.split()[0] for name in texts} == state.canvases

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.records.readers.read_record import parse_record
 from tests.api.conftest import NAPA
 from tests.api.explorer.hands import HEADER, STRONG, Keyboard, choose_record, short_record

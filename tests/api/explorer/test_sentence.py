@@ -10,7 +10,7 @@ import rocking_assessment
 from playwright.sync_api import expect
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import BLOCK, pixels, query, set_time, settle, stated_rotation
 

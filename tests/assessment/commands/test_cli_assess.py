@@ -166,7 +166,8 @@ def test_bad_rows_are_named_and_the_others_assessed(table):
 
 def test_records_and_periods(table, tmp_path):
     record = tmp_path / "record.csv"
-    record.write_text("".join(f"{0.05 * k:.2f},{(-1) ** (k // 5) * 2.0}\n" for k in range(40)))
+    rows = "".join(f"{0.05 * k:.2f},{(-1) ** (k // 5) * 2.0}\n" for k in range(40))
+    record.write_text(f"time [s],acceleration\n{rows}")
     periods = "--pga", "0.3g", "--period-min", "0.2s", "--period-max", "1s", "--shapes", "sine", "--no-sensitivity"
     for options, count in ((("--record", str(record), "--unit", "m/s2"), 1), (periods, 12)):
         assert len(json.loads(run("assess", str(table), *options, "--format=json"))["motions"]) == count
@@ -176,7 +177,7 @@ def test_pairs_with_vertical_on_a_floor_with_a_hazard_curve(table, tmp_path):
     times = 0.05 * np.arange(60)
     x, y, z = np.round([np.sin(4 * times), np.cos(3 * times), 0.2 * np.sin(9 * times)], 6)
     for name, values in (("x", x), ("y", y), ("z", z)):
-        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([times, values]), fmt="%.6f", delimiter=",")
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([times, values]), "%.6f", ",", header=HEADER, comments="")
     files = {name: str(tmp_path / f"{name}.csv") for name in "xyz"}
     curve = tmp_path / "PGA" / "curves.csv"
     curve.parent.mkdir()
@@ -288,6 +289,7 @@ def test_report_is_self_contained_and_escapes_names(table, monkeypatch):
     assert file.read_text().count('<section class="block"') == 5  # each direction of each object
 
 
+HEADER = "time [s],acceleration [m/s2]"
 COLLECTION = Path(__file__).parents[3] / "docs" / "assessment" / "collection.csv"
 
 
@@ -350,7 +352,7 @@ def test_nothing_in_a_report_is_wider_than_its_box(table):
     times = 0.05 * np.arange(60)
     for name, values in (("x", np.sin(4 * times)), ("y", np.cos(3 * times))):
         lines = np.column_stack([times, 4.0 * values])
-        np.savetxt(table.with_name(f"{name}.csv"), lines, fmt="%.6f", delimiter=",")
+        np.savetxt(table.with_name(f"{name}.csv"), lines, "%.6f", ",", header=HEADER, comments="")
     pair = f"{table.with_name('x.csv')},{table.with_name('y.csv')}"
     site = ["--pga", "0.3g", "--pgv", "0.3m/s"]
     periods = ["--pga", "0.3g", "--period-min", "0.2s", "--period-max", "1s", "--no-sensitivity"]

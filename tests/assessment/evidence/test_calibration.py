@@ -5,8 +5,8 @@ import pytest
 from rocking_assessment._evidence.calibration import calibrate
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 from tests.suites.motions import noise
 
 # the block is a point of the grid of 7

@@ -9,7 +9,7 @@ from rocking_assessment._objects.site import Motion
 from rocking_assessment._objects.sliding import largest_slip, sliding_displacement
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._excitation.pulses import as_pulse
 from rocking._excitation.records.record import Record
 

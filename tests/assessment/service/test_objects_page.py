@@ -10,10 +10,10 @@ from urllib.parse import urlencode
 
 import pytest
 import rocking_assessment
-from rocking_api.routers import objects_page
 from rocking_assessment._objects.columns import VERDICTS
 from rocking_assessment._objects.summary import _rounded_up
 from rocking_assessment._objects.tables import SCHEMA
+from rocking_assessment.service import objects_page
 
 from rocking._dimensional.table_reader import rows_of_csv
 from rocking._numba.cancellation import StopFlag

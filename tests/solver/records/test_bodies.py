@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking._base.units import STANDARD_GRAVITY
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._solver.records.record_response import solve_bodies
 from rocking._solver.records.samples import sample_rows
 from rocking._solver.state import BODY_CELL

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.units import STANDARD_GRAVITY
 from rocking._excitation.records.vertical import highest_vertical_scale
 from tests.solver.records.tables import samples
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError
-from rocking._base.units import STANDARD_GRAVITY, Scalar
+from rocking._base.units import Scalar
 from rocking._excitation.records.readers import at2, columns, esm, knet, seismic, volumes
 from rocking._excitation.records.readers.layout import Column, Layout, Samples, stated_layout
 from rocking._excitation.records.readers.text_file import TextFile
