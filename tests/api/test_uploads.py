@@ -106,8 +106,8 @@ def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(server, tmp_
                 delays.append(delay_of_health(server))
                 time.sleep(0.02)
             statuses = json.loads(clients.stdout.read())
-        # beyond the queue, the memory and the time clients have to repeat
-        assert {200} < set(statuses) <= {200, 503, 504}
+        # beyond the queue and the time clients have to repeat
+        assert {200} <= set(statuses) <= {200, 503, 504}
         return delays
 
     assert_short(delays_meanwhile)

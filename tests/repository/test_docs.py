@@ -171,6 +171,7 @@ def test_guide_builds_without_warning(tmp_path):
     for folder in ("docs", "examples"):
         ignored = shutil.ignore_patterns("gallery", "generated", "__pycache__")
         shutil.copytree(ROOT / folder, tmp_path / folder, ignore=ignored)
+    shutil.copytree(ROOT / "workflow/report", tmp_path / "workflow/report")  # captions of the figures
     for name in ("CHANGELOG.md", "CONTRIBUTING.md", "results/README.md", "workflow/config/paper.yaml"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
