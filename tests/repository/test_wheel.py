@@ -23,7 +23,7 @@ REQUIRED = {
 """Distributions that an installation without extras requires."""
 
 OPTIONAL = {
-    "service": {"fastapi", "prometheus-client", "uvicorn", "zarr"},
+    "service": {"fastapi", "prometheus-client", "uvicorn"},
     "plot": {"matplotlib"},
     "assessment": {"trimesh"},
 }
