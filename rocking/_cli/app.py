@@ -48,7 +48,7 @@ def _load_command(entry_point: EntryPoint) -> Any:
 
         single.command(
             entry_point.name,
-            help=reason,
+            help=reason.replace("[", r"\["),  # which would be markup
             context_settings={"ignore_unknown_options": True, "allow_extra_args": True},
         )(function)
     else:
