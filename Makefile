@@ -57,7 +57,7 @@ test: .venv/project browser ## run format, lint and type checks and all tests, i
 
 # The locked packages without those that only the extra `assessment` has.
 test-core: $(UV) ## run the tests of the core where the extra `assessment` is not installed
-	$(UV) venv --quiet --clear --python $(PYTHON) build/core
+	$(UV) venv --quiet --clear --seed --python $(PYTHON) build/core
 	$(UV) pip install --quiet --python build/core --require-hashes --requirement environment.lock
 	$(UV) pip uninstall --quiet --python build/core trimesh
 	$(UV) pip install --quiet --python build/core --no-deps --no-build-isolation --editable .
