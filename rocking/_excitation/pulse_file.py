@@ -10,7 +10,7 @@ from typing import Any
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, RecordFileError, UnreadableFileError
 from rocking._excitation.records.readers.columns import Table
-from rocking._excitation.records.readers.layout import Column, stated_layout
+from rocking._excitation.records.readers.layout import Layout, stated_layout
 from rocking._excitation.records.readers.text_file import TextFile
 
 MAX_BYTES = 8_000_000  # largest file of a pulse [bytes]: 100,000 times and accelerations of all digits
@@ -42,6 +42,7 @@ def read_pulse_file(path: str | PathLike[str], most: int, **stated: Any) -> Puls
     Raises `InvalidArgumentError` if the file cannot be read, with the parameter `path`; with the parameter `pulse`,
     naming the file and the line, if it does not hold a pulse.
     """
+    layout = stated_layout(("columns",), **stated)
     file = Path(path)
     try:
         with file.open("rb") as stream:
@@ -54,22 +55,20 @@ def read_pulse_file(path: str | PathLike[str], most: int, **stated: Any) -> Puls
         text = TextFile(file.name, content)
         if text.content.removeprefix(codecs.BOM_UTF8).lstrip()[:1] == b"{":
             return PulseFile({"name": file.stem} | _parse_json(text), text.name, None)
-        table, time, acceleration = _read_columns(text, most, **stated)
+        table, time, acceleration = _read_columns(text, most, layout)
     except RecordFileError as error:
         place = error.file if error.line is None else f"{error.file}, line {error.line}"
         raise InvalidArgumentError("pulse", f"{place}: {str(error.value)[:MAX_TEXT]}", error.expected) from None
     return PulseFile({"acceleration": acceleration, "time": time, "name": file.stem}, text.name, table)
 
 
-def _read_columns(
-    text: TextFile, most: int, acceleration: Column | None = None, time: Column | None = None, **stated: Any
-) -> tuple[Table, Array | None, Array]:
+def _read_columns(text: TextFile, most: int, layout: Layout) -> tuple[Table, Array | None, Array]:
     """The columns, times if there are some, and accelerations, in any units.
 
     Where they are neither stated nor named, a single column holds accelerations, and two hold times and accelerations.
     """
     with text.guarded("a pulse"):
-        table = Table(text, stated_layout(("columns",), acceleration=acceleration, time=time, **stated))
+        table = Table(text, layout)
         choice = table.choice()
         columns = [choice.samples] if choice.time is None else [choice.samples, choice.time]
         if columns == [None] and not table.header and table.width <= 2:
