@@ -30,7 +30,7 @@ from rocking._model.labelled import variable
 from rocking._model.outcome import SURVIVES, decode_outcomes
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import frequency_parameter_range, record_cells, record_response
+from rocking._solver.records.record_response import record_cells, record_response
 from rocking._solver.records.samples import motion_samples
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def thresholds(
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         given = needed("a record", frequency_parameter=frequency_parameter)
-        p = number("frequency_parameter", given, *frequency_parameter_range(motion), unit="rad/s")
+        p = number("frequency_parameter", given, *motion.frequency_parameters, unit="rad/s")
         groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha)}
         return _record_changes(motion, groups, vertical_scale, top, checked_resolution(resolution), stop)
     made = as_pulse(motion)

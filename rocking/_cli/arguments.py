@@ -178,8 +178,7 @@ def read_duration(text: str | None, params: Params) -> float | None:
     if text is None:
         return None
     if params.problem is not None:
-        length = si_value("duration", text, "s")
-        return length * params.problem.block.frequency_parameter if params.problem.is_block else length
+        return si_value("duration", text, "s")
     try:
         return float(text)
     except ValueError:
@@ -215,7 +214,7 @@ def _of_problem(options: ShapeOptions, body: AbstractBody, peak_acceleration: An
 
     pulse = read_pulse(options.pulse)
     problem = Problem.of(body, pulse, peak_acceleration, period, _restitution(options))
-    return Params(pulse, problem.groups if problem.is_block else {}, problem)
+    return Params(pulse, problem.groups if body.moves_as_block else {}, problem)
 
 
 def _window(options: WindowOptions, usual: Window, body: AbstractBody | None = None) -> Window:

@@ -101,15 +101,13 @@ def history(block: ProblemOptions, duration: Duration = None) -> Panels:
 
     def panels(pictures: Any, figure: Any) -> None:
         from rocking._dimensional.curves import history as history_of
-        from rocking._dimensional.curves import in_si_units
         from rocking._history.time_history import time_history
 
         problem = params.problem
-        if problem is not None and not problem.is_block:
+        if problem is not None:
             data = history_of(problem, duration=length)
         else:
             data = time_history(params.pulse, **params.groups, duration=length)
-            data = data if problem is None else in_si_units(data, problem)
         _draw_history(pictures, figure, data)
 
     return panels
@@ -267,15 +265,20 @@ def _spectrum(params: Params, window: tuple[float, float]) -> xr.Dataset:
     import numpy as np
 
     from rocking._cli.arguments import unit_period
-    from rocking._dimensional.curves import spectrum as spectrum_of
     from rocking._solver.peak_response import peak_response
 
     if params.problem is None:
         groups = params.groups | {"frequency_ratio": np.linspace(*window, POINTS)}
         solved: xr.Dataset = peak_response(params.pulse, **groups).to_xarray()
         return solved
+    from dataclasses import replace
+
+    from rocking._dimensional.curves import over_axis
+    from rocking._dimensional.response import respond
+
     unit = unit_period(params.problem.body)
-    return spectrum_of(params.problem, np.geomspace(unit / window[1], unit / window[0], POINTS))
+    period = np.geomspace(unit / window[1], unit / window[0], POINTS)
+    return over_axis(respond(replace(params.problem, period=period)), "period", period)
 
 
 def _map(params: Params, window: tuple[float, float]) -> xr.Dataset:

@@ -84,7 +84,7 @@ def body_columns(found: BodyResponse) -> dict[str, Any]:
         {} if "record" in found.motion else {"peak_acceleration": found.peak_acceleration, "period": found.period}
     )
     about = found.summary() | strengths | {"thresholds": found.changes}
-    if found.problem.is_block:
+    if found.body.moves_as_block:
         return about
     body: Any = found.body
     left, right = (float(body.parameters[name]) for name in ("left", "right"))
@@ -112,7 +112,7 @@ def _response(params: Params) -> tuple[dict[str, Any], str]:
     if params.problem is not None:
         from rocking._dimensional.response import respond
 
-        result = _groups(params) | body_columns(respond(params.problem))
+        result = _groups(params) | body_columns(respond(params.problem, error_bound=True))
         return result, result["meaning"]
     found = solve_with_bound(params.pulse, **params.groups)
     result = _groups(params) | {name: column[0] for name, column in _columns(found).items()}
@@ -152,13 +152,22 @@ def responses(table: BlockTable, form: Form) -> None:
         typer.echo(printable(f"not read: {', '.join(table.read.totals)}"))
 
 
-_OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")
+_OF_ROWS = ("outcome", "peak_rotation_deg", "displacement")
 """Responses of many blocks that a table holds, or begins with."""
 
 
 _FIRST_LINES = (
-    *("direction_deg", "edge", "rotation_left_deg", "rotation_right_deg"),
-    *("peak_rotation_deg", "top_displacement", "uplift_acceleration", "largest_surviving_acceleration", "thresholds"),
+    "direction_deg",
+    *(
+        "peak_rotation_deg",
+        "edge",
+        "rotation_left_deg",
+        "rotation_right_deg",
+        "displacement",
+        "uplift_acceleration",
+        "largest_surviving_acceleration",
+        "thresholds",
+    ),
     *("nearest_acceleration", "nearest_period", "period", "pulse_duration", "overturning_scale"),
     *("peak_rotation", "impacts", "restitution", "friction_demand"),
     *("pulse", "pulse_peak_acceleration", "pulse_cycles", "pulse_phase", "pulse_explained", "pulse_scale_ratio"),
@@ -228,12 +237,11 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     Of a body with other edges also the edge in contact: 1 right, -1 left, 0 both.
     """
     from rocking._dimensional.curves import history as history_of
-    from rocking._dimensional.curves import in_si_units
     from rocking._history.contact import ATTRIBUTES, COLUMNS
     from rocking._history.time_history import time_history
 
     options: dict[str, Any] = {"duration": duration, "samples": samples, "contact": contact}
-    if params.problem is not None and not params.problem.is_block:
+    if params.problem is not None:
         with progress("solving the body"):
             motion = history_of(params.problem, **options)
         print_motion(motion, form)
@@ -251,14 +259,7 @@ def history(params: Params, duration: float | None, samples: int, contact: bool,
     if contact:
         about |= {name: finite(float(motion.attrs[name])) for name in ATTRIBUTES}
         about |= {"lifts_off": bool(motion.attrs["lifts_off"]), "warnings": motion.attrs["warnings"] or None}
-    shown = columns
-    if params.problem is not None:
-        moved = in_si_units(motion, params.problem)
-        si = _si_columns(moved)
-        shown = si | {name: columns[name] for name in columns if name in COLUMNS}
-        columns = columns | si
-        about |= {"impact_time_s": moved["impact_time"].values.tolist()}
-    _print_curve(about, columns, shown, form)
+    _print_curve(about, columns, columns, form)
 
 
 def released(options: HistoryOptions, duration: str | None, samples: int, contact: bool, form: Form) -> None:
@@ -290,6 +291,8 @@ def print_motion(motion: xr.Dataset, form: Form) -> None:
     names = ("outcome", "impacts", *ATTRIBUTES, "warnings")
     about = {name: motion.attrs[name] for name in names if name in motion.attrs}
     about = {name: finite(value) if isinstance(value, float) else value or None for name, value in about.items()}
+    if "lifts_off" in motion.attrs:
+        about["lifts_off"] = bool(motion.attrs["lifts_off"])
     about |= {"impact_time_s": motion["impact_time"].values.tolist()}
     _print_curve(about, columns, columns, form)
 
@@ -300,7 +303,7 @@ def _si_columns(motion: xr.Dataset) -> dict[str, list[Any]]:
         "time": motion["time"].values.tolist(),
         "rotation_deg": np.degrees(motion["rotation"].values).tolist(),
         "angular_velocity_deg": np.degrees(motion["angular_velocity"].values).tolist(),
-        "top_displacement": motion["top_displacement"].values.tolist(),
+        "displacement": motion["displacement"].values.tolist(),
         "acceleration": motion["ground_acceleration"].values.tolist(),
     }
 
@@ -318,7 +321,10 @@ def _print_curve(about: Mapping[str, Any], columns: Mapping[str, Any], shown: Ma
 
 def spectrum(params: Params, window: tuple[float, float], points: int, form: Form) -> None:
     """Print the peak against the frequency ratio, for a body with units against the period."""
-    from rocking._dimensional.curves import spectrum as spectrum_of
+    from dataclasses import replace
+
+    from rocking._dimensional.curves import over_axis
+    from rocking._dimensional.response import respond as respond_to
 
     in_range("points", points, 2, 1_000_000)
     frequency_ratio, problem = np.geomspace(*window, points), params.problem
@@ -326,20 +332,19 @@ def spectrum(params: Params, window: tuple[float, float], points: int, form: For
     about = {name: value for name, value in _groups(params).items() if name != "frequency_ratio"}
     shown: tuple[str, ...] = ("frequency_ratio", "peak_rotation", "outcome", "impacts")
     with progress(f"solving {points} blocks"):
-        if problem is None or problem.is_block:
+        if problem is None:
             columns |= _columns(solve_with_bound(params.pulse, **params.groups | {"frequency_ratio": frequency_ratio}))
         if problem is not None:
             period = unit_period(problem.body) / frequency_ratio
-            curve = spectrum_of(problem, period)
-            columns["period"], moved = period.tolist(), "top_displacement" if problem.is_block else "displacement"
-            if not problem.is_block:
-                columns |= _columns(curve)
+            curve = over_axis(respond_to(replace(problem, period=period), error_bound=True), "period", period)
+            columns["period"] = period.tolist()
+            columns |= _columns(curve)
             columns |= {
                 "peak_rotation_deg": [finite(x) for x in np.degrees(curve["rotation"].values).tolist()],
-                "top_displacement": [finite(x) for x in curve[moved].values.tolist()],
+                "displacement": [finite(x) for x in curve["displacement"].values.tolist()],
             }
             about |= {"peak_acceleration": float(problem.peak_acceleration)}
-            shown = ("period", "peak_rotation_deg", "top_displacement", "outcome", "impacts")
+            shown = ("period", "peak_rotation_deg", "displacement", "outcome", "impacts")
     step = 1 if problem is None else -1  # from the shortest period
     _print_curve(about, columns, {name: columns[name][::step] for name in shown}, form)
 

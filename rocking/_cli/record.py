@@ -117,7 +117,7 @@ def _worst_direction(
 
     checked_pair(pair)
     motions = [one for _, one in rotated(*pair)]
-    if not body.is_block:
+    if not body.moves_as_block:
         motions = [*motions, *[one.mirrored() for one in motions]]  # in the opposite directions
     found = [(180.0 * k / PAIR_ANGLES, one, body.response(one, **given)) for k, one in enumerate(motions)]
 

@@ -22,7 +22,8 @@ from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.bodies import outcome_margin_of, solve_motion
+from rocking._solver.bodies import outcome_margin_of
+from rocking._solver.bodies import solve as solve_bodies
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.samples import motion_samples
 
@@ -99,14 +100,14 @@ def lowest_thresholds(
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
     if isinstance(motion, Record):
         peak = motion.peak_acceleration
-        lines = replace(problem, peak_acceleration=np.full(shape, peak))
+        lines = replace(problem, strength=np.ones(shape))
         start, limit = record_range(lines)
         factor = np.broadcast_to(highest, shape).ravel() / peak
         given = record_lines(lines, stop)
         found = lowest_overturning(given, start, factor, limit, resolution=resolution, enough=enough / peak)
         return found.reshape(shape) * peak
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
-    cells = replace(problem, peak_acceleration=np.asarray(uplift)).cells
+    cells = replace(problem, strength=uplift).cells
     top = np.minimum(np.broadcast_to(highest, shape) / uplift, HIGHEST).ravel()
     lowest = np.full(top.size, np.nan)
 
@@ -167,7 +168,7 @@ def _lowest_under_pulse(
     def solve(line: Index, slenderness: Array) -> tuple[NDArray[np.void], Flags, Array]:
         chosen = cells[line]
         chosen["slenderness"] *= slenderness[:, None]
-        records, edges = solve_motion(motion, chosen, 1, stop)
+        records, edges = solve_bodies(motion, chosen, 1, stop)
         margin = np.maximum(outcome_margin_of(records, edges, chosen), -1.0)
         return records, records["outcome"] >= Outcome.OVERTURNED_DIRECTLY, margin
 

@@ -4,28 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import compress
 from os import PathLike
 from typing import Any
-
-import numpy as np
 
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import HEIGHT, NAME, NUMBER, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
 from rocking._base.quantity import Quantity
-from rocking._dimensional.block import Block
 from rocking._dimensional.body_kinds import columns_beside, described
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.response import respond, shown
+from rocking._dimensional.response import respond_each, shown
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._dimensional.table_header import Schema
 from rocking._dimensional.table_reader import Table, read_csv, read_file
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.fields import OUTCOME
-from rocking._model.outcome import Outcome
+from rocking._model.block import RectangularBlock
 from rocking._numba.cancellation import StopFlag, check_stop
-from rocking._solver.bounded_response import solve_with_bound
 
 COLUMNS = (NAME, WIDTH, HEIGHT, PEAK_ACCELERATION, PERIOD, RESTITUTION)
 """Columns of a table of blocks. Those of other bodies follow; further columns are passed through."""
@@ -126,42 +120,16 @@ def _blocks(read: Table[Problem]) -> BlockTable:
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:
     """The responses as columns in SI units, degrees and groups, in the order of the rows; missing numbers are None.
 
-    `stop` cancels the work, which then raises `StoppedError`. Blocks are solved together, other bodies one by one:
-    `body` then says what each is, and what only a block has is None.
+    `stop` cancels the work, which then raises `StoppedError`. Of other bodies than blocks `body` says what each is, and
+    what only a block has is None.
     """
-    together = [type(one.body) is Block and one.is_block for one in table.problems]
-    solved = iter(_respond_blocks([*compress(table.problems, together)], stop))
-    pairs = zip(table.problems, together, strict=True)
-    rows = [next(solved) if known else _respond_other(one, stop) for one, known in pairs]
     columns: dict[str, list[Any]] = {"name": table.names} if table.names else {}
-    if not all(together):
-        columns["body"] = [one.body.description for one in table.problems]
-    return columns | {one.label: [row.get(one.label) for row in rows] for one in RESPONSES}
-
-
-def _respond_other(problem: Problem, stop: StopFlag | None) -> dict[str, Any]:
-    check_stop(stop)
-    found, body = respond(problem, stop=stop), problem.body
-    size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
-    return size | shown(found.fields, [getattr(found, one.name) for one in found.fields])
-
-
-def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> list[dict[str, Any]]:
-    """The rows of blocks."""
-    if not problems:
-        return []
-    columns: dict[str, Any] = {name: np.array([one.groups[name] for one in problems]) for name in problems[0].groups}
-    sizes = (np.array([getattr(one.block, name) for one in problems]) for name in ("width", "height"))
-    found = solve_with_bound(problems[0].pulse, **columns, stop=stop, body=Block(*sizes))
-    solved = {one.name: getattr(found, one.name).tolist() for one in RESPONSES if hasattr(found, one.name)}
+    if not all(isinstance(problem.body, RectangularBlock) for problem in table.problems):
+        columns["body"] = [problem.body.description for problem in table.problems]
     rows = []
-    for problem, *values in zip(problems, *solved.values(), strict=True):
-        known = dict(zip(solved, values, strict=True))
-        known[OUTCOME.name] = Outcome(known[OUTCOME.name])
-        given = problem.groups | {name: getattr(problem, name) for name in ("peak_acceleration", "period")}
-        derived = (
-            known[one.name] if one.name in known else one.derive(known, given, problem.motion, problem.body)  # type: ignore[misc]
-            for one in RESPONSES
-        )
-        rows.append(shown(RESPONSES, derived))
-    return rows
+    for response in respond_each(table.problems, stop):
+        check_stop(stop)
+        body = response.body
+        size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
+        rows.append(size | shown(response.fields, [getattr(response, one.name) for one in response.fields]))
+    return columns | {one.label: [row.get(one.label) for row in rows] for one in RESPONSES}

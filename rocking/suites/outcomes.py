@@ -80,7 +80,7 @@ def check_suite(
     bodies: tuple[Any, ...] = (
         (blocks,) if isinstance(blocks, AbstractBody) or not isinstance(blocks, Iterable) else (*blocks,)
     )
-    if not bodies or not all(getattr(body, "is_block", False) for body in bodies):
+    if not bodies or not all(isinstance(body, AbstractBlock) and body.shape == () for body in bodies):
         raise InvalidArgumentError(
             "blocks",
             blocks,

@@ -82,7 +82,7 @@ INSTANCES = {
 }
 """Of which methods are called."""
 
-RESULTS = {"suites.PulseFit", "paper.Quantity", "Block.top_displacement", "EquivalentBlock.top_displacement"}
+RESULTS = {"suites.PulseFit", "paper.Quantity", "Block.displacement", "EquivalentBlock.displacement"}
 """What the package makes itself, and functions of its results, which may be nan."""
 
 OPTIONAL = {

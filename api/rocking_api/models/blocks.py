@@ -7,7 +7,7 @@ from pydantic import BaseModel
 from rocking_api.models import quantity as q
 from rocking_api.models.answer import BY_SOLVER, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
-from rocking_api.models.fields import OTHER_EDGES, OfBlock, OfEdges, UnderPulse, of
+from rocking_api.models.fields import OTHER_EDGES, InUnitsOfOne, OfBlock, UnderPulse, of
 from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import PointResponse
@@ -64,7 +64,7 @@ class BlocksResponse(InUnits[BlocksQuery]):
     name: list[str] | None = q.said("labels; null without any", None)
     body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
     peak_rotation_deg: list[float | None] = of("peak_rotation_deg")
-    top_displacement: list[float | None] = of("top_displacement")
+    displacement: list[float | None] = of("displacement")
     overturned: list[bool] = of("overturned")
     outcome: list[str] = of("outcome")
     impacts: list[int] = of("impacts")
@@ -137,7 +137,7 @@ class Margins(BaseModel):
     sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched", unit="m")
 
 
-class BodyResponse(UnderPulse, OfEdges, InUnits[BlockParams]):
+class BodyResponse(UnderPulse, InUnitsOfOne, InUnits[BlockParams]):
     """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
     thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
@@ -147,7 +147,6 @@ class BodyResponse(UnderPulse, OfEdges, InUnits[BlockParams]):
 class BlockResponse(UnderPulse, OfBlock, InUnits[BlockParams]):
     """What happens to the block."""
 
-    error_bound: float | None = of("error_bound")
     frequency_ratio: float = of("frequency_ratio")
     largest_surviving_acceleration: float | None = of("largest_surviving_acceleration")
     largest_surviving_friction_demand: float | None = of("largest_surviving_friction_demand")

@@ -17,8 +17,10 @@ from numpy.typing import ArrayLike
 from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, finite, in_range, number, one_of
+from rocking._base.quantities import FREQUENCY_PARAMETER, SCALE
 from rocking._base.units import UNITS as QUANTITIES
 from rocking._base.units import Scalar
+from rocking._excitation.motion import AbstractMotion
 from rocking._excitation.records import measures
 from rocking._excitation.records.processing import baseline, offset_remark, resample
 
@@ -27,10 +29,13 @@ MAX_ACCELERATION = 1e6  # largest acceleration of a record [m/s2]; a larger valu
 TIME_STEP = 1e-6, 10.0  # smallest and largest time step of a record [s]: laboratories sample at up to a megahertz
 MAX_DURATION = 1e5  # longest duration of a record [s], more than a day
 
+MAX_INTERVAL = 50.0
+"""Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
+
 
 @final
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Record:
+class Record(AbstractMotion):
     """A recorded ground acceleration. Records are immutable; equal samples and steps make equal records.
 
     Velocity, displacement and the measures of intensity are those of the horizontal component.
@@ -72,6 +77,12 @@ class Record:
     source: str
     remarks: tuple[str, ...]
     vertical: Array | None
+
+    kind = "record"
+    strength = SCALE
+    arguments = (SCALE,)
+    rate = FREQUENCY_PARAMETER
+    highest_amplitude = 10.0
 
     def __init__(
         self,
@@ -151,6 +162,27 @@ class Record:
     def peak_acceleration(self) -> float:
         """PGA, the largest absolute acceleration [m/s2]."""
         return float(np.abs(self.acceleration).max())
+
+    @property
+    def unit_acceleration(self) -> float:
+        """The largest horizontal acceleration at the factor 1 [m/s2]: PGA."""
+        return self.peak_acceleration
+
+    def duration_at(self, period: Any) -> float:
+        """Duration [s]; a record has no period."""
+        del period
+        return self.duration
+
+    @property
+    def frequency_parameters(self) -> tuple[float, float]:
+        """Smallest and largest frequency parameter p of a body under the record [rad/s]."""
+        return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / self.time_step)
+
+    def rate_at(self, frequency_parameter: Array, period: Array) -> Array:
+        """p times the time step [-], checked."""
+        del period
+        p = in_range("frequency_parameter", frequency_parameter, *self.frequency_parameters, unit="rad/s")
+        return np.asarray(p * self.time_step)
 
     @property
     def peak_vertical_acceleration(self) -> float:
