@@ -16,7 +16,7 @@ from rocking_api.settings import EXAMPLE, Settings
 
 import rocking
 from rocking._boundary.tracing import overturning_boundary
-from rocking._datasets.cube import describe, scalar_coordinates, write_dataset
+from rocking._datasets.cube import AXES, describe, scalar_coordinates, write_dataset
 from rocking._datasets.zarr_store import write_pulse_store
 from rocking._spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
@@ -79,7 +79,7 @@ def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", titl
     for pulse in {pulse for pulse, _ in cubes} - {"cosine"}:
         write_pulse_store(sorted((folder / "spectra" / pulse).glob("eta-*.nc")), folder / "zarr" / f"{pulse}.zarr")
     curves = overturning_boundary("sine", restitution=0.85, nodes=101)
-    curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
+    curves["alpha"] = "curve", np.zeros(curves.sizes["curve"]), AXES["alpha"]
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))
     write_dataset(describe(curves), folder / "overturning" / "sine" / "eta-0.85.nc")
     motions, blocks = [noise(seed) for seed in range(4)], [rocking.Block(0.5, 2.0), rocking.Block(0.8, 4.0)]

@@ -19,6 +19,8 @@ from rocking._excitation.records.readers.read_record import parse_record
 from rocking._excitation.records.record import Record, summary_of
 from rocking._excitation.records.vertical import reject_flight
 from rocking._history.time_history import time_history
+from rocking._model.fields import OVERTURNED
+from rocking._model.labelled import variable
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
@@ -31,7 +33,6 @@ from rocking_api.http.errors import TooLargeError, refusal
 from rocking_api.models import records as m
 from rocking_api.models.answer import Url
 from rocking_api.models.blocks import ScaleThreshold
-from rocking_api.models.fields import OUTCOMES
 from rocking_api.routers.curves import json_of, motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -174,7 +175,7 @@ def _history(params: m.RecordHistoryParams, record: Record, url: str, stop: Stop
     if params.mass is not None:
         motion = with_forces(motion, MASS.number(params.mass), float(problem.body.gravity))
     if params.format == "nc":
-        return encoding.netcdf_response(motion, "history")
+        return encoding.netcdf_response(motion, "history", "Motion of a block under a record", url)
     columns, reactions = motion_columns(motion, "time")
     if params.format == "csv":
         return encoding.csv_response(columns | reactions, "history")
@@ -209,13 +210,15 @@ def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFl
     if params.format == "csv":
         return encoding.csv_response(columns, "scales")
     if params.format == "nc":
-        numbers = {**columns, "peak_rotation": found.peak_rotation, "outcome": found.outcome}
-        units = {"peak_acceleration": "m s-2"}
-        variables = {
-            name: ("scale", np.asarray(values) + 0, {"units": units.get(name, "1")}) for name, values in numbers.items()
-        }
-        attributes = {"record": record.name, "record_digest": record.digest, "outcomes": " ".join(OUTCOMES)}
-        return encoding.netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
+        dataset = xr.Dataset(
+            encoding.solved_variables("scale", vars(found)),
+            {"scale": variable("scale", scale, "1", "factor of the record")},
+            {"record": record.name, "record_digest": record.digest},
+        )
+        dataset["overturned"] = OVERTURNED.variable("scale", found.overturned.astype("i1"))
+        peak = scale * record.peak_acceleration
+        dataset["peak_acceleration"] = variable("scale", peak, "m s-2", "peak acceleration of the scaled record")
+        return encoding.netcdf_response(dataset, "scales", "Response of a block over the scale of a record", url)
     thresholds = (block_thresholds if one.is_block else thresholds_of)(one, high, stop)
     changes = [ScaleThreshold(**one) for one in changes_of(thresholds, record)]
     columns |= {"record": _description(record), "thresholds": changes}
