@@ -16,7 +16,8 @@ from rocking._dimensional.problem import Problem, record_groups
 from rocking._dimensional.response import changes_of, respond
 from rocking._dimensional.thresholds import block_thresholds, scale_window, thresholds_of
 from rocking._excitation.records.readers.read_record import parse_record
-from rocking._excitation.records.record import Record, summary_of
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import summary_of as record_summary
 from rocking._excitation.records.vertical import reject_flight
 from rocking._history.time_history import time_history
 from rocking._model.fields import OVERTURNED
@@ -26,8 +27,6 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 from rocking.suites.body_arrays import as_block
 from rocking.suites.configuration import LAYOUT
-from rocking.suites.pulse_fit import fit_pulse
-from rocking.suites.pulse_fit import summary_of as fitted_summary
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError, refusal
 from rocking_api.models import records as m
@@ -157,10 +156,11 @@ def _response(
     fields |= {"query": params, "url": url, "record": _description(record)}
     if not problem.is_block:
         return m.RecordBodyResponse(**fields)
-    pulse = None
     if params.fit:
-        pulse = m.FittedPulse(**fitted_summary(fit_pulse(record, blocks=problem.block, stop=stop)))
-    return m.RecordResponse(**fields, pulse=pulse)
+        from rocking.suites.pulse_fit import fit_pulse, summary_of  # noqa: PLC0415  (scipy.optimize: half a second)
+
+        fields["pulse"] = m.FittedPulse(**summary_of(fit_pulse(record, blocks=problem.block, stop=stop)))
+    return m.RecordResponse(**fields)
 
 
 def _problem(params: m.RecordFileParams, record: Record, scale: Any, *, flies: bool = False) -> Problem:
@@ -226,6 +226,8 @@ def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFl
 
 
 def _pulse(params: m.RecordPulseParams, record: Record, url: str, stop: StopFlag) -> m.RecordPulseResponse:
+    from rocking.suites.pulse_fit import fit_pulse, summary_of  # noqa: PLC0415  (scipy.optimize: half a second)
+
     fit = fit_pulse(record, blocks=as_block(params.rocking_body), stop=stop)
     every = max(1, math.ceil(record.samples / params.samples))
     time = record.times[::every]
@@ -239,11 +241,11 @@ def _pulse(params: m.RecordPulseParams, record: Record, url: str, stop: StopFlag
         query=params,
         url=url,
         record=_description(record),
-        pulse=m.FittedPulse(**fitted_summary(fit)),
+        pulse=m.FittedPulse(**summary_of(fit)),
         time=time.tolist(),
         **{name: (params.scale * values).tolist() for name, values in drawn.items()},
     )
 
 
 def _description(record: Record) -> m.RecordDescription:
-    return m.RecordDescription(**summary_of(record), remarks=list(record.remarks), digest=record.digest)
+    return m.RecordDescription(**record_summary(record), remarks=list(record.remarks), digest=record.digest)
