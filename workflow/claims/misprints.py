@@ -106,4 +106,11 @@ MISPRINTS = (
         "practically for small rotations, as section 6 says; exactly in the slender limit only",
         ("test_section_7_small_rotations_are_not_exactly_self_similar",),
     ),
+    Misprint(
+        "below (3.8)",
+        "B = 0 is the unstable manifold",
+        "the stable manifold of the unstable equilibrium: B multiplies the growing exponential, and without it the "
+        "distance from alpha falls as e^-tau",
+        ("test_below_3_8_manifold_without_the_growing_exponential",),
+    ),
 )
