@@ -129,36 +129,23 @@ UNUSED = ("evaluate", "interpolate", "used", "level", "slice_at")
 """Methods of a cube that are not public."""
 
 SIZE, STRENGTH = "--restitution=0.85 --width=0.5m --height=2m", "--peak-acceleration=4m/s^2 --period=0.5s"
-RATIOS, PERIODS = "--frequency-ratio-min=2 --frequency-ratio-max=3", "--period-min=0.5s --period-max=0.6s"
-POINT = "--slenderness=0.4 --frequency-ratio=5"
-UNDER_PULSES = {
-    "response": (POINT, STRENGTH),
-    "history": (f"{POINT} --duration=5", f"{STRENGTH} --duration=5s"),
-    "spectrum": (f"--slenderness=0.4 {RATIOS}", f"--peak-acceleration=4m/s^2 {PERIODS}"),
-    "boundary": (RATIOS, PERIODS),
-    "plot map": (RATIOS, PERIODS),
-}
-"""Options of the commands for a pulse, by groups and by sizes."""
+PERIODS = "--period-min=0.5s --period-max=0.6s"
 
 OF_FILES = f"record.csv --unit=m/s2 --time-step=0.02s --skip=0 --baseline-order=1 --scale=1.2 {SIZE}"
 COMMANDS = [
-    *(f"{name} --pulse=sine --alpha=0.3rad --restitution=0.85 {groups}" for name, (groups, _) in UNDER_PULSES.items()),
-    *(f"plot {name} --pulse=sine {SIZE} {sizes}" for name, (_, sizes) in UNDER_PULSES.items() if " " not in name),
-    f"history --pulse=sine {SIZE} {STRENGTH} --samples=20 --format=csv",
-    f"spectrum --pulse=sine {SIZE} --peak-acceleration=4m/s^2 {PERIODS}",
-    f"spectrum --pulse=sine --slenderness=0.4 --restitution=0.85 {RATIOS} --points=5 --format=csv",
-    f"response --pulse=sine {SIZE} {STRENGTH} --offset=0.05m --mass-height=0.8m --rebound=0.4 --sides=left",
-    f"response --pulse=sine {STRENGTH} --left=0.2m --right=0.3m --mass-height=0.8m --gyration=0.6m",
-    f"response --pulse=sine {STRENGTH} --diameter=0.4m --height=2m",
+    f"response --pulse=sine {SIZE} {STRENGTH}",
+    f"history --pulse=sine {SIZE} {STRENGTH} --duration=5s --samples=20 --format=csv",
+    f"spectrum --pulse=sine {SIZE} --peak-acceleration=4m/s^2 {PERIODS} --points=5",
+    f"boundary --pulse=sine {SIZE} {PERIODS}",
+    f"response --pulse=sine {STRENGTH} --body=offset_mass(width=0.5m,height=2m,offset=0.05m,rebound=0.4,sides=left)",
+    f"response --pulse=sine {STRENGTH} --body=two_edges(left=0.2m,right=0.3m,mass_height=0.8m,gyration=0.6m)",
     "history --restitution=0.85 --width=0.5m --height=2m --start=0.05rad --duration=5s",
     f"record {OF_FILES}",
-    f"plot record {OF_FILES} --duration=5s",
     f"assess objects.csv --shapes=sine --pga=3m/s^2 {PERIODS}",
     "assess objects.csv --shapes=sine --pga=3m/s^2 --pgv=0.4m/s --samples=20 --seed=1 --resolution=0.01",
     "assess objects.csv --record=record.csv --unit=m/s2 --time-step=0.02s --skip=0 --baseline-order=1",
     "identify trace.csv --edges=1 --confidence=0.9",
     "identify rotations.csv --time-step=0.05s",
-    "floor record.csv --unit=m/s2 --time-step=0.02s --skip=0 --period=0.5s --damping=0.05 --participation=1.3",
     "fragility suite.json",
     "serve --port=8000 --workers=1",
 ]
@@ -335,7 +322,7 @@ def walk_commands(walk: Walk, folder: Path) -> None:
 def run_command(text: str, folder: Path, refused: str = "refused") -> str:
     argv = [str(folder / one) if one.endswith((".csv", ".json")) and one[0] != "-" else one for one in text.split()]
     argv = [one.replace("=record.csv", f"={folder}/record.csv") for one in argv]
-    found = CliRunner().invoke(command_line, [*argv, *(["--output=picture.png"] if argv[0] == "plot" else [])])
+    found = CliRunner().invoke(command_line, argv)
     if found.exception is not None and not isinstance(found.exception, SystemExit):
         raise found.exception
     endings = {0: "answered", 2: refused}
@@ -357,12 +344,9 @@ def main() -> None:
     with ExitStack() as stack:
         for name in (
             "rocking_api.command.main",
-            "rocking.plot.output.save_figure",
             "rocking_assessment._commands.assess._write",
         ):
             stack.enter_context(patch(name))  # no server, and no files
-        for name in ("POINTS", "ROWS"):
-            stack.enter_context(patch(f"rocking._cli.plot.{name}", 20))
         stack.enter_context(patch.dict(rocking.overturning_boundary.__kwdefaults__, nodes=16))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         OBJECTS["path"] = str(folder / "record.csv")
