@@ -63,7 +63,7 @@ def test_command_assesses_a_mesh_and_writes_a_report(tmp_path: Path) -> None:
     sides = "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8"
     (tmp_path / "box.obj").write_text(f"{vertices}\nf 4 3 2 1\nf 5 6 7 8\n{sides}\n")
     site = ("--pga", "0.4g", "--pgv", "50cm/s", "--shapes", "sine", "--no-sensitivity")
-    command("assess", "--mesh", tmp_path / "box.obj", *site, "--report", tmp_path / "report.html")
+    command("assess", "--mesh", tmp_path / "box.obj", "--mesh-unit", "m", *site, "--report", tmp_path / "report.html")
     assert "box" in (tmp_path / "report.html").read_text()
 
 

@@ -56,7 +56,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "pulse": {"name": "mavroeidis_papageorgiou", "cycles": 2.0, "phase": 0.5},
     "read_record": {"file": __file__, "time_step": 0.01, "skip": 0},
     "RigidBody": {"left": 0.1, "right": 0.2, "height": 0.6, "gyration": 0.3, "gravity": 9.81, "top_height": 1.0},
-    "rocking_assessment.body_from_mesh": {"path": __file__, "direction": 0.5, "gravity": 9.81,
+    "rocking_assessment.body_from_mesh": {"path": __file__, "direction": 0.5, "unit": "m", "gravity": 9.81,
                                           "contact_tolerance": 1e-3},
     "RigidBody.from_polygon": {"vertices": [(0, 0), (0.3, 0), (0.2, 1)], "gravity": 9.81},
     "RigidBody.from_size": {"width": 0.4, "height": 1.6, "gyration": 0.3, "mass_height": 0.7, "gravity": 9.81},

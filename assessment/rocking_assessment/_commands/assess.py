@@ -44,6 +44,7 @@ ARGUMENTS = {
     "pulse": "--shapes",
     "path": "--mesh",
     "unit": "--mesh-unit",
+    "up": "--mesh-up",
 }
 """The option or file of each argument that an error names; other arguments are options of the same name."""
 
@@ -80,13 +81,21 @@ def assess(
         ),
     ] = None,
     mesh_unit: Annotated[
-        str,
+        str | None,
         typer.Option(
-            help="Unit of the lengths of the meshes: m, cm, mm, in, ft.",
+            help="Unit of the lengths of the meshes: m, cm, mm, in, ft; glTF has metres.",
             metavar="[UNIT]",
             rich_help_panel=OBJECTS,
         ),
-    ] = "m",
+    ] = None,
+    mesh_up: Annotated[
+        str | None,
+        typer.Option(
+            help="Axis of the meshes that points upwards: x, y or z; by default z, of glTF y.",
+            metavar="[AXIS]",
+            rich_help_panel=OBJECTS,
+        ),
+    ] = None,
     contact_tolerance: Annotated[
         float,
         typer.Option(
@@ -215,7 +224,7 @@ def assess(
         bool,
         typer.Option(
             "--allow-unusual",
-            help="Accept what usually is a wrong unit: a record with a PGA above 5 g, "
+            help="Accept what usually is a wrong unit: a mesh below 1 cm or above 50 m; a record with a PGA above 5 g, "
             "a PGV above 10 m/s, a step above 0.1 s.",
         ),
     ] = False,
@@ -353,8 +362,10 @@ def assess(
             Object.from_mesh(
                 path,
                 unit=mesh_unit,
+                up=mesh_up,
                 friction=friction,
                 contact_tolerance=contact_tolerance,
+                allow_unusual=allow_unusual,
             )
             for path in mesh or []
         ]

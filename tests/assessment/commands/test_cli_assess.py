@@ -211,6 +211,9 @@ def test_meshes_are_assessed_from_all_sides(tmp_path):
     assert by_angle["0 deg"] == pytest.approx(factors["width"], rel=1e-6)
     assert by_angle["90 deg"] == pytest.approx(factors["depth"], rel=1e-6)
     assert "OBJECTS" in refused("assess", *SITE)
+    assert "--mesh-unit: missing; the unit of the lengths" in refused("assess", *options[:2], *SITE)
+    assert "--allow-unusual" in refused("assess", *options[:2], "--mesh-unit", "m", *SITE)
+    assert "--mesh-up" in refused("assess", *options, "--mesh-up", "w")
 
 
 @pytest.mark.parametrize(
@@ -357,7 +360,7 @@ def test_nothing_in_a_report_is_wider_than_its_box(table):
     everything = ["--standards", "all", "--detail", "all", "--samples", "10"]
     for options in (
         [str(table), *site, "--standards", "all"],
-        ["--mesh", str(mesh), *site, "--standards", "all"],
+        ["--mesh", str(mesh), "--mesh-unit", "m", *site, "--standards", "all"],
         [str(table), *site, *everything],
         [str(table), "--pair", pair, "--unit", "m/s2", "--standards", "all", "--no-sensitivity"],
         [str(table), *periods],
