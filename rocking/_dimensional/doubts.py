@@ -12,16 +12,13 @@ from rocking._base.quantities import SCALE
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.thresholds import warnings_of_changes
 from rocking._excitation.motion import AbstractMotion
-from rocking._excitation.records.record import TIME_STEP, Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
 from rocking._solver.bodies import CHANGE
 
 BodyResponse = Any  # that of `rocking._dimensional.response`, which imports this module
-REFINEMENT = 8  # samples into which one is divided by band-limited interpolation, for the comparison of samplings
 SAMPLING_DIFFERENCE = 0.05  # relative difference of the peaks of both samplings above which a warning is given [-]
 DRIFT = 0.1  # velocity at the end of a record over its largest above which a warning is given [-]
-MAX_RESAMPLED = 400_000  # most samples of the refined record; a longer one is not compared
 
 LARGEST_AMPLIFICATION = 1e4
 """Amplification above which a record does not determine the peak [-]: of samples with six digits it leaves two."""
@@ -58,14 +55,10 @@ def notes_of(found: BodyResponse) -> list[str]:
 
 def resampled_problem(problem: Problem) -> Problem | None:
     """The bodies under the record interpolated band-limited at an eighth of its step, see `BodyResponse.resampled`."""
-    record = problem.motion
-    if not isinstance(record, Record):
-        return None
-    step = record.time_step / REFINEMENT
-    if record.samples * REFINEMENT > MAX_RESAMPLED or step < TIME_STEP[0]:
-        return None
-    finer = record.resampled(step)
-    if not np.all(problem.strength < highest_vertical_scale(finer, float(np.min(problem.body.gravity)))):
+    finer: Any = problem.motion.refined()
+    if finer is None or not np.all(
+        problem.strength < highest_vertical_scale(finer, float(np.min(problem.body.gravity)))
+    ):
         return None
     return replace(problem, motion=finer)
 
@@ -90,11 +83,11 @@ def _of_body(problem: Problem, outcome: Outcome) -> list[str]:
     return texts
 
 
-def _of_drift(record: AbstractMotion) -> list[str]:
-    if not isinstance(record, Record) or not abs(record.final_velocity) > DRIFT * record.peak_velocity:
+def _of_drift(motion: AbstractMotion) -> list[str]:
+    if not motion.drift > DRIFT:
         return []
-    share = abs(record.final_velocity) / record.peak_velocity
-    return [f"the velocity of the record ends at {100.0 * share:.0f} % of its largest: its baseline is not corrected"]
+    share = f"{100.0 * motion.drift:.0f} %"
+    return [f"the velocity of the {motion.kind} ends at {share} of its largest: its baseline is not corrected"]
 
 
 def _of_sampling(found: BodyResponse) -> list[str]:

@@ -18,7 +18,6 @@ from rocking._boundary.search import RESOLUTION, refine_brackets
 from rocking._dimensional.problem import Problem
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import AbstractPulse
-from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
@@ -98,8 +97,8 @@ def lowest_thresholds(
     """
     motion = problem.motion
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
-    if isinstance(motion, Record):
-        peak = motion.peak_acceleration
+    if motion.is_scanned:
+        peak = motion.unit_acceleration
         lines = replace(problem, strength=np.ones(shape))
         start, limit = record_range(lines)
         factor = np.broadcast_to(highest, shape).ravel() / peak
@@ -109,10 +108,10 @@ def lowest_thresholds(
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
     cells = replace(problem, strength=uplift).cells
     top = np.minimum(np.broadcast_to(highest, shape) / uplift, HIGHEST).ravel()
-    lowest = np.full(top.size, np.nan)
+    lowest, pulse = np.full(top.size, np.nan), problem.pulse
 
     def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
-        lowest[part] = _lowest_under_pulse(motion, cells[part], top[part], PULSE_SHARE * resolution, stop)
+        lowest[part] = _lowest_under_pulse(pulse, cells[part], top[part], PULSE_SHARE * resolution, stop)
 
     fill_chunks(fill, top.size, max(FEWEST, math.ceil(top.size / (SHARES * AVAILABLE_CORES))), AVAILABLE_CORES, stop)
     return lowest.reshape(shape) * uplift

@@ -200,7 +200,7 @@ def thresholds_of(
     least `BEYOND` times the strength of the problem.
     """
     motion, shape = problem.motion, problem.shape
-    by_record = isinstance(motion, Record)
+    by_record = motion.is_scanned
     at_one = replace(problem, strength=np.ones(shape))
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / motion.unit_acceleration
     limit = np.full(uplift.size, math.inf)

@@ -42,6 +42,9 @@ class AbstractMotion(ABC):
     highest_amplitude: ClassVar[float]
     """Largest strength over that of uplift that is searched unless stated [-]."""
 
+    is_scanned: ClassVar[bool]
+    """Whether searches try strengths a stated distance apart, because the outcome may change anywhere between."""
+
     name: str
     remarks: tuple[str, ...] = ()
     time_step: float = math.nan
@@ -51,6 +54,15 @@ class AbstractMotion(ABC):
     @abstractmethod
     def unit_acceleration(self) -> float:
         """Largest horizontal acceleration at the strength 1 [m/s2]."""
+
+    @property
+    def drift(self) -> float:
+        """Velocity of the ground at the end over its largest, without its sign [-]; 0 of pulses."""
+        return 0.0
+
+    def refined(self) -> AbstractMotion | None:
+        """The motion with finer samples, which shows how much its sampling matters; None if that has no meaning."""
+        return None
 
     @abstractmethod
     def duration_at(self, period: Any) -> Any:

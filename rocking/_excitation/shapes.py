@@ -61,6 +61,7 @@ class AbstractPulse(AbstractMotion):
     arguments = (PEAK_ACCELERATION, PERIOD)
     rate = FREQUENCY_RATIO
     highest_amplitude = 100.0
+    is_scanned = False
 
     def __post_init__(self) -> None:
         self._check_window()

@@ -29,6 +29,9 @@ MAX_ACCELERATION = 1e6  # largest acceleration of a record [m/s2]; a larger valu
 TIME_STEP = 1e-6, 10.0  # smallest and largest time step of a record [s]: laboratories sample at up to a megahertz
 MAX_DURATION = 1e5  # longest duration of a record [s], more than a day
 
+REFINEMENT = 8  # samples into which one is divided by band-limited interpolation, for the comparison of samplings
+MAX_REFINED = 400_000  # most samples of a refined record; a longer one is not compared
+
 MAX_INTERVAL = 50.0
 """Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
 
@@ -83,6 +86,7 @@ class Record(AbstractMotion):
     arguments = (SCALE,)
     rate = FREQUENCY_PARAMETER
     highest_amplitude = 10.0
+    is_scanned = True
 
     def __init__(
         self,
@@ -172,6 +176,18 @@ class Record(AbstractMotion):
         """Duration [s]; a record has no period."""
         del period
         return self.duration
+
+    @property
+    def drift(self) -> float:
+        """Velocity at the last sample over the largest, without its sign [-]."""
+        return abs(self.final_velocity) / self.peak_velocity
+
+    def refined(self) -> Record | None:
+        """The record interpolated band-limited at an eighth of its step; None if that is too long or too small."""
+        step = self.time_step / REFINEMENT
+        if self.samples * REFINEMENT > MAX_REFINED or step < TIME_STEP[0]:
+            return None
+        return self.resampled(step)
 
     @property
     def frequency_parameters(self) -> tuple[float, float]:
