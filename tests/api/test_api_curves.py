@@ -271,7 +271,7 @@ def test_a_pulse_takes_its_parameters_in_its_text(client):
     expected = rocking.peak_response(rocking.pulse("mavroeidis_papageorgiou", cycles=3, phase=np.pi / 2), **groups)
     answer = client.get("/v1/response", params={"pulse": text, **groups}).json()
     assert answer["peak_rotation"] == pytest.approx(float(expected.peak_rotation), rel=1e-12)
-    assert_problem(client.get("/v1/response", params={"pulse": "sine(cycles=2)", **groups}), 422, "cycles")
+    assert_problem(client.get("/v1/response", params={"pulse": "cosine(cycles=2)", **groups}), 422, "cycles")
 
 
 def test_a_registered_pulse_is_listed_and_solved(tmp_path, monkeypatch):
