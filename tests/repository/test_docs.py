@@ -129,6 +129,7 @@ def test_blocks_of_code_run(page, smoke_results, monkeypatch, capsys, tmp_path):
     assert "nan" not in output
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("coarse")
 def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
     """Each `rocking` command of start and how-to pages runs, apart from the server and long tables."""
@@ -159,13 +160,13 @@ def test_commands_of_the_pages_are_accepted(tmp_path, monkeypatch):
 
 
 def test_reference_names_every_public_name():
-    page = "".join((DOCS / "reference" / name).read_text() for name in ("python.md", "paper.rst"))
+    page = "".join((DOCS / "reference" / name).read_text() for name in ("python.md", "paper.rst", "restraint.rst"))
     assert [name for name in rocking.__all__ if not re.search(rf"\b{name}\b", page)] == ["plot"]
     pictures = (DOCS / "reference/plot.md").read_text()
     assert [name for name in plot.__all__ if not re.search(rf"\b{name}\b", pictures)] == []
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_guide_builds_without_warning(tmp_path):
     """In a copy, because the build writes beside its sources; the examples are run by the test above."""
     for folder in ("docs", "examples"):

@@ -343,7 +343,7 @@ def pages_of(file):
     return len(re.findall(rb"/Type /Page\b(?!s)", paper.read_bytes()))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nothing_in_a_report_is_wider_than_its_box(table):
     trimesh = pytest.importorskip("trimesh")
     header, *rows = INVENTORY.splitlines()
@@ -379,6 +379,7 @@ def test_the_report_of_one_object_has_no_blank_pages(table):
     assert pages_of(report) <= 3
 
 
+@pytest.mark.long
 def test_the_report_of_thirty_objects_is_short_and_nothing_in_it_is_cut(tmp_path):
     file = tmp_path / "report.html"
     shown = run("assess", str(COLLECTION), "--pga", "0.3g", "--pgv", "0.3m/s", "--report", str(file))
