@@ -176,21 +176,20 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
     if corrected:
         text = fields["table"].removeprefix("\ufeff")
         file = open_text(text, "table", SCHEMA, TableLayout(), stop)
-        rows = [text[: file.start]]
-        for number, row in _rows_of(text, file):
-            rows.append(_with_cells(row, corrected[number], file.delimiter) if number in corrected else row)
-        fields["table"] = "".join(rows)
+        above = text[: len(text) - sum(map(len, file.lines))]
+        rows = _rows_of(file)
+        corrected_rows = [_with_cells(row, corrected.get(number, {}), file.delimiter) for number, row in rows]
+        fields["table"] = "".join([above, *corrected_rows])
     return fields
 
 
-def _rows_of(text: str, file: TableFile) -> Iterator[tuple[int, str]]:
+def _rows_of(file: TableFile) -> Iterator[tuple[int, str]]:
     """Number and text of each row from the header on."""
-    source = io.StringIO(text, newline="")
-    source.seek(file.start)
-    start = file.start
-    for number, _ in enumerate(csv.reader(source, delimiter=file.delimiter), start=file.first):
-        yield number, text[start : source.tell()]
-        start = source.tell()
+    reader = csv.reader(file.lines, delimiter=file.delimiter)
+    start = 0
+    for number, _ in enumerate(reader, start=file.first):
+        yield number, "".join(file.lines[start : reader.line_num])
+        start = reader.line_num
 
 
 def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
@@ -234,9 +233,8 @@ def _page(
     numbers = {bad.row for bad in bad_rows}
     texts: dict[int, str] = {}
     if numbers:
-        source = given["table"].removeprefix("\ufeff")
-        file = open_text(source, "table", SCHEMA, TableLayout())
-        texts = {number: row.rstrip("\r\n") for number, row in _rows_of(source, file) if number in numbers}
+        file = open_text(given["table"], "table", SCHEMA, TableLayout())
+        texts = {number: row.rstrip("\r\n") for number, row in _rows_of(file) if number in numbers}
     lines = lines_of(found) if found else []
     text = html(
         "objects.html",
