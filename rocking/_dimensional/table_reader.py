@@ -141,7 +141,6 @@ class Table(Generic[Item]):
     items: list[Item] = field(default_factory=list)  # one for each row that was read
     cells: dict[str, list[Cell]] = field(default_factory=dict)  # of these rows as they stand, by header
     columns: dict[str, str] = field(default_factory=dict)  # canonical header of each column that is read, by header
-    units: dict[str, str] = field(default_factory=dict)  # of each quantity, in the header or in the first cell
     bad_rows: list[BadRow] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)  # where `columns` and the header differ
 
@@ -260,14 +259,16 @@ def _header_line(lines: Sequence[str], layout: TableLayout) -> int:
 def _csv_rows(file: TableFile, lines: Sequence[str], delimiter: str, stop: StopFlag | None) -> Iterator[list[str]]:
     """The rows by the standard library, which refuses quotes that are not closed, as pandas does not."""
     reader = csv.reader(lines, delimiter=delimiter, strict=True)
+    line = file.first
     try:
         for row in reader:
             if stop is not None:
                 stop.check()
             yield row
+            line = file.first + reader.line_num
     except csv.Error as error:
         expected = "cells that are in quotes as a whole or not at all, with each inner quote doubled"
-        raise file.error(file.first + reader.line_num - 1, str(error), expected) from None
+        raise file.error(line, str(error), expected) from None
 
 
 def rows_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> list[list[Cell]]:
@@ -414,7 +415,7 @@ def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) ->
     for number, cells in body:
         by_label: dict[str, Cell] = dict.fromkeys(labels, "")
         by_label.update(zip(labels, cells, strict=False))
-        values, units, errors = _read_row(file, columns, cells)
+        values, errors = _read_row(file, columns, cells)
         if not errors:
             try:
                 unread = {label: by_label[label] for label in labels if label not in table.columns}
@@ -425,8 +426,6 @@ def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) ->
                 errors = [_of_cell(error, columns, cells) for error in several]
         if errors:
             table.bad_rows.append(BadRow(number, errors, by_label))
-        for name, unit in units.items():
-            table.units.setdefault(name, unit)
     table.cells.update({label: [cells[label] for cells in kept] for label in labels})
     table.remarks.extend(remarks)
     return table
@@ -434,10 +433,9 @@ def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) ->
 
 def _read_row(
     file: TableFile, columns: Sequence[Column], cells: Sequence[Cell]
-) -> tuple[dict[str, Any], dict[str, str], list[InvalidArgumentError]]:
-    """The values and units of a row by quantity, and all that is wrong with it."""
+) -> tuple[dict[str, Any], list[InvalidArgumentError]]:
+    """The values of a row by quantity, and all that is wrong with it."""
     values: dict[str, Any] = {}
-    units: dict[str, str] = {}
     errors: list[InvalidArgumentError] = []
     if any(text_of_cell(cell).strip() for cell in cells[len(columns) :]):
         errors.append(InvalidArgumentError("row", f"{len(cells)} cells", f"{len(columns)}, as in the header"))
@@ -453,14 +451,14 @@ def _read_row(
                 None, "; ".join(map(text_of_cell, cells)), "one header: a second table in a file of its own"
             )
         try:
-            values[quantity.name], units[quantity.name] = read_cell(quantity, cell, column.unit, file.layout.decimal)
+            values[quantity.name] = read_cell(quantity, cell, column.unit, file.layout.decimal)
         except InvalidArgumentError as error:
             errors.append(error)
     stated = values.keys() | {error.parameter for error in errors}
     absent = [group for group in file.schema.required if stated.isdisjoint(group)]
     errors += [InvalidArgumentError(group[0], None, f"{' or '.join(group[:2])} in each row") for group in absent]
     errors += unusual_sizes(values, file.layout)
-    return values, units, errors
+    return values, errors
 
 
 def unusual_sizes(values: Mapping[str, Any], layout: TableLayout) -> list[InvalidArgumentError]:
