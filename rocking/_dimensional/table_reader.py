@@ -281,7 +281,9 @@ def rows_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> list[l
             areas = {name: book.get_sheet_by_name(name) for name in file.sheet_names}
             names = [sheet] if sheet is not None else [name for name in areas if areas[name].total_height]
             if len(names) != 1 or names[0] not in areas:
-                raise InvalidArgumentError("sheet", sheet, f"one of {', '.join(map(str, areas))}")
+                raise InvalidArgumentError(
+                    "sheet", sheet, f"the argument `sheet`, one of: {', '.join(map(str, areas))}"
+                )
             rows, columns = areas[names[0]].total_height, areas[names[0]].total_width
             if columns > MAX_COLUMNS or rows * columns > SHEET_CELLS:
                 allowed = f"at most {MAX_COLUMNS} columns and {SHEET_CELLS} cells"
@@ -304,11 +306,12 @@ def _sheet_cell(value: object) -> Cell:
     return str(value).removesuffix(" 00:00:00")  # a date
 
 
-def csv_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> str:
-    """The cells of a sheet as CSV text; numbers have a point."""
+def csv_of_sheet(raw: bytes, argument: str, sheet: str | None = None, decimal: str = ".") -> str:
+    """The cells of a sheet as CSV text; its numbers have this decimal sign, its texts are as they stand."""
     text = io.StringIO()
-    rows = rows_of_sheet(raw, argument, sheet)
-    csv.writer(text, lineterminator="\n").writerows(map(text_of_cell, row) for row in rows)
+    writer = csv.writer(text, lineterminator="\n")
+    for row in rows_of_sheet(raw, argument, sheet):
+        writer.writerow(cell if isinstance(cell, str) else text_of_cell(cell).replace(".", decimal) for cell in row)
     return text.getvalue()
 
 

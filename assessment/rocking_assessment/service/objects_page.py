@@ -6,30 +6,25 @@ import csv
 import io
 import re
 import shlex
-import zipfile
 from collections.abc import Iterator
 from datetime import UTC, datetime
-from importlib.util import find_spec
 from pathlib import Path, PurePath
 from urllib.parse import unquote_to_bytes
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, PlainTextResponse
 from rocking_api.http.encoding import text_response
-from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.http.errors import TooLargeError
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
 from rocking.extension import (
-    MAX_CHARACTERS,
     SHEETS,
     BadRow,
-    InvalidArgumentError,
     StopFlag,
     TableFile,
     TableLayout,
-    csv_of_sheet,
     open_text,
     plain_numbers,
     text_of,
@@ -43,8 +38,7 @@ from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_c
 from rocking_assessment.service.assess import MAX_BODY, check_table
 from rocking_assessment.service.models import MAX_OBJECTS
 from rocking_assessment.service.object_page import SITE, address_of, periods_of, quantity_of, site_of
-
-MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
+from rocking_assessment.service.workbooks import text_of_workbook
 
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
@@ -141,23 +135,7 @@ async def post_text(request: Request, service: ServiceDep, name: str = "") -> Re
     ending = PurePath(name).suffix.lower()
     if ending not in SHEETS:
         return PlainTextResponse(await service.read(lambda _: text_of(raw, "table")))
-    if find_spec("python_calamine") is None:
-        raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
-    try:
-        size = sum(member.file_size for member in zipfile.ZipFile(io.BytesIO(raw)).infolist())
-    except zipfile.BadZipFile:
-        raise InvalidArgumentError("table", name, "a sheet, which is a zip archive") from None
-    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the helper
-        raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
-    return PlainTextResponse(await service.helper.read("table", name, _sheet_text, raw))
-
-
-def _sheet_text(raw: bytes) -> str:
-    """The first sheet of a file as CSV."""
-    text = csv_of_sheet(raw, "table")
-    if len(text) > MAX_CHARACTERS:
-        raise InvalidArgumentError("table", len(text), f"a table of at most {MAX_CHARACTERS} characters")
-    return text
+    return PlainTextResponse(await text_of_workbook(service, raw, "table", name))
 
 
 def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
