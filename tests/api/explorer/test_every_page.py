@@ -129,8 +129,14 @@ def wrong(page):
     expect(page.locator("#width-problem")).to_be_visible()
 
 
+def unstated(page):
+    content = b"Messung\nZeit;L\xc3\xa4ngs\n0;1\n10;2\n20;1\n"
+    page.locator("#file").set_input_files({"name": "de.csv", "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#unit-problem")).to_be_visible()
+
+
 CHARTS = {"map", "rotation", "spectrum-chart", "stage", "acceleration-chart", "pulse-preview"}
-OF_RECORD = {"rotation", "acceleration-chart", "scales-chart", "pulse-chart", "stage"}
+OF_RECORD = {"preview-chart", "rotation", "acceleration-chart", "scales-chart", "pulse-chart", "stage"}
 OF_BLOCK = CHARTS | {"map-marks", "envelope"}
 
 STATES = {
@@ -141,7 +147,7 @@ STATES = {
     "headstone": State(HEADSTONE, unfolded),
     "wrong": State(SLAB.replace("width=40", "width=-1"), completed),
     "mesh": State("/object?shape=mesh", completed),
-    "records": State("/records", uploaded, OF_RECORD),
+    "records": State("/records", uploaded, OF_RECORD, (unstated,)),
     "suites": State("/suites", completed, {"suite-report"}),
     **{path: State(path, completed) for path in ("/datasets", "/state", "/docs", "/nowhere")},
 }
