@@ -147,19 +147,40 @@ def response(
             metavar="FILE",
         ),
     ] = None,
+    column: Annotated[
+        list[str] | None,
+        options.said('Header of a column: "Breite (cm)=width [cm]"; may be repeated.', "HEADER=NAME", "--columns"),
+    ] = None,
+    decimal: Annotated[str, options.said("Decimal sign of the table, a point or a comma.", "SIGN")] = ".",
+    delimiter: Annotated[str | None, options.said("Sign between the cells of the table.", "SIGN")] = None,
+    skip: Annotated[int, options.said("Lines above the header of the table.", "NUMBER")] = 0,
+    sheet: Annotated[str | None, options.said("Sheet of a workbook, where several hold cells.", "NAME")] = None,
+    allow_unusual: Annotated[
+        bool, options.said("Read bodies below 1 cm or above 50 m.", "", "--allow-unusual")
+    ] = False,
 ) -> None:
     """Outcome and peak rotation of one block or of the blocks of a table, by the solver.
 
     Rows of a table that cannot be read are named at the end, and the exit code is 2; the others are solved.
     """
     from rocking._cli import arguments, printing
+    from rocking._cli.record import file_errors
 
-    with arguments.option_errors({"blocks": "FILE"}):
+    with arguments.option_errors({"blocks": "FILE"}), file_errors():
         if file is None:
             form = printing.output_format(output, block)
             printing.response(arguments.read_params(block), form)
             return
-        table = arguments.read_blocks(file, block)
+        table = arguments.read_blocks(
+            file,
+            block,
+            columns=column,
+            decimal=decimal,
+            delimiter=delimiter,
+            skip=skip,
+            sheet=sheet,
+            allow_unusual=allow_unusual,
+        )
         printing.responses(table, printing.output_format(output, block, table.read.units))
     bad = [f"{file}, {printing.printable(str(one))}" for one in table.read.bad_rows]
     if bad:

@@ -146,9 +146,10 @@ def read_body(options: BodyOptions) -> RespondingBody:
     return body(given)
 
 
-def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
-    """The blocks of a table in a file; `-` is standard input."""
+def read_blocks(path: str, options: ProblemOptions, **layout: Any) -> BlockTable:
+    """The blocks of a table in a file, whose `layout` are fields of `TableLayout`; `-` is standard input."""
     from rocking._dimensional.table import read_blocks as read_table
+    from rocking._dimensional.table_reader import TableLayout, stated_columns
 
     for name in (*(one.name for one in BODY), "body", "slenderness", "frequency_ratio", "alpha"):
         if getattr(options, name) is not None:
@@ -158,7 +159,8 @@ def read_blocks(path: str, options: ProblemOptions) -> BlockTable:
         for one in (PEAK_ACCELERATION, PERIOD)
         if getattr(options, one.name) is not None
     }
-    return read_table(path, read_pulse(options.pulse), _restitution(options), **strength)
+    stated = TableLayout(**layout | {"columns": stated_columns(layout.get("columns") or ())})
+    return read_table(path, read_pulse(options.pulse), _restitution(options), **strength, layout=stated)
 
 
 def given_units(options: object, columns: Mapping[str, str] | None = None) -> dict[str, str]:

@@ -137,10 +137,11 @@ def responses(table: BlockTable, form: Form) -> None:
     with progress(f"solving {len(table.problems)} blocks"):
         found = respond_table(table)
     if form.kind == "json":
-        about = {"table": table.read.cells, "totals": table.read.totals}
-        print_json(found | about | {"bad_rows": [vars(one) for one in table.read.bad_rows]})
+        bad_rows = [{"row": bad.row, "reasons": bad.reasons, "cells": bad.cells} for bad in table.read.bad_rows]
+        print_json(found | {"table": table.read.cells, "bad_rows": bad_rows})
         return
-    found = {name: column for name, column in found.items() if name not in table.read.columns.values()}
+    read = {header.partition(" [")[0] for header in table.read.columns.values()}
+    found = {name: column for name, column in found.items() if name not in read}
     results = {name: found[name] for name in dict.fromkeys((*_OF_ROWS, *found))}
     taken = {_label(name, form.labels()) for name in results}
     given = {f"{label} (given)" if label in taken else label: column for label, column in table.read.cells.items()}
@@ -148,8 +149,6 @@ def responses(table: BlockTable, form: Form) -> None:
         given = {label: table.read.cells[label] for label, name in table.read.columns.items() if name == "name"}
         results = {name: results[name] for name in _OF_ROWS}
     print_columns(given | results, form)
-    if form.kind == "table" and table.read.totals:
-        typer.echo(printable(f"not read: {', '.join(table.read.totals)}"))
 
 
 _OF_ROWS = ("outcome", "peak_rotation_deg", "top_displacement")

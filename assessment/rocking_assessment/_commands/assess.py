@@ -49,7 +49,13 @@ def assess(
     ] = None,
     column: Annotated[
         Texts,
-        said('Meaning of a column: "Length (cm)=depth", "Age=unused"; may be repeated.', "HEADER=NAME", "--columns"),
+        said(
+            'Header of a column: "Breite (cm)=width [cm]", "Alter=unused"; may be repeated.', "HEADER=NAME", "--columns"
+        ),
+    ] = None,
+    sheet: Annotated[str | None, said("Sheet of a workbook, where several hold cells.", "NAME")] = None,
+    template: Annotated[
+        str | None, said("CSV or XLSX file to write: a table to fill in. Nothing is assessed.", "FILE")
     ] = None,
     mesh: Annotated[
         Texts, said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE")
@@ -84,6 +90,9 @@ def assess(
         Texts, said("Vertical component: one for each --record, then one for each --pair, or none.", "FILE")
     ] = None,
     baseline_order: BaselineOrder = None,
+    record_skip: Annotated[int, said("As --skip, of files of records.", "NUMBER")] = 0,
+    record_delimiter: Annotated[str | None, said("As --delimiter, of files of records.", "NAME")] = None,
+    record_decimal: Annotated[str, said("As --decimal, of files of records.", "SIGN")] = ".",
     hazard: Annotated[
         str | None, said("Hazard curve of PGA of the site, for instance from OpenQuake or the USGS.", "FILE")
     ] = None,
@@ -147,6 +156,7 @@ def assess(
         printable,
         progress,
         split_pulses,
+        stated_columns,
         write_output,
     )
     from rocking_assessment._hazard.curve_files import read_hazard
@@ -154,9 +164,13 @@ def assess(
     from rocking_assessment._objects.objects import Object
     from rocking_assessment._objects.report import Project, report_html
     from rocking_assessment._objects.site import Site
-    from rocking_assessment._objects.tables import ObjectTable, read_objects
+    from rocking_assessment._objects.tables import ObjectTable, read_objects, write_template
 
     with option_errors(HINTS), file_errors():
+        if template is not None:
+            with output_errors("template", template):
+                write_template(template)
+            return
         kind = output_format(form)
         if report is not None and Path(report).suffix.lower() not in (".html", ".htm"):
             raise InvalidArgumentError(
@@ -169,11 +183,12 @@ def assess(
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
         if friction is not None and not mesh:
             raise InvalidArgumentError("friction", friction, "a mesh beside it; a table has a column for it")
+        of_records = {"skip": record_skip, "delimiter": record_delimiter, "decimal": record_decimal}
         site = Site(
             pga,
             pgv,
             None if period_min is None or period_max is None else (period_min, period_max),
-            _read(record or (), pair or (), vertical or (), baseline_order, stated.stated()),
+            _read(record or (), pair or (), vertical or (), baseline_order, stated.stated() | of_records),
             None if hazard is None else read_hazard(hazard),
             None if shapes is None else split_pulses(shapes),
             moving_ground,
@@ -181,7 +196,17 @@ def assess(
             plain_numbers("floor_damping", floor_damping),
             plain_numbers("floor_participation", floor_participation),
         )
-        table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
+        table = ObjectTable()
+        if objects is not None:
+            table = read_objects(
+                objects,
+                columns=stated_columns(column or ()),
+                decimal=stated.decimal,
+                delimiter=stated.delimiter,
+                skip=stated.skip,
+                sheet=sheet,
+                allow_unusual=stated.allow_unusual,
+            )
         bad = [f"{objects}, {printable(str(one))}" for one in table.bad_rows]
         of_meshes: dict[str, Any] = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
         meshes = [Object.from_mesh(path, **of_meshes) for path in mesh or ()]
@@ -219,16 +244,6 @@ def assess(
     if bad:
         typer.echo("\n".join(bad), err=True)
         raise typer.Exit(2)
-
-
-def _columns(given: Sequence[str]) -> dict[str, str]:
-    """What columns of the table are, by their headers."""
-    from rocking.extension import InvalidArgumentError
-
-    for one in given:
-        if not one.rpartition("=")[0].strip():
-            raise InvalidArgumentError("columns", one, 'a header and a name, such as "Length (cm)=depth"')
-    return {header.strip(): name.strip() for header, _, name in (one.rpartition("=") for one in given)}
 
 
 def _read(
@@ -269,7 +284,7 @@ def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], di
 
     columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
     if form.kind == "json":
-        about = {"details": found.details, "columns": table.columns, "skipped": table.skipped, "totals": table.totals}
+        about = {"details": found.details, "columns": table.columns, "skipped": table.skipped, "remarks": table.remarks}
         print_json(columns | about | {"motions": found.motions, "resolution": found.resolution, "bad_rows": bad})
         return
     if form.kind == "csv":

@@ -20,12 +20,13 @@ _FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 LONGEST = 32_767  # longest text of a cell [characters]
 
 
-def xlsx_bytes(columns: Mapping[str, Sequence[Any]]) -> bytes:
-    """A workbook with a header, which stays in sight and has filters, and the rows.
+def xlsx_bytes(columns: Mapping[str, Sequence[Any]], above: Sequence[str] = ()) -> bytes:
+    """A workbook with lines of text `above` a header, which stays in sight and has filters, and the rows.
 
     Numbers and booleans have cells of their own type; None, nan and infinite values are empty; texts are no formulas.
     """
-    rows = [[*columns], *zip(*columns.values(), strict=True)]
+    rows = [*([line] for line in above), [*columns], *zip(*columns.values(), strict=True)]
+    header = len(above) + 1
     sheet = "".join(
         f'<row r="{r}">{"".join(_cell(value, f"{_letters(k)}{r}") for k, value in enumerate(row))}</row>'
         for r, row in enumerate(rows, start=1)
@@ -35,7 +36,7 @@ def xlsx_bytes(columns: Mapping[str, Sequence[Any]]) -> bytes:
         f'<col min="{k}" max="{k}" customWidth="1" width="{min(max(len(name), *map(_length, values), 6), 40) + 2}"/>'
         for k, (name, values) in enumerate(columns.items(), start=1)
     )
-    view = '<pane ySplit="1" topLeftCell="A2" activePane="bottomLeft" state="frozen"/>'
+    view = f'<pane ySplit="{header}" topLeftCell="A{header + 1}" activePane="bottomLeft" state="frozen"/>'
     parts = {
         "[Content_Types].xml": f'<Types xmlns="{PACKAGE}/content-types"><Default Extension="rels" '
         'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
@@ -47,7 +48,7 @@ def xlsx_bytes(columns: Mapping[str, Sequence[Any]]) -> bytes:
         "xl/_rels/workbook.xml.rels": _link("worksheet", "worksheets/sheet1.xml"),
         "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{MAIN}"><sheetViews><sheetView workbookViewId="0">{view}'
         f"</sheetView></sheetViews><cols>{widths}</cols><sheetData>{sheet}</sheetData>"
-        f'<autoFilter ref="A1:{last}"/></worksheet>',
+        f'<autoFilter ref="A{header}:{last}"/></worksheet>',
     }
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:

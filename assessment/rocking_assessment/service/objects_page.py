@@ -7,9 +7,9 @@ import io
 import re
 import shlex
 import zipfile
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from importlib.util import find_spec
-from itertools import islice
 from pathlib import Path, PurePath
 from urllib.parse import unquote_to_bytes
 
@@ -22,16 +22,16 @@ from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
 from rocking.extension import (
-    MARK,
     MAX_CHARACTERS,
     SHEETS,
     BadRow,
     InvalidArgumentError,
     StopFlag,
+    TableFile,
+    TableLayout,
     csv_of_sheet,
-    delimiter_of,
+    open_text,
     plain_numbers,
-    rows_of_csv,
     text_of,
 )
 from rocking_assessment._objects.assess import assess
@@ -174,13 +174,23 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
         if found := re.fullmatch("(?:line|cell)-([0-9]{1,9})(?:-([0-9]{1,4}))?", name):
             corrected.setdefault(int(found[1]), {})[int(found[2]) if found[2] else None] = value
     if corrected:
-        rows = list(islice(rows_of_csv(fields["table"], SCHEMA, stop), max(corrected)))
-        rest = fields["table"].removeprefix(MARK)[sum(map(len, rows)) :]
-        delimiter = delimiter_of(fields["table"], SCHEMA)
-        for number in (one for one in corrected if 0 < one <= len(rows)):
-            rows[number - 1] = _with_cells(rows[number - 1], corrected[number], delimiter)
-        fields["table"] = "".join([*rows, rest])
+        text = fields["table"].removeprefix("\ufeff")
+        file = open_text(text, "table", SCHEMA, TableLayout(), stop)
+        rows = [text[: file.start]]
+        for number, row in _rows_of(text, file):
+            rows.append(_with_cells(row, corrected[number], file.delimiter) if number in corrected else row)
+        fields["table"] = "".join(rows)
     return fields
+
+
+def _rows_of(text: str, file: TableFile) -> Iterator[tuple[int, str]]:
+    """Number and text of each row from the header on."""
+    source = io.StringIO(text, newline="")
+    source.seek(file.start)
+    start = file.start
+    for number, _ in enumerate(csv.reader(source, delimiter=file.delimiter), start=file.first):
+        yield number, text[start : source.tell()]
+        start = source.tell()
 
 
 def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
@@ -221,8 +231,12 @@ def _page(
     given: dict[str, str], settings: Settings, table: ObjectTable | None = None, found: Assessment | None = None
 ) -> HTMLResponse:
     bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
-    shown = {one.row for one in bad_rows}
-    rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
+    numbers = {bad.row for bad in bad_rows}
+    texts: dict[int, str] = {}
+    if numbers:
+        source = given["table"].removeprefix("\ufeff")
+        file = open_text(source, "table", SCHEMA, TableLayout())
+        texts = {number: row.rstrip("\r\n") for number, row in _rows_of(source, file) if number in numbers}
     lines = lines_of(found) if found else []
     text = html(
         "objects.html",
@@ -231,13 +245,13 @@ def _page(
         settings,
         given=given,
         bad_rows=[(one, _wrong_places(one, table)) for one in bad_rows if table],
-        texts={number: row.rstrip("\r\n") for number, row in rows if number in shown},
+        texts=texts,
         table=table,
         found=found,
         lines=lines,
         full_strength=counts_of(lines),
         warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
-        own_of=lambda one: ", ".join(filter(None, (one.cells[label] for label in table.skipped))) if table else "",
+        own_of=lambda obj: ", ".join(filter(None, obj.details.values())),
         verdicts=VERDICTS,
         number_of=number_of,
         address=address_of,
@@ -247,5 +261,7 @@ def _page(
 
 def _wrong_places(bad: BadRow, table: ObjectTable) -> set[int]:
     """The places of the cells that a row was not read for; none if it is the whole row."""
-    names = [(label.strip(), table.columns.get(label)) for label in bad.cells]
-    return {place for place, pair in enumerate(names) if bad.column and bad.column in pair}
+    if "row" in bad.columns:
+        return set()
+    names = [table.columns.get(label, "").partition(" [")[0] for label in bad.cells]
+    return {place for place, name in enumerate(names) if name in bad.columns}
