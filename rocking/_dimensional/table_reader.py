@@ -306,11 +306,12 @@ def _sheet_cell(value: object) -> Cell:
     return str(value).removesuffix(" 00:00:00")  # a date
 
 
-def csv_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> str:
-    """The cells of a sheet as CSV text; numbers have a point."""
+def csv_of_sheet(raw: bytes, argument: str, sheet: str | None = None, decimal: str = ".") -> str:
+    """The cells of a sheet as CSV text, numbers with a decimal sign."""
     text = io.StringIO()
-    rows = rows_of_sheet(raw, argument, sheet)
-    csv.writer(text, lineterminator="\n").writerows(map(text_of_cell, row) for row in rows)
+    writer = csv.writer(text, lineterminator="\n")
+    for row in rows_of_sheet(raw, argument, sheet):
+        writer.writerow(cell if isinstance(cell, str) else text_of_cell(cell).replace(".", decimal) for cell in row)
     return text.getvalue()
 
 

@@ -76,7 +76,7 @@ async def post_preview(
     A file that is not read is no error: `problem` says what is wrong, or what is asked.
     """
     params = encoding.stated(body, query)
-    return await service.solve_one(lambda stop: _preview(body, params, url, stop), request)
+    return await service.read_body(lambda stop: _preview(body, params, url, stop), request)
 
 
 @router.post("/response", summary="A block in SI units under a record", openapi_extra=FILE)

@@ -49,8 +49,8 @@ function showFieldError({ parameter, value, allowed, message }, form) {
   const place = document.querySelector(`[data-problem="${CSS.escape(parameter ?? "")}"]`);
   if (!place) return false;
   const name = parameter.replaceAll("_", " ");
-  if (parameter === "record") markField(place, inTermsOf(form, message));
-  else markField(place, value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`);
+  const words = value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`;
+  markField(place, inTermsOf(form, parameter === "record" ? message : words));
   return true;
 }
 

@@ -2,23 +2,30 @@
 
 import { setStatus } from "./page.js";
 
-/** Fill the named fields of a form from the address; returns whether it has one of them. */
+/** Fill the named fields of a form from the address, a line for each value of a name; returns whether it has one of them. */
 export function restore(form, names) {
   const address = new URLSearchParams(location.search);
   for (const name of names) {
     if (!address.has(name)) continue;
     const field = form.elements[name];
     if (field.type === "checkbox") field.checked = address.get(name) === "true";
-    else setValue(field, address.get(name));
+    else setValue(field, address.getAll(name).join("\n"));
   }
   return names.some((name) => address.has(name));
 }
 
-/** Keep the values of the named fields in the address, but for those that are as the page has them at first. */
+/**
+ * Keep the values of the named fields in the address, each line of a value by itself, but for those that are as the page has
+ * them at first.
+ */
 export function remember(form, names) {
-  const stated = names.map((name) => [name, valueOf(form.elements[name])]).filter(([name, value]) => value !== initialOf(form.elements[name]));
-  const query = new URLSearchParams(stated);
-  history.replaceState(history.state, "", stated.length ? `?${query}` : location.pathname);
+  const query = new URLSearchParams();
+  for (const name of names) {
+    const value = valueOf(form.elements[name]);
+    if (value === initialOf(form.elements[name])) continue;
+    for (const line of value.split("\n")) query.append(name, line);
+  }
+  history.replaceState(history.state, "", query.size ? `?${query}` : location.pathname);
 }
 
 /** The value of a field as text: of a checkbox "true" or nothing. */
