@@ -107,10 +107,18 @@ def uploaded(page):
 
 
 def listed(page):
-    page.locator("#table").fill("object;width [cm];height [cm]\nvase;22;55\nslab;5;60\njug;wide;40")
+    page.locator("#table").fill("name;width [cm];height [cm]\nvase;22;55\nslab;5;60\njug;wide;40")
+    page.locator("#table").press("Tab")
+    expect(page.locator("#preview-caption")).to_have_text("2 rows would be read, 1 not.")
     page.locator("#ask").click()
     expect(page.locator("#bad")).to_be_visible()
     expect(page.locator("#ranking")).to_be_visible()
+
+
+def other_headers(page):
+    content = "Breite (cm);H\u00f6he (cm)\n38,5;60\n".encode()
+    page.locator("#file").set_input_files({"name": "de.csv", "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#column-height-problem")).to_be_visible()
 
 
 def unfolded(page):
@@ -142,7 +150,7 @@ OF_BLOCK = CHARTS | {"map-marks", "envelope"}
 STATES = {
     "block": State(BLOCK, explored, OF_BLOCK, (reported, wrong)),
     "point": State(POINT, explored, CHARTS),
-    "objects": State("/objects", listed),
+    "objects": State("/objects", listed, then=(other_headers,)),
     "slab": State(SLAB, unfolded),
     "headstone": State(HEADSTONE, unfolded),
     "wrong": State(SLAB.replace("width=40", "width=-1"), completed),
