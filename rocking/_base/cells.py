@@ -40,8 +40,8 @@ def text_of_cell(cell: Cell) -> str:
     return cell if isinstance(cell, str) else f"{cell:.15g}"
 
 
-def read_cell(quantity: Quantity, cell: Cell, unit: str, decimal: str) -> tuple[float | str, str]:
-    """The value of a cell in SI units, or one of the words of the quantity, and the unit in which it was stated.
+def read_cell(quantity: Quantity, cell: Cell, unit: str, decimal: str) -> float | str:
+    """The value of a cell in SI units, or one of the words of the quantity.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def read_cell(quantity: Quantity, cell: Cell, unit: str, decimal: str) -> tuple[
     """
     text = text_of_cell(cell).strip()
     if text.partition("(")[0].strip() in quantity.words:
-        return text, unit
+        return text
     plain = text.replace(".", "?").replace(",", ".") if isinstance(cell, str) and decimal == "," else text
     parts = split_quantity(plain)
     written = text[len(text) - len(parts[1]) :] if parts else text
@@ -80,7 +80,6 @@ def read_cell(quantity: Quantity, cell: Cell, unit: str, decimal: str) -> tuple[
         allowed = f"a unit: one of {units} behind {quantity.name} in the header, or a unit in each cell"
         raise InvalidArgumentError(quantity.name, text, allowed)
     try:
-        value = quantity.number(parts[0] * UNITS[quantity.unit].get(stated, 1.0))
+        return quantity.number(parts[0] * UNITS[quantity.unit].get(stated, 1.0))
     except InvalidArgumentError as error:
         raise InvalidArgumentError(quantity.name, text, error.allowed) from None
-    return value, stated

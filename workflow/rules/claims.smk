@@ -1,11 +1,17 @@
 # The claims of the paper against the results.
 CLAIM_FILES = {"table": "results/claims.json", "text": "results/claims.md", "page": "results/claims.html"}
-CLAIMS_PROVENANCE = provenance(["scripts/claims.py"], config["claims"])
+# what the paper says and how it is measured, and the misprints of the paper
+CLAIM_PAGES = {"statements": PROJECT / "workflow/claims/statements.md", "equations": PROJECT / "docs/equations.md"}
+CLAIMS_PROVENANCE = provenance(
+    ["scripts/claims.py"],
+    {**config["claims"], "pages": {name: sha256_of_file(page) for name, page in CLAIM_PAGES.items()}},
+)
 list_products("claims", CLAIMS_PROVENANCE, CLAIM_FILES.values())
 
 
 rule claims:
     input:
+        **CLAIM_PAGES,
         boundaries=overturning_files("sine", ETAS.values()),
         cubes=spectrum_files("sine", ETAS.values()),
         collapse="results/figures/figure-06.nc",
@@ -28,7 +34,5 @@ rule claims:
     params:
         **config["claims"],
         provenance=CLAIMS_PROVENANCE,
-    message:
-        "Checking the quantitative claims of the paper"
     script:
         "../scripts/claims.py"

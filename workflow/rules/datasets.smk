@@ -98,8 +98,6 @@ rule restitution_errors:
     params:
         pulse=lambda wildcards: ENTRIES[wildcards.pulse],
         provenance=ERRORS_PROVENANCE,
-    message:
-        "Errors between the cubes of the {wildcards.pulse} pulse"
     script:
         "../scripts/restitution_errors.py"
 
@@ -119,7 +117,5 @@ rule zarr_store:
         mem_mb=memory(CUBE_MB),
     params:
         provenance=STORE_PROVENANCE,
-    message:
-        "All cubes of the {wildcards.pulse} pulse as a zarr store"
     script:
         "../scripts/zarr_store.py"

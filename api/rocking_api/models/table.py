@@ -26,6 +26,7 @@ class TableParams(Params):
     decimal: Decimal = "."
     delimiter: Delimiter = None
     skip: Skip = 0
+    sheet: str | None = said("sheet of a workbook, where several hold cells", None)
     allow_unusual: bool = said("read objects below 1 cm or above 50 m", False)
 
     @property
@@ -36,6 +37,7 @@ class TableParams(Params):
             decimal=self.decimal,
             delimiter=self.delimiter,
             skip=self.skip,
+            sheet=self.sheet,
             allow_unusual=self.allow_unusual,
         )
 

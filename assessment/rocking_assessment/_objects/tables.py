@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,8 +49,7 @@ COMMENTS = (
 """Lines above it."""
 
 
-@dataclass(frozen=True, repr=False)
-class ObjectTable:
+class ObjectTable(Table[Object]):
     """Objects of a table, and the rows that could not be read.
 
     Attributes
@@ -65,22 +64,14 @@ class ObjectTable:
         What each other column was read as, by its header, such as "width [cm]"; of JSON nothing, whose keys say it.
     remarks : list of str
         Where `columns` states another unit than the header.
+    reading : str
+        How each column was read, and which columns were not, in words.
     """
 
-    objects: list[Object] = field(default_factory=list)
-    bad_rows: list[BadRow] = field(default_factory=list)
-    skipped: list[str] = field(default_factory=list)
-    columns: dict[str, str] = field(default_factory=dict)
-    remarks: list[str] = field(default_factory=list)
-
     @property
-    def reading(self) -> str:
-        """How each column was read, and which columns were not, in words."""
-        if not self.columns:
-            return ""
-        read = ", ".join(f"{label} as {header}" for label, header in self.columns.items())
-        unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
-        return "; ".join([f"columns read: {read}{unread}", *self.remarks])
+    def objects(self) -> list[Object]:
+        """The objects."""
+        return self.items
 
     def __repr__(self) -> str:
         """The number of objects that were read, and of rows and columns that were not."""
@@ -137,7 +128,7 @@ def read_objects(
     )
     if Path(source).suffix.lower() == ".json":
         return objects_of_json(text_of(read_bytes(source, "objects"), "objects"), layout=layout)
-    return _objects(read_table_file(source, SCHEMA, layout))
+    return ObjectTable(**vars(read_table_file(source, SCHEMA, layout)))
 
 
 def objects_of_json(text: str, most: int | None = None, layout: TableLayout | None = None) -> ObjectTable:
@@ -177,11 +168,8 @@ def objects_of_csv(
 
     Beyond `most` rows the table is refused by `TooManyRowsError`, before an object is made.
     """
-    return _objects(read_rows(open_text(text, "objects", SCHEMA, layout or TableLayout(), stop), SCHEMA, most))
-
-
-def _objects(table: Table[Object]) -> ObjectTable:
-    return ObjectTable(table.items, table.bad_rows, table.skipped, table.columns, table.remarks)
+    file = open_text(text, "objects", SCHEMA, layout or TableLayout(), stop)
+    return ObjectTable(**vars(read_rows(file, SCHEMA, most)))
 
 
 def _object_of_row(row: Row) -> Object:

@@ -19,6 +19,7 @@ from rocking_assessment._objects.assess import assess
 from rocking_assessment._objects.site import Site
 from rocking_assessment._objects.tables import ObjectTable, objects_of_csv, objects_of_json, table_template
 from rocking_assessment.service.models import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
+from rocking_assessment.service.workbooks import MEDIA_TYPES, text_of_workbook
 
 router = APIRouter(prefix="/v1", tags=["response"])
 
@@ -50,13 +51,17 @@ async def post_assess(
 ) -> Any:
     """Which objects the motions of a site overturn, each with the lowest factor that does so, the worst first.
 
-    The table is CSV with units in its header or cells, or a JSON list of objects in SI units, with the site in the
-    query; or a JSON object with that list, the site, its records and a hazard curve. The response has the format of the
-    body, or that of `format`; CSV ends with the rows that were not read.
+    The table is CSV or a workbook with units in its header or cells, or a JSON list of objects in SI units, with the
+    site in the query; or a JSON object with that list, the site, its records and a hazard curve. The response has the
+    format of the body, or that of `format`; CSV ends with the rows that were not read.
     """
-    given = body_form(request, ("json", "csv"))
+    workbook = MEDIA_TYPES.get(request.headers.get("content-type", ""))
+    given = body_form(request, ("json", "csv")) if workbook is None else "json"
     is_list = isinstance(body, AssessBody) and body.model_fields_set <= {"objects"}
     params = query if is_list else stated(body, query)
+    if isinstance(body, bytes) and workbook is not None:
+        text = await text_of_workbook(service, body, "objects", workbook, params.sheet, params.decimal)
+        body = text.encode()
 
     def work(stop: StopFlag) -> Response:
         table = _table(body, params, stop)

@@ -6,11 +6,9 @@ import csv
 import io
 import re
 import shlex
-import zipfile
 from collections.abc import Iterator
 from dataclasses import asdict
 from datetime import UTC, datetime
-from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path, PurePath
 from typing import Any
@@ -26,7 +24,6 @@ from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
 from rocking.extension import (
-    MAX_CHARACTERS,
     SHEETS,
     UNITS,
     BadRow,
@@ -37,7 +34,6 @@ from rocking.extension import (
     TableFileError,
     TableLayout,
     TablePreview,
-    csv_of_sheet,
     open_text,
     plain_numbers,
     preview_table,
@@ -52,8 +48,7 @@ from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_c
 from rocking_assessment.service.assess import MAX_BODY, check_table
 from rocking_assessment.service.models import MAX_OBJECTS
 from rocking_assessment.service.object_page import SITE, address_of, periods_of, quantity_of, site_of
-
-MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
+from rocking_assessment.service.workbooks import text_of_workbook
 
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
@@ -159,28 +154,8 @@ async def post_text(
     ending = PurePath(name).suffix.lower()
     if ending not in SHEETS:
         raise UnsupportedBodyError("table", ending, f"a workbook: {', '.join(SHEETS)}")
-    if find_spec("python_calamine") is None:
-        raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
-    try:
-        size = sum(member.file_size for member in zipfile.ZipFile(io.BytesIO(raw)).infolist())
-    except zipfile.BadZipFile:
-        raise InvalidArgumentError("table", name, "a sheet, which is a zip archive") from None
-    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the helper
-        raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
-    return PlainTextResponse(await service.helper.read("table", name, _sheet_text, raw, sheet, decimal or "."))
-
-
-def _sheet_text(raw: bytes, sheet: str, decimal: str) -> str:
-    """A sheet of a workbook as CSV."""
-    try:
-        text = csv_of_sheet(raw, "table", sheet or None, decimal)
-    except InvalidArgumentError as error:
-        if error.parameter != "sheet":
-            raise
-        raise InvalidArgumentError("table", sheet, f"the argument `sheet`: {error.allowed}") from None
-    if len(text) > MAX_CHARACTERS:
-        raise InvalidArgumentError("table", len(text), f"a table of at most {MAX_CHARACTERS} characters")
-    return text
+    text = await text_of_workbook(service, raw, "table", name, sheet or None, decimal or ".")
+    return PlainTextResponse(text)
 
 
 def _command(given: dict[str, str]) -> list[str]:
@@ -238,7 +213,7 @@ def _preview(given: dict[str, str], stop: StopFlag) -> dict[str, Any]:
     except InvalidArgumentError as error:
         problem = {"line": None, "was": f"{error.parameter} {error.value}", "expected": error.allowed}
     try:
-        preview = preview_table(open_text(given["table"], "table", SCHEMA, layout, stop), SCHEMA)
+        preview = preview_table(open_text(given["table"], "table", SCHEMA, layout, stop))
     except TableFileError:
         lines = islice(io.StringIO(given["table"]), LINES_UNREAD)
         preview = TablePreview([PreviewLine(k, line.rstrip()[:200], []) for k, line in enumerate(lines, 1)])
@@ -279,21 +254,20 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
     if corrected:
         text = fields["table"].removeprefix("\ufeff")
         file = open_text(text, "table", SCHEMA, _layout(fields), stop)
-        rows = [text[: file.start]]
-        for number, row in _rows_of(text, file):
-            rows.append(_with_cells(row, corrected[number], file.delimiter) if number in corrected else row)
-        fields["table"] = "".join(rows)
+        above = text[: len(text) - sum(map(len, file.lines))]
+        rows = _rows_of(file)
+        corrected_rows = [_with_cells(row, corrected.get(number, {}), file.delimiter) for number, row in rows]
+        fields["table"] = "".join([above, *corrected_rows])
     return fields
 
 
-def _rows_of(text: str, file: TableFile) -> Iterator[tuple[int, str]]:
+def _rows_of(file: TableFile) -> Iterator[tuple[int, str]]:
     """Number and text of each row from the header on."""
-    source = io.StringIO(text, newline="")
-    source.seek(file.start)
-    start = file.start
-    for number, _ in enumerate(csv.reader(source, delimiter=file.delimiter), start=file.first):
-        yield number, text[start : source.tell()]
-        start = source.tell()
+    reader = csv.reader(file.lines, delimiter=file.delimiter)
+    start = 0
+    for number, _ in enumerate(reader, start=file.first):
+        yield number, "".join(file.lines[start : reader.line_num])
+        start = reader.line_num
 
 
 def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
@@ -337,9 +311,8 @@ def _page(
     numbers = {bad.row for bad in bad_rows}
     texts: dict[int, str] = {}
     if numbers:
-        source = given["table"].removeprefix("\ufeff")
-        file = open_text(source, "table", SCHEMA, _layout(given))
-        texts = {number: row.rstrip("\r\n") for number, row in _rows_of(source, file) if number in numbers}
+        file = open_text(given["table"], "table", SCHEMA, _layout(given))
+        texts = {number: row.rstrip("\r\n") for number, row in _rows_of(file) if number in numbers}
     lines = lines_of(found) if found else []
     text = html(
         "objects.html",

@@ -18,6 +18,7 @@ from tests.api.conftest import NAPA
 from tests.api.explorer.hands import HEADER, STRONG, Keyboard, choose_record, short_record
 from tests.api.explorer.reading import stated_rotation
 from tests.excitation.record_files import at2
+from tests.sampling import but_long
 
 BLOCK = rocking.Block(0.5, 2.0)  # that of the form
 
@@ -157,7 +158,7 @@ def state(page, name, value):
     field.press("Tab")
 
 
-@pytest.mark.parametrize("name", TRIALS)
+@pytest.mark.parametrize("name", but_long(TRIALS, "japanese.csv"))
 def test_a_foreign_file_is_read_as_a_person_states_it(open_page, motion, tmp_path, name):
     make, choices = TRIALS[name]
     content = make(motion)
@@ -211,6 +212,7 @@ def test_what_is_unusual_is_a_question(open_page, motion):
     assert page.evaluate("location.search") == ""
 
 
+@pytest.mark.long
 def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_surviving(open_page, content, motion):
     page = open_page("/records")
     changes = rocking.Block(0.2, 1.0).thresholds(motion).value
@@ -230,6 +232,7 @@ def components():
     return {"NAPA_090": first, "NAPA_000": second, "NAPA_UP": second / 3.0}, east.time_step
 
 
+@pytest.mark.long
 def test_does_it_overturn_with_the_other_components(open_page, tmp_path):
     page = open_page("/records")
     values, step = components()

@@ -7,9 +7,11 @@ import numpy as np
 import rocking_assessment
 from rocking_assessment._objects.columns import OUTPUTS
 from rocking_assessment.service.models import AssessedRow
+from rocking_assessment.service.workbooks import MEDIA_TYPES
 
 import rocking
 from tests.api.conftest import CSV, assert_problem, post
+from tests.sheets import xlsx_bytes
 
 URL = "/v1/assess?pga=3&pgv=0.3&shapes=sine,ricker&sensitivity=false"
 TABLE = (
@@ -73,6 +75,17 @@ def test_a_layout_is_stated_in_the_query(client):
     assert answer["columns"] == {"Objekt": "name", "Breite (cm)": "width [cm]", "height [cm]": "height [cm]"}
     assert [row["object"] for row in answer["rows"]] == ["Vase"]
     assert_problem(post(client, f"{URL}&columns=width", table, CSV), 422, "columns")
+
+
+def test_a_workbook_is_a_table(client):
+    rows = [["name", "Breite", "height [cm]"], ["Vase", "20,5 cm", 60.5]]
+    url = f"{URL}&decimal=,&columns=Breite=width"
+    (media, *_) = MEDIA_TYPES
+    answer = post(client, url, xlsx_bytes(rows), media).json()
+    assert answer["details"]["height [cm]"] == ["60,5"]
+    assert [row["object"] for row in answer["rows"]] == ["Vase"]
+    assert "sheet" in assert_problem(post(client, f"{url}&sheet=Hall", xlsx_bytes(rows), media), 422)["detail"]
+    assert_problem(post(client, url, b"no workbook", media), 422, "objects")
 
 
 def test_a_tiny_object_is_a_question(client):

@@ -14,6 +14,7 @@ from rocking._cli.app import app
 from rocking._dimensional.table_reader import rows_of_sheet
 from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import query
+from tests.sampling import but_long
 from tests.sheets import xlsx_bytes
 
 TABLE = "name;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\njug;wide;10;40\n"
@@ -47,6 +48,7 @@ def test_which_of_thirty_objects_first_by_keyboard_alone(open_page):
     assert page.locator("#ranking tbody th a").all_inner_texts() == ["Wooden saint"]
 
 
+@pytest.mark.long
 def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page):
     page = open_page("/objects", **PHONE)
     row = page.locator("#ranking tbody tr").first
@@ -101,6 +103,7 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
     expect(page.locator("#pga-problem")).to_contain_text("allowed")
 
 
+@pytest.mark.long
 def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service):
     page = open_page("/objects")
     rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(250))
@@ -183,6 +186,7 @@ def test_an_outline_is_drawn_on_a_phone(open_page):
     expect(page.locator("#drawing circle")).to_have_count(5)
 
 
+@pytest.mark.long
 def test_a_mesh_is_read_and_a_damaged_one_explained_beside_its_field(open_page):
     trimesh = pytest.importorskip("trimesh")
     page = open_page("/object?shape=mesh", **PHONE)
@@ -254,7 +258,7 @@ def state(page, name, value):
     expect(page.locator("#preview")).to_have_attribute("aria-busy", "false")
 
 
-@pytest.mark.parametrize("name", TRIALS)
+@pytest.mark.parametrize("name", but_long(TRIALS, "objekte.xlsx"))
 def test_a_foreign_table_is_read_as_a_person_states_it(open_page, tmp_path, name):
     content, for_command, layout, columns, unit, expected = TRIALS[name]
     page = open_page("/objects")

@@ -12,7 +12,7 @@ import pytest
 import rocking_assessment
 from rocking_assessment._objects.columns import VERDICTS
 from rocking_assessment._objects.summary import _rounded_up
-from rocking_assessment.service import objects_page
+from rocking_assessment.service import objects_page, workbooks
 
 from rocking._numba.cancellation import StopFlag
 from tests.api.conftest import assert_problem
@@ -176,7 +176,7 @@ def test_a_sheet_whose_cells_are_far_apart_ends_its_own_process_only(client):
 
 
 def test_sheets_need_their_package(client, monkeypatch):
-    monkeypatch.setattr(objects_page, "find_spec", lambda _: None)
+    monkeypatch.setattr(workbooks, "find_spec", lambda _: None)
     problem = assert_problem(client.post("/objects/text?name=a.xlsx", content=xlsx_bytes([["object"]])), 415, "table")
     assert "rocking[sheets]" in problem["detail"]
 
