@@ -36,12 +36,7 @@ async def text_of_workbook(
 
 
 def _text(raw: bytes, parameter: str, sheet: str | None, decimal: str) -> str:
-    try:
-        text = csv_of_sheet(raw, parameter, sheet, decimal)
-    except InvalidArgumentError as error:
-        if error.parameter != "sheet":
-            raise
-        raise InvalidArgumentError(parameter, sheet, f"the argument `sheet`: {error.allowed}") from None
+    text = csv_of_sheet(raw, parameter, sheet, decimal)
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(parameter, len(text), f"a table of at most {MAX_CHARACTERS} characters")
     return text

@@ -155,7 +155,7 @@ def test_a_sheet_is_text_with_the_decimal_sign(client):
     assert client.post(url, content=content).text == 'name,height\n"2,5",2.5\n'
     assert client.post(f"{url}&decimal=,", content=content).text == 'name,height\n"2,5","2,5"\n'
     problem = assert_problem(client.post(f"{url}&sheet=b", content=content), 422, "table")
-    assert problem["allowed"] == "the argument `sheet`: one of a"
+    assert problem["allowed"] == "the argument `sheet`, one of: a"
     assert_problem(client.post("/objects/text?name=a.csv", content=b"a"), 415, "table")
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
