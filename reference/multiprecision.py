@@ -11,7 +11,7 @@ import math
 
 from flint import arb, ctx
 
-from reference.equation_of_motion import Motion
+from reference.equation_of_motion import Motion, Restraint
 from reference.exact_pulses import exact_pulse, unit_crossings
 from reference.exact_response import (
     CAPPED,
@@ -37,15 +37,22 @@ def integrate(
     cycles: float = 2.0,
     phase: float = 0.0,
     max_impacts: int = 20_000,
+    stiffness: arb | float = 0.0,
+    prestress: arb | float = 0.0,
+    damping: arb | float = 0.0,
 ) -> ExactResponse:
     """Return the response of one block [all inputs dimensionless, alpha in rad]; floats are taken as exact.
 
-    After `max_impacts` the outcome is CAPPED, unless the block was coming to rest by chatter.
+    After `max_impacts` the outcome is CAPPED, unless the block was coming to rest by chatter. `stiffness`, `prestress`
+    and `damping` are kappa, sigma and zeta of `equation_of_motion`.
     """
     shape = exact_pulse(pulse, cycles, phase)
     angle = None if alpha is None else arb(alpha)
+    restraint = Restraint(arb(stiffness), arb(prestress), arb(damping))
     motion = Motion(shape, (1 / arb(slenderness)).mid(), arb(frequency_ratio), angle)
-    return _Integration(motion, arb(restitution), max_impacts).run()
+    if restraint == (0, 0, 0):
+        return _Integration(motion, arb(restitution), max_impacts).run()
+    return _RestrainedIntegration(motion._replace(restraint=restraint), arb(restitution), max_impacts).run()
 
 
 class _Integration:
@@ -55,7 +62,8 @@ class _Integration:
         self.motion, self.restitution, self.max_impacts = motion, restitution, max_impacts
         self.end = motion.duration.mid()
         start, omega = motion.pulse.start, motion.frequency_ratio
-        self.uplifts = [((phi - start) / omega).mid() for phi in unit_crossings(motion.pulse, motion.amplitude)]
+        crossings = unit_crossings(motion.pulse, (motion.amplitude / motion.level).mid())
+        self.uplifts = [((phi - start) / omega).mid() for phi in crossings]
         self.order = 64 if motion.alpha is None else 44
         self.rate = motion.max_rate()
         self.step = (2.0 if motion.alpha is None else 0.7) / self.rate
@@ -90,10 +98,10 @@ class _Integration:
         return response
 
     def _wait_for_uplift(self) -> bool:
-        """At rest at tau: move to the next time with |u| >= 1; return False if there is none."""
+        """At rest at tau: move to the next time with |u| >= level; return False if there is none."""
         ground = self.motion.ground(self.tau)
-        self.crossing = not abs(ground) > 1
-        if self.crossing:  # held down now: on to the next time at which |u| rises through 1
+        self.crossing = not abs(ground) > self.motion.level
+        if self.crossing:  # held down now: on to the next time at which |u| rises through the level, 1 if free
             self.uplifts = [t for t in self.uplifts if t > self.tau]
             if not self.uplifts:
                 return False
@@ -158,8 +166,8 @@ class _Integration:
     def _restoring_acceleration(self) -> arb:
         """Return -z'' at z = 0."""
         ground = self.side * self.motion.ground(self.tau)
-        alpha = self.motion.alpha
-        return 1 + ground if alpha is None else (1 + ground) * alpha.sin() / alpha
+        alpha, level = self.motion.alpha, self.motion.level
+        return level + ground if alpha is None else (level + ground) * alpha.sin() / alpha
 
     def _overturns_during(self, series: list[arb], length: arb) -> bool:
         """Return whether |theta| reaches pi/2 during the pulse (rigid only)."""
@@ -205,13 +213,15 @@ class _Integration:
             response.slowest_impact = abs(self.v)
         self.side, self.z, self.v = -self.side, arb(0), abs(eta * self.v).mid()
         ground = self.motion.ground(self.tau)
-        if abs(ground) > 1:  # one edge is destabilised: the block does not rest, and without velocity uplifts there
+        if (
+            abs(ground) > self.motion.level
+        ):  # one edge is destabilised: the block does not rest, and without velocity uplifts there
             if self.v == 0:
                 self.side = -1 if ground > 0 else 1
             return False
         if self.v == 0:
             return True
-        reserve = float(1 - abs(ground))
+        reserve = float(self.motion.level - abs(ground))
         loss = float(1 - eta)
         if loss == 0.0 or reserve == 0.0:
             return False
@@ -243,3 +253,94 @@ class _Integration:
     def _raise_peak(self, z: arb) -> None:
         if z.mid() > self.peak:
             self.peak = z.mid()
+
+
+class _RestrainedIntegration(_Integration):
+    """The same with tendon and damper, for which the energy does not decide after the pulse."""
+
+    def __init__(self, motion: Motion, restitution: arb, max_impacts: int) -> None:
+        super().__init__(motion, restitution, max_impacts)
+        self.restraint: Restraint = motion.restraint or Restraint(arb(0), arb(0), arb(0))
+        self.equilibrium = self._unstable_equilibrium()
+
+    def _unstable_equilibrium(self) -> arb | None:
+        """Return the z above which the moments at rest increase z; pi/2 if there is none below; None if there is none.
+
+        They are -(sin(alpha) cos(t) - (cos(alpha) - kappa) sin(t) + sigma sin(alpha) cos(t/2)), t = alpha z, in the
+        slender limit -(1 + sigma) + (1 - kappa) z: with one zero, at most, below pi/2.
+        """
+        stiffness, prestress, _ = self.restraint
+        alpha = self.motion.alpha
+        if alpha is None:
+            return (1 + prestress) / (1 - stiffness) if stiffness < 1 else None
+        low, high = arb(0), arb.pi() / 2
+
+        def restoring(t: arb) -> arb:
+            tendon = prestress * alpha.sin() * (t / 2).cos() + stiffness * t.sin()
+            return (alpha - t).sin() + tendon
+
+        if restoring(high) < 0:
+            for _ in range(ctx.prec):
+                middle = ((low + high) / 2).mid()
+                low, high = (middle, high) if restoring(middle) > 0 else (low, middle)
+        return (high / alpha).mid()
+
+    def _growing_part(self, z: arb, v: arb) -> arb | None:
+        """Return W = z' + (1 - kappa)/lambda (z - z*) of a slender block, W' = lambda W - s u; None if it has none."""
+        if self.motion.alpha is not None or self.equilibrium is None:
+            return None
+        return v + (1 - self.restraint.stiffness) / self._growth_rate() * (z - self.equilibrium)
+
+    def _growth_rate(self) -> arb:
+        stiffness, _, damping = self.restraint
+        return (damping * damping + 1 - stiffness).sqrt() - damping
+
+    def _never_returns(self) -> bool:
+        growing = self._growing_part(self.z, self.v)
+        return growing is not None and bool(self._growth_rate() * growing > self.motion.amplitude)
+
+    def _overturned(self) -> int:
+        self.response.margin = arb(1)
+        return OVERTURNED_AFTER_IMPACT if self.response.impacts else OVERTURNED_DIRECTLY
+
+    def _free_rocking(self) -> ExactResponse:
+        """Continue without ground motion up to the escape, or to the first peak.
+
+        Each later peak is lower: energy only falls, and below the equilibrium the potential rises with z. The response
+        has no margin.
+        """
+        self.motion = self.motion._replace(amplitude=arb(0))
+        self.rate = self.motion.max_rate()
+        self.step = (2.0 if self.motion.alpha is None else 0.7) / self.rate
+        self.order = 64 if self.motion.alpha is None else 44
+        self.end = self.tau + arb("1e9")
+        outcome = OVERTURNED_AFTER_IMPACT if self.response.impacts else OVERTURNED_DIRECTLY
+        while True:
+            if self._escapes():
+                return self._close(outcome)
+            zeros = 0 if self.z > 0 else 1
+            if zeros == 1 and self.v <= 0:
+                return self._close(RECOVERS)
+            series, length = self._expand(zeros)
+            impact = next(iter(roots(series[zeros:], length)), None)
+            length = length if impact is None else impact
+            self._watch_peak(series, length, zeros)
+            rises = self.v > 0
+            self._move(series, length)
+            if impact is not None:
+                if rises:
+                    return self._close(RECOVERS)
+                self.z, self.v = arb(0), abs(self.restitution * self.v).mid()
+                if self._escapes():
+                    self.response.impacts += 1
+                    return self._close(OVERTURNED_AFTER_IMPACT)
+                outcome = OVERTURNED_AFTER_IMPACT
+            elif rises and self.v <= 0 and (self.equilibrium is None or self.z < self.equilibrium):
+                return self._close(RECOVERS)
+
+    def _escapes(self) -> bool:
+        """Return whether the block overturns in this flight, without ground motion; it may not be decided yet."""
+        growing = self._growing_part(self.z, self.v)
+        if growing is not None:
+            return bool(growing > 0)
+        return self.equilibrium is not None and bool(self.z >= self.equilibrium and self.v >= 0)

@@ -1,5 +1,6 @@
 from . import paper as paper
 from . import plot as plot
+from . import restraint as restraint
 from . import suites as suites
 from ._base.errors import InvalidArgumentError as InvalidArgumentError
 from ._base.errors import RockingError as RockingError

@@ -45,6 +45,18 @@ RELATIVE_TOLERANCE = Quantity("relative_tolerance", "-", "relative error of the 
 GROUPS = (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION, ALPHA)
 """The dimensionless groups of a response, in the order of the arguments."""
 
+STIFFNESS = Quantity("stiffness", "-", "stiffness of a vertical tendon along the centre line",
+    symbol="kappa = k b^2/(m g R)", lower=0.0, upper=1e4, closed="both", default=0.0)
+
+PRESTRESS = Quantity("prestress", "-", "prestress of the tendon over the weight", symbol="sigma = P_0/(m g)", lower=0.0,
+    upper=1e4, closed="both", default=0.0)
+
+DAMPING = Quantity("damping", "-", "damping by a vertical damper at the edge that uplifts",
+    symbol="zeta = (3/2) (b/R)^2 c/(m p)", lower=0.0, upper=10.0, closed="both", default=0.0)
+
+RESTRAINTS = (STIFFNESS, PRESTRESS, DAMPING)
+"""The dimensionless groups of a restraint, 0 of a free block; `rocking.restraint` has their formulas."""
+
 # Motions
 
 PEAK_ACCELERATION = Quantity("peak_acceleration", "m/s2", "peak acceleration of the pulse", symbol="a_g", lower=0.0,

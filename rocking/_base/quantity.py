@@ -1,7 +1,7 @@
 """The declaration of a quantity, and of kinds of bodies and pulses, whose parameters are quantities.
 
 Python, tables, options, HTTP and the pages derive from a `Quantity`. It imports nothing heavy: the layer of an
-interface makes its own object from the declaration, an option of typer in `rocking/_cli/options.py`, a field of
+interface makes its own object from the declaration, an option of typer in `rocking/_cli/parameters.py`, a field of
 pydantic in `api/rocking_api/models/quantity.py`.
 
 A `Kind` is a function with annotated parameters. A text describes a body or
@@ -146,6 +146,18 @@ class Quantity:
     def help(self) -> str:
         """Meaning, symbol and unit in one line."""
         return self.named + (f" [{self.unit}]" if self.unit not in ("", "bool") else "")
+
+    @property
+    def sentence(self) -> str:
+        """Meaning, symbol, range of a number, words and example, for the help of an option."""
+        parts = [self.named[0].upper() + self.named[1:]]
+        if self.unit == "-" and (self.lower > 0.0 or math.isfinite(self.upper)):
+            parts.append(self.interval)
+        parts += [f"or {word}" for word in self.words]
+        if self.example:
+            example = repr(self.example) if " " in self.example else self.example
+            parts.append(f"such as {example}")
+        return f"{', '.join(parts)}."
 
     @property
     def label(self) -> str:

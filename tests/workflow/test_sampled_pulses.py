@@ -77,7 +77,7 @@ def test_samples_of_a_file_are_those_of_a_list(tmp_path: Path) -> None:
     assert configured_pulse(relative_entry(entry, str(tmp_path))) == found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) -> None:
     (tmp_path / "ramp.csv").write_text("time,acceleration\n0,0\n0.1,3\n0.3,-1\n0.7,0\n")
     triangle = {"name": "triangle", "acceleration": [0, 2, 0], "time": [0, 0.5, 1]}

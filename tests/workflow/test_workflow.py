@@ -91,7 +91,7 @@ def test_the_manifest_states_the_commit_only_of_an_unchanged_checkout(tmp_path: 
 def test_products_were_tested(smoke_results: Path) -> None:
     lines = (smoke_results / "checks.txt").read_text().splitlines()
     assert len(lines) > 60
-    assert all(line.startswith(("passed ", "code ")) for line in lines)
+    assert all(line.startswith("passed test_") for line in lines)
 
 
 def test_store_of_a_pulse_holds_its_cubes(smoke_results: Path) -> None:
@@ -118,12 +118,10 @@ def test_reading_the_workflow_and_dry_runs_change_nothing(copy_of_run: Path, tmp
     configuration["boundary"]["nodes"] = 103
     other.write_text(yaml.safe_dump(configuration))
     before = state(copy_of_run)
-    for arguments in (["--dry-run"], ["--dry-run"], ["--summary"]):
-        planned = snakemake(copy_of_run, *arguments, configuration=other)
-        assert planned.returncode == 0, planned.stdout
-    assert {"overturning", "spectra", "figures_histories"} <= rules_to_run(
-        snakemake(copy_of_run, "--dry-run", configuration=other).stdout
-    )
+    planned = snakemake(copy_of_run, "--dry-run", configuration=other)
+    assert planned.returncode == 0, planned.stdout
+    assert {"overturning", "spectra", "figures_histories"} <= rules_to_run(planned.stdout)
+    assert snakemake(copy_of_run, "--summary", configuration=other).returncode == 0
     assert state(copy_of_run) == before
     assert "Nothing to be done" in snakemake(copy_of_run, "--dry-run").stdout
     assert state(copy_of_run) == before
@@ -145,8 +143,6 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
     (project / "docs").mkdir()
     for name in ("Snakefile", "environment.lock", "CITATION.cff", "docs/equations.md"):
         shutil.copy2(PROJECT / name, project / name)
-    unchanged = snakemake(copy_of_run, "--dry-run", project=project)
-    assert "Nothing to be done" in unchanged.stdout, unchanged.stdout
     modules = {
         "rocking/paper/orientation.py": {"figures_closed_forms", "claims"},
         "workflow/figures/figure_08.py": {"figures_spectrum_curves"},
@@ -159,9 +155,6 @@ def test_changed_module_reruns_only_dependent_jobs(copy_of_run: Path, tmp_path: 
             source.write("\n# a change\n")
     changed = snakemake(copy_of_run, "--dry-run", project=project)
     assert rules_to_run(changed.stdout) == set.union(*modules.values()) | {"stac", *AFTERWARDS}
-    products = (f"results/figures/figure-{name}" for name in ("06.png", "13.png", "scale-law.svg"))
-    alone = snakemake(copy_of_run, "--dry-run", *products, project=project)
-    assert rules_to_run(alone.stdout) == {"figures_spectrum_curves", "spectra", "figures_scale_law"}, alone.stdout
 
 
 @pytest.mark.long

@@ -33,9 +33,9 @@ def data(
         {
             "at_rest": plotted(("corner", "axis"), corners, "corners and centre of the block at rest", units="m"),
             "rotated": plotted(("corner", "axis"), rotated, "the same, rotated about the right corner", units="m"),
-            "ground_acceleration": plotted("time", acceleration, "ground acceleration in units of g", equation="3.2"),
+            "ground_acceleration": plotted("sample", acceleration, "ground acceleration in units of g", equation="3.2"),
         },
-        coords={"time": plotted("time", time, "time", units="s")},
+        coords={"time": plotted("sample", time, "time", units="s")},
         attrs={
             "title": "Geometry of the rigid rocking block and the pulse",
             "summary": "Block of the given half width and half height, drawn to scale, and the pulse under it.",

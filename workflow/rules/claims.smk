@@ -33,7 +33,5 @@ rule claims:
     params:
         **config["claims"],
         provenance=CLAIMS_PROVENANCE,
-    message:
-        "Checking the quantitative claims of the paper"
     script:
         "../scripts/claims.py"

@@ -100,8 +100,6 @@ rule restitution_errors:
     params:
         pulse=lambda wildcards: ENTRIES[wildcards.pulse],
         provenance=ERRORS_PROVENANCE,
-    message:
-        "Errors between the cubes of the {wildcards.pulse} pulse"
     script:
         "../scripts/restitution_errors.py"
 
@@ -121,8 +119,6 @@ rule zarr_store:
         mem_mb=memory(CUBE_MB),
     params:
         provenance=STORE_PROVENANCE,
-    message:
-        "All cubes of the {wildcards.pulse} pulse as a zarr store"
     script:
         "../scripts/zarr_store.py"
 

@@ -8,8 +8,6 @@ rule manifest:
         manifest=f"{RESULTS}/manifest.json",
     log:
         f"logs/{RESULTS}/manifest.log",
-    benchmark:
-        f"logs/benchmarks/{RESULTS}/manifest.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"

@@ -16,22 +16,22 @@ from rocking._dimensional.problem import Problem, record_groups
 from rocking._dimensional.response import changes_of, respond
 from rocking._dimensional.thresholds import block_thresholds, scale_window, thresholds_of
 from rocking._excitation.records.readers.read_record import parse_record
-from rocking._excitation.records.record import Record, summary_of
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import summary_of as record_summary
 from rocking._excitation.records.vertical import reject_flight
 from rocking._history.time_history import time_history
+from rocking._model.fields import OVERTURNED
+from rocking._model.labelled import variable
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
 from rocking._solver.records.record_response import record_response
 from rocking.suites.body_arrays import as_block
 from rocking.suites.configuration import LAYOUT
-from rocking.suites.pulse_fit import fit_pulse
-from rocking.suites.pulse_fit import summary_of as fitted_summary
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError, refusal
 from rocking_api.models import records as m
 from rocking_api.models.answer import Url
 from rocking_api.models.blocks import ScaleThreshold
-from rocking_api.models.fields import OUTCOMES
 from rocking_api.routers.curves import json_of, motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -156,10 +156,11 @@ def _response(
     fields |= {"query": params, "url": url, "record": _description(record)}
     if not problem.is_block:
         return m.RecordBodyResponse(**fields)
-    pulse = None
     if params.fit:
-        pulse = m.FittedPulse(**fitted_summary(fit_pulse(record, blocks=problem.block, stop=stop)))
-    return m.RecordResponse(**fields, pulse=pulse)
+        from rocking.suites.pulse_fit import fit_pulse, summary_of  # noqa: PLC0415  (scipy.optimize: half a second)
+
+        fields["pulse"] = m.FittedPulse(**summary_of(fit_pulse(record, blocks=problem.block, stop=stop)))
+    return m.RecordResponse(**fields)
 
 
 def _problem(params: m.RecordFileParams, record: Record, scale: Any, *, flies: bool = False) -> Problem:
@@ -174,7 +175,7 @@ def _history(params: m.RecordHistoryParams, record: Record, url: str, stop: Stop
     if params.mass is not None:
         motion = with_forces(motion, MASS.number(params.mass), float(problem.body.gravity))
     if params.format == "nc":
-        return encoding.netcdf_response(motion, "history")
+        return encoding.netcdf_response(motion, "history", "Motion of a block under a record", url)
     columns, reactions = motion_columns(motion, "time")
     if params.format == "csv":
         return encoding.csv_response(columns | reactions, "history")
@@ -209,13 +210,15 @@ def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFl
     if params.format == "csv":
         return encoding.csv_response(columns, "scales")
     if params.format == "nc":
-        numbers = {**columns, "peak_rotation": found.peak_rotation, "outcome": found.outcome}
-        units = {"peak_acceleration": "m s-2"}
-        variables = {
-            name: ("scale", np.asarray(values) + 0, {"units": units.get(name, "1")}) for name, values in numbers.items()
-        }
-        attributes = {"record": record.name, "record_digest": record.digest, "outcomes": " ".join(OUTCOMES)}
-        return encoding.netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
+        dataset = xr.Dataset(
+            encoding.solved_variables("scale", vars(found)),
+            {"scale": variable("scale", scale, "1", "factor of the record")},
+            {"record": record.name, "record_digest": record.digest},
+        )
+        dataset["overturned"] = OVERTURNED.variable("scale", found.overturned.astype("i1"))
+        peak = scale * record.peak_acceleration
+        dataset["peak_acceleration"] = variable("scale", peak, "m s-2", "peak acceleration of the scaled record")
+        return encoding.netcdf_response(dataset, "scales", "Response of a block over the scale of a record", url)
     thresholds = (block_thresholds if one.is_block else thresholds_of)(one, high, stop)
     changes = [ScaleThreshold(**one) for one in changes_of(thresholds, record)]
     columns |= {"record": _description(record), "thresholds": changes}
@@ -223,6 +226,8 @@ def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFl
 
 
 def _pulse(params: m.RecordPulseParams, record: Record, url: str, stop: StopFlag) -> m.RecordPulseResponse:
+    from rocking.suites.pulse_fit import fit_pulse, summary_of  # noqa: PLC0415  (scipy.optimize: half a second)
+
     fit = fit_pulse(record, blocks=as_block(params.rocking_body), stop=stop)
     every = max(1, math.ceil(record.samples / params.samples))
     time = record.times[::every]
@@ -236,11 +241,11 @@ def _pulse(params: m.RecordPulseParams, record: Record, url: str, stop: StopFlag
         query=params,
         url=url,
         record=_description(record),
-        pulse=m.FittedPulse(**fitted_summary(fit)),
+        pulse=m.FittedPulse(**summary_of(fit)),
         time=time.tolist(),
         **{name: (params.scale * values).tolist() for name, values in drawn.items()},
     )
 
 
 def _description(record: Record) -> m.RecordDescription:
-    return m.RecordDescription(**summary_of(record), remarks=list(record.remarks), digest=record.digest)
+    return m.RecordDescription(**record_summary(record), remarks=list(record.remarks), digest=record.digest)

@@ -106,7 +106,8 @@ def _answered(
     options |= {"pulse": name_of(pulse), "pulse_digest": digest_of(pulse), "points": batch.points}
     if form == "nc":
         attributes = {name: value for name, value in options.items() if value is not None}
-        return encoding.netcdf_response(encoding.dataset_of(batch.groups, result, attributes), "response")
+        dataset = encoding.dataset_of(batch.groups, result, attributes)
+        return encoding.netcdf_response(dataset, "response", "Response of blocks to a pulse", url)
     lists: dict[str, Any] = {name: column(slice(None)) for name, column in columns.items()}
     query = BatchQuery.model_construct(**options)
     answer = BatchResponse.model_construct(query=query, url=url, data_versions=list(result.versions), **lists)

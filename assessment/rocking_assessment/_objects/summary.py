@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rocking.extension import NUMBER, UNITS, named, plain_name
-from rocking_assessment._objects.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, digits_apart
+from rocking_assessment._objects.columns import CLAUSES, CLOSE, RESTS_AT_FULL_STRENGTH, digits_apart
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.result import Assessment
 
@@ -205,17 +205,6 @@ def counts_of(lines: Sequence[Line]) -> str:
     overturned = [line.values["share_at_full_strength"] > 0.0 for line in lines if line.overturns]
     full, below = sum(overturned), len(overturned) - sum(overturned)
     return f"overturned at full strength: {full} of {len(lines)} objects; only at a lower factor: {below}"
-
-
-def rows_in_units(found: Assessment) -> dict[str, list[Any]]:
-    """All rows and columns behind those of the table of objects, in the units that people use."""
-    rows = found.rows
-    columns = {}
-    for one in OUTPUTS:
-        unit = PEOPLE.get(one.unit, one.unit)
-        label = one.name if unit in ("", "-", "bool") else f"{one.name} [{unit}]"
-        columns[label] = [rounded(row[one.name], one.unit) for row in rows]
-    return found.with_details(columns)
 
 
 def number_header(found: Assessment) -> str:

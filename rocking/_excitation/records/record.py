@@ -269,11 +269,21 @@ class Record:
         return Record(process(self.acceleration), time_step, "m/s2", *about, vertical=vertical)
 
 
-SUMMARY = (
-    *("name", "source", "samples", "time_step", "peak_acceleration", "peak_vertical_acceleration", "peak_velocity"),
-    *("peak_displacement", "arias_intensity", "significant_duration", "mean_period", "final_velocity"),
-)
-"""Attributes of a record that the command line and the service show, in order."""
+SUMMARY = {
+    "name": "",
+    "source": "",
+    "samples": "-",
+    "time_step": "s",
+    "peak_acceleration": "m/s2",
+    "peak_vertical_acceleration": "m/s2",
+    "peak_velocity": "m/s",
+    "peak_displacement": "m",
+    "arias_intensity": "m/s",
+    "significant_duration": "s",
+    "mean_period": "s",
+    "final_velocity": "m/s",
+}
+"""Attributes of a record that the command line and the service show, in order, with their units."""
 
 
 def summary_of(record: Record) -> dict[str, Any]:
