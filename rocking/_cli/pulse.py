@@ -88,7 +88,9 @@ def response(
             return
         block = read_body(width, height, body)
         with progress("solving the body"):
-            found = block.response(motion, peak_acceleration=peak_acceleration, period=period, restitution=eta)
+            found = block.response(
+                motion, peak_acceleration=peak_acceleration, period=period, restitution=eta, error_bound=True
+            )
             values = response_values(found)
     print_response(found, values, output_format)
 

@@ -4,28 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import compress
 from os import PathLike
 from typing import Any
-
-import numpy as np
 
 from rocking._base.cells import text_of_cell
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
 from rocking._base.quantities import HEIGHT, NAME, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
 from rocking._base.quantity import Quantity
-from rocking._dimensional.block import Block
 from rocking._dimensional.body_kinds import columns_beside, described
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.response import respond, shown
+from rocking._dimensional.response import respond_each, shown
 from rocking._dimensional.rigid_body import RigidBody
 from rocking._dimensional.table_reader import Row, Schema, Table, TableLayout, open_text, read_rows, read_table_file
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.fields import OUTCOME
-from rocking._model.outcome import Outcome
+from rocking._model.block import RectangularBlock
 from rocking._numba.cancellation import StopFlag, check_stop
-from rocking._solver.bounded_response import solve_with_bound
 
 COLUMNS = (NAME, WIDTH, HEIGHT, PEAK_ACCELERATION, PERIOD, RESTITUTION)
 """Columns of a table of blocks. Those of other bodies follow; further columns are passed through."""
@@ -139,51 +133,16 @@ def _blocks(table: Table[Problem]) -> BlockTable:
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:
     """The responses as columns in SI units, degrees and groups, in the order of the rows; missing numbers are None.
 
-    `stop` cancels the work, which then raises `StoppedError`. Blocks are solved together, other bodies one by one:
-    `body` then says what each is, and what only a block has is None.
+    `stop` cancels the work, which then raises `StoppedError`. Of other bodies than blocks `body` says what each is, and
+    what only a block has is None.
     """
-    is_block = [type(problem.body) is Block and problem.is_block for problem in table.problems]
-    of_blocks = iter(_respond_blocks([*compress(table.problems, is_block)], stop))
-    rows = []
-    for problem, together in zip(table.problems, is_block, strict=True):
-        rows.append(next(of_blocks) if together else _respond_other(problem, stop))
     columns: dict[str, list[Any]] = {"name": table.names} if table.names else {}
-    if not all(is_block):
+    if not all(isinstance(problem.body, RectangularBlock) for problem in table.problems):
         columns["body"] = [problem.body.description for problem in table.problems]
-    for quantity in RESPONSES:
-        columns[quantity.label] = [row.get(quantity.label) for row in rows]
-    return columns
-
-
-def _respond_other(problem: Problem, stop: StopFlag | None) -> dict[str, Any]:
-    check_stop(stop)
-    response, body = respond(problem, stop=stop), problem.body
-    size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
-    return size | shown(response.fields, [getattr(response, quantity.name) for quantity in response.fields])
-
-
-def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> list[dict[str, Any]]:
-    """The rows of blocks."""
-    if not problems:
-        return []
-    columns: dict[str, Any] = {}
-    for name in problems[0].groups:
-        columns[name] = np.array([problem.groups[name] for problem in problems])
-    sizes = (np.array([getattr(problem.block, name) for problem in problems]) for name in ("width", "height"))
-    response = solve_with_bound(problems[0].pulse, **columns, stop=stop, body=Block(*sizes))
-    solved = {f.name: getattr(response, f.name).tolist() for f in RESPONSES if hasattr(response, f.name)}
     rows = []
-    for problem, *values in zip(problems, *solved.values(), strict=True):
-        results = dict(zip(solved, values, strict=True))
-        results[OUTCOME.name] = Outcome(results[OUTCOME.name])
-        arguments = problem.groups | {name: getattr(problem, name) for name in ("peak_acceleration", "period")}
-        in_order = []
-        for quantity in RESPONSES:
-            is_solved = quantity.name in results
-            in_order.append(
-                results[quantity.name]
-                if is_solved
-                else quantity.derive(results, arguments, problem.motion, problem.body)  # type: ignore[misc]
-            )
-        rows.append(shown(RESPONSES, in_order))
-    return rows
+    for response in respond_each(table.problems, stop):
+        check_stop(stop)
+        body = response.body
+        size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
+        rows.append(size | shown(response.fields, [getattr(response, one.name) for one in response.fields]))
+    return columns | {one.label: [row.get(one.label) for row in rows] for one in RESPONSES}

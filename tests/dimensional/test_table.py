@@ -106,7 +106,7 @@ def test_values_for_all_rows_stand_for_columns_that_the_table_lacks(tmp_path):
     table = read_blocks(path, "sine", peak_acceleration=4.0, period=0.5)
     momentum = rocking.Block(0.2, 0.8).momentum_restitution
     assert [problem.groups["restitution"] for problem in table.problems] == [0.9, momentum]
-    assert {(problem.peak_acceleration, problem.period) for problem in table.problems} == {(4.0, 0.5)}
+    assert {(float(problem.peak_acceleration), float(problem.period)) for problem in table.problems} == {(4.0, 0.5)}
 
 
 def test_a_sheet_is_read_as_its_text_is(tmp_path):

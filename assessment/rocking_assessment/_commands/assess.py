@@ -13,9 +13,6 @@ import typer
 
 from rocking.extension import (
     LAYOUT,
-    PERIOD,
-    PGA,
-    PGV,
     Acceleration,
     BaselineOrder,
     FileFormat,
@@ -131,12 +128,17 @@ def assess(
     ] = None,
     pga: Annotated[
         str | None,
-        typer.Option(help=f"Of the site, from its hazard map: {PGA.sentence}", metavar="[m/s2]", rich_help_panel=SITE),
+        typer.Option(
+            help="Peak ground acceleration of the site, such as 0.3g, from its hazard map; records are scaled to it.",
+            metavar="[m/s2]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     pgv: Annotated[
         str | None,
         typer.Option(
-            help=f"From the same source; it sets the period of each pulse: {PGV.sentence}",
+            help="Peak ground velocity of the site, such as '0.3 m/s', from the same source; it sets the period of "
+            "each pulse.",
             metavar="[m/s]",
             rich_help_panel=SITE,
         ),
@@ -144,8 +146,7 @@ def assess(
     period_min: Annotated[
         str | None,
         typer.Option(
-            help=f"Where you have no PGV: shortest period of the pulses to try, such as {PERIOD.example}, with "
-            "--period-max.",
+            help="Where you have no PGV: shortest period of the pulses to try, such as 0.2s, with --period-max.",
             metavar="[s]",
             rich_help_panel=SITE,
         ),

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.extension import STANDARD_GRAVITY, BadRow, Record, __version__
+from rocking.extension import STANDARD_GRAVITY, BadRow, __version__
 from rocking_assessment._objects.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
 from rocking_assessment._objects.columns import CLAUSES, VERDICTS
 from rocking_assessment._objects.motions import envelope_of, frictions_of
@@ -155,7 +155,7 @@ def _blocks(found: Assessment, chosen: Sequence[Line], detailed: bool) -> list[d
         names = "name", "ground", "period", "factor", "rotation", "friction", "exceeded_at"
         motions = [
             dict(zip(names, (motion.name, motion.ground, motion.period, *values), strict=True))
-            | {"is_record": isinstance(motion.motion, Record)}
+            | {"is_record": motion.motion.is_scanned}
             for motion, *values in zip(
                 *(found.site.motions, found.factors[row].tolist(), found.rotations[row].tolist()),
                 *(needed[k].tolist(), exceeded[k].tolist()),

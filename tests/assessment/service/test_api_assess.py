@@ -2,6 +2,7 @@
 
 import csv
 import io
+from typing import get_args
 
 import numpy as np
 import rocking_assessment
@@ -34,7 +35,14 @@ def test_rows_are_those_of_a_direct_call(client):
         assert answer["rows"] == expected.rows
         assert answer["motions"] == ["sine", "ricker"]
         assert answer["bad_rows"] == []
-    assert list(AssessedRow.model_fields) == [one.name for one in OUTPUTS]
+
+
+def test_a_row_has_the_declared_columns():
+    assert list(AssessedRow.model_fields) == [column.name for column in OUTPUTS]
+    kinds = {"": str, "bool": bool}
+    for column in OUTPUTS:
+        annotation = AssessedRow.model_fields[column.name].annotation
+        assert kinds.get(column.unit, float) in (annotation, *get_args(annotation)), column.name
 
 
 def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
