@@ -60,7 +60,7 @@ def identify(
     )
     from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
-    with reported_errors({"time": "FILE", "rotation": "FILE"}), progress("fitting the trace"):
+    with reported_errors():
         times, rotations = read_rotations(
             TextFile(Path(file).name, read_bytes(file, "path")),
             MAX_SAMPLES,
@@ -73,6 +73,7 @@ def identify(
             delimiter=delimiter,
             decimal=decimal,
         )
+    with reported_errors({"time": "FILE", "rotation": "FILE"}), progress("fitting the trace"):
         fit = identify_free_rocking(times, rotations, edges=edges, confidence=confidence)
     names = ["edge", *(name + end for name in IDENTIFIED for end in ("", "_lower", "_upper"))]
     others = ["noise", "offset", "drift", "drift_lower", "drift_upper"]
