@@ -8,9 +8,9 @@ from rocking_api.models import quantity as q
 from rocking_api.models.answer import BY_SOLVER, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
 from rocking_api.models.fields import OTHER_EDGES, OfBlock, OfEdges, UnderPulse, of
-from rocking_api.models.params import Params
 from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import PointResponse
+from rocking_api.models.table import TableParams
 
 MAX_BLOCKS = 10_000  # most blocks of a body [-]: each is an object, unlike the points of /v1/response
 
@@ -25,7 +25,7 @@ class BlockParams(BodyParams):
     absolute_tolerance: q.AbsoluteTolerance = 1e-4
 
 
-class BlocksParams(Params):
+class BlocksParams(TableParams):
     """Values that many blocks of a body share."""
 
     pulse: q.PulseName | None = q.said("required beside CSV; JSON holds it", None, examples=["sine"])
@@ -81,11 +81,8 @@ class BlocksResponse(InUnits[BlocksQuery]):
     slenderness: list[float | None] = of("slenderness", missing=OTHER_EDGES)
     frequency_ratio: list[float | None] = of("frequency_ratio", missing=OTHER_EDGES)
     restitution: list[float | None] = of("restitution", missing=OTHER_EDGES)
-    columns: dict[str, str] = q.said("meaning of the columns of the table that were read, by header", {})
-    skipped: list[str] = q.said(
-        "columns of the table that were not read, such as a thickness: nothing depends on them", []
-    )
-    totals: list[str] = q.said("rows of totals of the table, which are no blocks, with their first cells", [])
+    columns: dict[str, str] = q.said("canonical header of each column of the table that was read, by header", {})
+    skipped: list[str] = q.said("columns of the table that were not read: nothing depends on them", [])
     source: str = BY_SOLVER
 
 

@@ -10,7 +10,7 @@ from urllib.parse import urlencode
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, TableFileError
 from rocking._base.quantities import GROUPS
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import BodyResponse as SolvedBody
@@ -27,6 +27,7 @@ from rocking_api.models.params import ResponseParams
 from rocking_api.models.pulses import digest_of, name_of
 from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, WithUnit, served
 from rocking_api.models.responses import PointResponse, point_response
+from rocking_api.models.table import table_refusal
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"])
@@ -74,7 +75,8 @@ async def post_blocks(
     """JSON, or CSV with units in its header; the response has the same format, or that of `format`.
 
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
-    optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`.
+    optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`;
+    `columns` states other headers.
     """
     given = body_form(request, ("json", "csv"))
     shared = stated(body, params)
@@ -84,7 +86,7 @@ async def post_blocks(
         columns: dict[str, Any] = {**respond_table(table, stop)}
         if (shared.format or given) == "csv":
             return csv_response(columns, "blocks")
-        columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
+        columns |= {name: getattr(table.read, name) for name in ("columns", "skipped")}
         query = m.BlocksQuery.model_construct(  # the name of samples is no name of a pulse
             pulse=name_of(shared.pulse),
             restitution=shared.restitution,
@@ -103,7 +105,11 @@ def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams | m.BlockRows,
         raise InvalidArgumentError("pulse", None, "required in the query beside CSV, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
-        table = read_table(text, params.pulse, params.restitution, most=m.MAX_BLOCKS, stop=stop, limited=served)
+        options: dict[str, Any] = {"most": m.MAX_BLOCKS, "stop": stop, "limited": served, "layout": params.layout}
+        try:
+            table = read_table(text, params.pulse, params.restitution, **options)
+        except TableFileError as error:
+            raise table_refusal(error) from None
         table.check()
     else:
         if len(body.blocks) > m.MAX_BLOCKS:

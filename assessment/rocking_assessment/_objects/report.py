@@ -23,7 +23,6 @@ from rocking_assessment._objects.summary import (
     counts_of,
     lines_of,
     names_in_short,
-    number_header,
     number_of,
     text_of,
     warnings_of,
@@ -74,7 +73,6 @@ def report_html(
     chosen = [
         one for line in concerned for one in (lines_of(found, directions=True, only=line) if detailed else [line])
     ]
-    number = number_header(found)
     numbers: dict[int, int] = {}  # of an object in the part on objects, by its first row
     for line in chosen:
         numbers.setdefault(line.rows[0], len(numbers) + 1)
@@ -87,7 +85,6 @@ def report_html(
         counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
         full_strength=counts_of(lines),
         worst=_worst(lines),
-        number=number,
         blocks=_blocks(found, chosen, detailed),
         all_concerned=sum(one.concerns for one in lines),
         detailed=detailed,
