@@ -51,20 +51,8 @@ class Quantity:
         Value where none is stated; None: it is needed, or the meaning says what applies.
     example : str
         As people write it, with its unit.
-    aliases : str
-        Other names in headers of tables, in small letters without accents, the best ones first, with commas between.
-    stands_for : tuple of str
-        Quantities of which this one is the first that the table has no column for: a length beside a width is a depth.
-    times : float
-        What a cell is multiplied by to have the quantity that it stands for, 2 of a half size.
-    absent_beside : tuple of str
-        Quantities beside which 0 says that this one does not apply.
     words : tuple of str
         Texts that are values.
-    joined : bool
-        Whether the texts of several columns are joined; otherwise the column with the best name counts.
-    assumed : str
-        Unit of cells where none is stated; "": they are refused.
     """
 
     name: str
@@ -77,13 +65,7 @@ class Quantity:
     closed: str = "neither"
     default: Any = None
     example: str = ""
-    aliases: str = ""
-    stands_for: tuple[str, ...] = ()
-    times: float = 1.0
-    absent_beside: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
-    joined: bool = False
-    assumed: str = ""
 
     def convert(self, value: Values) -> NDArray[np.float64]:
         """The value in the SI unit as a float64 array, shape kept; checked as `rocking._base.errors` says."""
@@ -175,11 +157,6 @@ class Quantity:
     def option(self) -> str:
         """The name of the option of the command line."""
         return "--" + self.name.replace("_", "-")
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """What headers of tables may call it, the best names first."""
-        return (self.name.replace("_", " "), *filter(None, self.aliases.split(", ")))
 
     def restricted(self, lower: float, upper: float) -> Quantity:
         """The same on a smaller range, closed at its finite ends; `ValueError` if that is no part of its own."""

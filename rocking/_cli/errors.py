@@ -24,14 +24,22 @@ def reported_errors(options: Mapping[str, str] | None = None, source: str = "") 
     """
     from rocking._base.errors import InvalidArgumentError, RecordFileError
 
+    names = {"order": "--baseline-order", "path": "FILE", "file": "FILE", "format": "--file-format"}
+    names |= dict(options or {})
+
+    def spell(argument: str, value: Any) -> str:
+        option = names.get(argument, "--" + argument.replace("_", "-"))
+        if value is None or value is True:
+            return option
+        return f"{option} {'...' if value is ... else shlex.quote(str(value))}"
+
     try:
         yield
     except RecordFileError as error:
-        message, code = f"Invalid value for FILE: {error.message(_as_option, '', ' ')}", 2
+        message, code = f"Invalid value for FILE: {error.message(spell, '', ' ')}", 2
     except InvalidArgumentError as error:
         name = error.parameter.split("[")[0].split(",")[0]
-        names = {"order": "--baseline-order", "path": "FILE", "file": "FILE", "format": "--file-format"}
-        hint = source or (names | dict(options or {})).get(name, "--" + name.replace("_", "-"))
+        hint = source or names.get(name, "--" + name.replace("_", "-"))
         text = str(error).replace("`", "") if source else _texts(error)
         message, code = f"Invalid value for {hint}: {text}", 2
     except ImportError as error:
@@ -67,11 +75,3 @@ def _text(error: InvalidArgumentError) -> str:
         text = f"{error.value!r}: {error.reason}"
     row = error.parameter.partition(",")[2].strip()
     return f"{row}: {text}" if row else text
-
-
-def _as_option(name: str, value: Any) -> str:
-    """An argument of `read_record` as an option."""
-    option = "--" + {"format": "file-format"}.get(name, name).replace("_", "-")
-    if value is None or value is True:
-        return option
-    return f"{option} {'...' if value is ... else shlex.quote(str(value))}"

@@ -12,6 +12,7 @@ from rocking._dimensional.body_kinds import BODIES, signatures
 BODY = "Body"
 MOTION = "Motion"
 LAYOUT = "Layout of files of columns"
+TABLE = "Layout of a table"
 
 
 def _pulse_names(incomplete: str) -> list[str]:
@@ -165,6 +166,43 @@ Decimal = Annotated[str, typer.Option(help="Decimal sign, a dot or a comma.", me
 
 Wrapped = Annotated[
     bool, typer.Option("--wrapped", help="All values are one series, row by row.", rich_help_panel=LAYOUT)
+]
+
+# Layout of tables: arguments of `TableLayout` of the same names
+
+TableColumns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--columns",
+        help='Header of a column: "Breite (cm)=width [cm]", "Alter=unused"; may be repeated.',
+        metavar="[HEADER=NAME]",
+        rich_help_panel=TABLE,
+    ),
+]
+
+TableDecimal = Annotated[
+    str,
+    typer.Option("--decimal", help="Decimal sign of the table, . or a comma.", metavar="[SIGN]", rich_help_panel=TABLE),
+]
+
+TableDelimiter = Annotated[
+    str | None,
+    typer.Option(
+        "--delimiter",
+        help="Sign between the cells of the table: comma, semicolon, tab.",
+        metavar="[NAME]",
+        rich_help_panel=TABLE,
+    ),
+]
+
+TableSkip = Annotated[
+    int,
+    typer.Option("--skip", help="Lines above the header of the table.", metavar="[NUMBER]", rich_help_panel=TABLE),
+]
+
+Sheet = Annotated[
+    str | None,
+    typer.Option(help="Sheet of a workbook, where several hold cells.", metavar="[NAME]", rich_help_panel=TABLE),
 ]
 
 # Suites of records

@@ -112,7 +112,7 @@ def print_dataset(data: xr.Dataset, dimension: str, output_format: str) -> None:
 
 def response_values(response: BodyResponse) -> dict[str, Any]:
     """Values of the response of one body by name: its declared fields, and the thresholds."""
-    body = {} if response.problem.is_block else {"body": response.body.description}
+    body = {} if response.body.moves_as_block else {"body": response.body.description}
     if "pulse" in response.motion:
         strength = {"peak_acceleration": response.peak_acceleration, "period": response.period}
     else:

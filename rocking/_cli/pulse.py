@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -21,6 +20,11 @@ from rocking._cli.parameters import (
     PeriodMin,
     Pulse,
     Restitution,
+    Sheet,
+    TableColumns,
+    TableDecimal,
+    TableDelimiter,
+    TableSkip,
     Width,
 )
 
@@ -45,6 +49,14 @@ def response(
     restitution: Restitution = "momentum",
     peak_acceleration: PeakAcceleration = None,
     period: Period = None,
+    columns: TableColumns = None,
+    decimal: TableDecimal = ".",
+    delimiter: TableDelimiter = None,
+    skip: TableSkip = 0,
+    sheet: Sheet = None,
+    allow_unusual: Annotated[
+        bool, typer.Option("--allow-unusual", help="Read bodies of a table below 1 cm or above 50 m.")
+    ] = False,
     output_format: OutputFormat = "table",
 ) -> None:
     """Outcome and peak rotation of one body or of the bodies of a table under a pulse.
@@ -56,6 +68,7 @@ def response(
     from rocking._cli.arguments import read_body, read_pulse
     from rocking._cli.printing import print_response, progress, response_values
     from rocking._dimensional.table import read_blocks
+    from rocking._dimensional.table_reader import TableLayout, stated_columns
 
     with reported_errors({"blocks": "FILE"}):
         motion, eta = read_pulse(pulse), RESTITUTION.read(restitution)
@@ -66,11 +79,21 @@ def response(
                 strength["peak_acceleration"] = PEAK_ACCELERATION.number(peak_acceleration)
             if period is not None:
                 strength["period"] = PERIOD.number(period)
-            _print_responses(file, read_blocks(file, motion, eta, **strength), output_format)
+            layout = TableLayout(
+                columns=stated_columns(columns or []),
+                decimal=decimal,
+                delimiter=delimiter,
+                skip=skip,
+                sheet=sheet,
+                allow_unusual=allow_unusual,
+            )
+            _print_responses(file, read_blocks(file, motion, eta, **strength, layout=layout), output_format)
             return
         block = read_body(width, height, body)
         with progress("solving the body"):
-            solved = block.response(motion, peak_acceleration=peak_acceleration, period=period, restitution=eta)
+            solved = block.response(
+                motion, peak_acceleration=peak_acceleration, period=period, restitution=eta, error_bound=True
+            )
             values = response_values(solved)
     print_response(solved, values, output_format)
 
@@ -91,9 +114,11 @@ def _print_responses(file: str, table: BlockTable, output_format: str) -> None:
     read = table.read
     units = {field.label: unit_label(field.label_unit) for field in FIELDS}
     if output_format == "json":
-        print_json({**responses, "table": read.cells, "bad_rows": [asdict(row) for row in read.bad_rows]})
+        bad_rows = [{"row": bad.row, "reasons": bad.reasons, "cells": bad.cells} for bad in read.bad_rows]
+        print_json({**responses, "table": read.cells, "bad_rows": bad_rows})
     elif output_format == "csv":
-        results = {name: values for name, values in responses.items() if name not in read.columns.values()}
+        given = {header.partition(" [")[0] for header in read.columns.values()}
+        results = {name: values for name, values in responses.items() if name not in given}
         headers = {f"{name} [{units[name]}]" if units.get(name) else name for name in results}
         cells = {f"{label} (given)" if label in headers else label: values for label, values in read.cells.items()}
         print_columns(cells | results, "csv", units)

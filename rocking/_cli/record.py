@@ -162,7 +162,9 @@ def record(
         direction: dict[str, float] = {}
         with progress("solving the body under the record"):
             if second is None:
-                solved = rigid_body.response(motion, scale=scale, restitution=eta, thresholds=thresholds)
+                solved = rigid_body.response(
+                    motion, scale=scale, restitution=eta, error_bound=True, thresholds=thresholds
+                )
             else:
                 if Path(second).is_file():
                     other = read_record(second, acceleration=acceleration, **layout)
@@ -203,13 +205,13 @@ def _worst_direction(
 
     checked_pair(pair)
     motions = [motion for _, motion in rotated(*pair)]
-    if not body.is_block:
+    if not body.moves_as_block:
         motions += [motion.mirrored() for motion in motions]  # in the opposite directions
     directions = [
         Direction(
             180.0 * k / PAIR_ANGLES,
             motion,
-            body.response(motion, scale=scale, restitution=restitution, thresholds=thresholds),
+            body.response(motion, scale=scale, restitution=restitution, error_bound=True, thresholds=thresholds),
         )
         for k, motion in enumerate(motions)
     ]

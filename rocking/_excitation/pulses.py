@@ -18,17 +18,25 @@ from typing import Annotated
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.quantity import Kind, Quantity, split_kind
 from rocking._base.units import Scalar
+from rocking._excitation.motion import AbstractMotion
+from rocking._excitation.records.record import Record
 from rocking._excitation.shapes import AbstractPulse
 from rocking._excitation.sinusoids import SinusoidalPulse
 from rocking._excitation.smooth import SmoothPulse
 from rocking._excitation.wavelets import WaveletPulse
 
+GroundMotion = AbstractPulse | Record
+Motion = str | GroundMotion  # the name of a pulse, or a motion
+
 __all__ = [
     "PULSE_NAMES",
     "AbstractPulse",
+    "GroundMotion",
+    "Motion",
     "SinusoidalPulse",
     "SmoothPulse",
     "WaveletPulse",
+    "as_motion",
     "as_pulse",
     "pulse",
     "pulse_names",
@@ -190,6 +198,11 @@ def pulse_names() -> tuple[str, ...]:
 def pulse_number(name: str) -> int:
     """Number of a pulse in data files: its place in `PULSE_NAMES`, which never changes, or -1 for a registered one."""
     return PULSE_NAMES.index(name) if name in PULSE_NAMES else -1
+
+
+def as_motion(motion: Motion) -> GroundMotion:
+    """The motion itself, or the pulse of that name; anything else is refused."""
+    return motion if isinstance(motion, AbstractMotion) else pulse(motion)
 
 
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:

@@ -15,6 +15,7 @@ DESCRIPTION = create_app(Settings()).openapi()
 ROUTES = sorted(path for path, methods in DESCRIPTION["paths"].items() if "get" in methods)
 REFUSALS = {404, 413, 422, 504}
 ODD = ["", "nan", "-inf", "1e999", "0", "-0.0", "9" * 400, "1 m", "null", "[]", "\0", "\ud7ff", "é" * 300]
+NAMED = {"points", "name"}  # of limits and of paths
 NAMES = ["spectra/sine/eta-0.85", "overturning/sine/eta-0.85", "demonstration", "sine", "../..", ".zmetadata"]
 
 
@@ -51,7 +52,9 @@ def requests(path):
 
 @pytest.mark.parametrize("path", ROUTES)
 def test_random_parameters_are_answered_or_refused(limited, path):
-    in_path = {one["name"] for one in DESCRIPTION["paths"][path]["get"].get("parameters", []) if one["in"] == "path"}
+    described = DESCRIPTION["paths"][path]["get"].get("parameters", [])
+    parameters = {one["name"] for one in described}
+    in_path = {one["name"] for one in described if one["in"] == "path"}
 
     @settings(max_examples=number(20, 300))
     @given(requests(path))
@@ -64,6 +67,8 @@ def test_random_parameters_are_answered_or_refused(limited, path):
             problem = json.loads(response.content)
             assert problem["status"] == response.status_code
             assert problem["detail"]
+            named = [one["name"] for one in problem.get("errors", ())] or [problem.get("parameter", "name")]
+            assert {name.partition("[")[0] for name in named} <= {*values, *parameters, *NAMED}, problem
 
     ask()
     assert health_of(limited)["status"] == "ok"

@@ -79,7 +79,7 @@ def test_history_in_three_formats(triangle):
     options = ["history", "--pulse", triangle, *WHOLE[2:], "--samples=20", "--duration=900 ms", "--contact"]
     expected = BLOCK.history(TRIANGLE, peak_acceleration=4.0, period=0.5, samples=20, duration=0.9, contact=True)
     result = json.loads(run(*options, "--format=json"))
-    for name in ("time", "rotation", "top_displacement", "normal_reaction", "impact_time"):
+    for name in ("time", "rotation", "displacement", "normal_reaction", "impact_time"):
         assert result[name] == expected[name].values.tolist()
     assert (result["lifts_off"], result["outcome"]) == (0, expected.attrs["outcome"])
     rows = read_csv(run(*options, "--format=csv"))
@@ -133,7 +133,7 @@ def test_table_of_blocks(tmp_path):
     assert [row["name"] for row in rows] == ["statue", "cabinet"]
     assert list(rows[0].values())[:5] == ["statue", "40", "1.6", "400", "500"]  # as they stand
     single = json.loads(run("response", *WHOLE, "--format=json"))
-    for name in ("peak_rotation_deg", "top_displacement", "slenderness"):
+    for name in ("peak_rotation_deg", "displacement", "slenderness"):
         assert float(rows[0][name]) == pytest.approx(single[name], rel=1e-12)
     assert (rows[1]["overturned"], rows[1]["peak_rotation_deg"], rows[1]["restitution"]) == ("true", "", "0.9")
     as_json = json.loads(run("response", "--pulse", "sine", str(path), "--format=json"))
@@ -150,11 +150,11 @@ def test_table_of_blocks(tmp_path):
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        (TABLE.replace("statue", '"statue'), "line 2: 'unexpected end of data'"),
-        (TABLE.replace("[cm]", "[kg]"), "a unit such as m, cm"),
-        (TABLE.replace("period [ms]", "colour"), "peak_acceleration, period, of at most 1000; missing: period"),
+        (TABLE.replace("statue", '"statue'), "line 2: found unexpected end of data"),
+        (TABLE.replace("[cm]", "[kg]"), "one of [m], [cm]"),
+        (TABLE.replace("period [ms]", "colour"), "expected a column period"),
         (TABLE.replace("restitution", "width [m]"), "one column width"),
-        ("", "allowed: columns width"),
+        ("", "expected a column width"),
     ],
 )
 def test_a_table_that_cannot_be_read_is_refused(table, words):
@@ -167,22 +167,22 @@ def test_a_table_that_cannot_be_read_is_refused(table, words):
 def test_rows_that_cannot_be_read_are_named_and_the_others_solved(tmp_path):
     path = tmp_path / "blocks.csv"
     path.write_text(
-        "Inventory No;Breite;HEIGHT (m);PGA [g];Period;Material;outcome\n"
+        "name;Breite;HEIGHT (m);Peak Acceleration [g];Period;Material;outcome\n"
         'A 1;20 cm;0,8;0,4;500 ms;"clay; ""red""";?\nA 2;big;0,8;0,4;500 ms;oak;\nA 3;20 cm;0,9;;500 ms;oak;\n'
     )
-    command = ["response", "--pulse", "sine", str(path)]
+    command = ["response", "--pulse", "sine", str(path), "--columns", "Breite=width", "--decimal", ","]
     printed = CliRunner().invoke(app, [*command, "--format=csv"])
     assert printed.exit_code == 2
-    said = [line.split(": `")[0].removeprefix(f"{path}, ") for line in printed.stderr.splitlines()]
+    said = [line.partition(": ")[0].removeprefix(f"{path}, ") for line in printed.stderr.splitlines()]
     assert said == ["row 3, width", "row 4, peak_acceleration"]
-    assert "'big' is not allowed; allowed: a number, with its unit" in printed.stderr
+    assert "'big'; allowed: one number" in printed.stderr
     (row,) = csv.DictReader(io.StringIO(printed.stdout))
     assert list(row.values())[:7] == ["A 1", "20 cm", "0,8", "0,4", "500 ms", 'clay; "red"', "?"]
     found = rocking.Block(0.2, 0.8).response("sine", peak_acceleration="0.4 g", period=0.5)
     assert (row["outcome (given)"], row["outcome"]) == ("?", found.outcome.name)
     assert float(row["uplift_acceleration [m/s2]"]) == pytest.approx(found.uplift_acceleration, rel=1e-12)
     table = CliRunner().invoke(app, command).stdout
-    assert table.splitlines()[1].split()[:5] == ["A", "1", "-", "-", "yes"]
+    assert table.splitlines()[1].split()[:7] == ["A", "1", "-", "-", "-", "-", "yes"]
     answer = json.loads(CliRunner().invoke(app, [*command, "--format=json"]).stdout)
     assert answer["table"]["Material"] == ['clay; "red"']
     assert [bad["row"] for bad in answer["bad_rows"]] == [3, 4]
@@ -193,7 +193,7 @@ def test_options_stand_for_what_a_table_lacks():
     options = ["response", "--pulse", "sine", "--peak-acceleration", "400 gal", "--period", "0.5s", "-"]
     printed = CliRunner().invoke(app, [*options, "--format=json"], input=table)
     single = json.loads(run("response", *WHOLE, "--format=json"))
-    assert json.loads(printed.stdout)["top_displacement"] == [pytest.approx(single["top_displacement"], rel=1e-12)]
+    assert json.loads(printed.stdout)["displacement"] == [pytest.approx(single["displacement"], rel=1e-12)]
     assert "peak_acceleration" in CliRunner().invoke(app, [*options[:3], "-"], input=table).stderr
 
 
@@ -268,7 +268,7 @@ def test_a_pulse_from_a_file(triangle, tmp_path):
     path.write_text("width [m],height [m],peak_acceleration [g],period [s]\n0.4,1.6,0.4,0.5\n")
     (row,) = read_csv(run("response", "--pulse", triangle, str(path), "--format=csv"))
     block = BLOCK.response(TRIANGLE, peak_acceleration="0.4 g", period=0.5)
-    assert float(row["top_displacement"]) == block.displacement
+    assert float(row["displacement"]) == block.displacement
     path.write_text("0,0\n1,one\n")
     damaged = refused("response", "--pulse", str(path), *WHOLE[2:])
     assert "--pulse" in damaged

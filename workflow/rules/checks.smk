@@ -2,7 +2,7 @@
 # report has a line for each test, without times.
 TESTED = (
     "env ROCKING_RESULTS=results PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 ROCKING_DATA_SETS='{params.data_sets}' "
-    "python -m pytest -q -rA -p no:cacheprovider {params.tests} >{log} && "
+    "python -m pytest -q -rA -p no:cacheprovider --pyargs {params.tests} >{log} && "
     "sed -n 's/^PASSED .*::/passed /p' {log} | cat - {params.reports} | sort >{output}"
 )
 
@@ -24,7 +24,7 @@ rule check_data_sets:
         mem_mb=memory(1200),
     params:
         code=product_code("checks/test_data_sets.py"),
-        tests=os.path.relpath(PROJECT / "workflow/checks/test_data_sets.py"),
+        tests="workflow.checks.test_data_sets",
         data_sets=lambda wildcards, input: " ".join(input),
         reports="",
     message:
@@ -46,7 +46,7 @@ rule check_results:
         "../envs/rocking.yaml"
     params:
         code=product_code("checks/test_products.py"),
-        tests=os.path.relpath(PROJECT / "workflow/checks/test_products.py"),
+        tests="workflow.checks.test_products",
         data_sets="",
         reports=lambda wildcards, input: input.reports,
     shell:

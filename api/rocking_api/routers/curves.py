@@ -104,7 +104,7 @@ def json_of(answer: BaseModel) -> Response:
     return Response(answer.model_dump_json(), media_type="application/json")
 
 
-SERIES = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "top_displacement")
+SERIES = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "displacement")
 """Variables of motions that are sent where they are known."""
 
 

@@ -41,10 +41,10 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     try:
         if params.restitution > MAX_INLINE_RESTITUTION:
             raise UnreadError
-        found = evaluate(service.cubes, params, points, may_read=False)
+        found, versions = evaluate(service.cubes, params, points, may_read=False)
     except UnreadError:
-        found = await service.cheap.run(lambda stop: evaluate(service.cubes, params, points, stop))
-    return point_response(params, *found, url)
+        found, versions = await service.cheap.run(lambda stop: evaluate(service.cubes, params, points, stop))
+    return point_response(params, found, bool(found.from_cube), versions, url)
 
 
 _GROUPS_CSV = "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"

@@ -12,13 +12,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from rocking.extension import (
+    LAYOUT,
     Acceleration,
     BaselineOrder,
-    Decimal,
-    Delimiter,
     FileFormat,
     OutputFormat,
-    Skip,
+    Sheet,
+    TableColumns,
+    TableDecimal,
+    TableDelimiter,
+    TableSkip,
     Time,
     TimeStep,
     TimeUnit,
@@ -45,6 +48,15 @@ ARGUMENTS = {
 }
 """The option or file of each argument that an error names; other arguments are options of the same name."""
 
+RECORD_ARGUMENTS = {
+    "unit": "--unit",
+    "path": "FILE",
+    "skip": "--record-skip",
+    "delimiter": "--record-delimiter",
+    "decimal": "--record-decimal",
+}
+"""Those of the files of records."""
+
 OBJECTS = "Objects"
 SITE = "Site"
 METHOD = "Method"
@@ -61,11 +73,16 @@ def assess(
             metavar="OBJECTS",
         ),
     ] = None,
-    columns: Annotated[
-        list[str] | None,
+    columns: TableColumns = None,
+    decimal: TableDecimal = ".",
+    delimiter: TableDelimiter = None,
+    skip: TableSkip = 0,
+    sheet: Sheet = None,
+    template: Annotated[
+        str | None,
         typer.Option(
-            help='Meaning of a column: "Length (cm)=depth", "Age=unused"; may be repeated.',
-            metavar="[HEADER=NAME]",
+            help="CSV or XLSX file to write: a table to fill in; nothing is assessed.",
+            metavar="[FILE]",
             rich_help_panel=OBJECTS,
         ),
     ] = None,
@@ -217,16 +234,23 @@ def assess(
     time_step: TimeStep = None,
     time_unit: TimeUnit = None,
     unit: Unit = None,
-    skip: Skip = 0,
-    delimiter: Delimiter = None,
-    decimal: Decimal = ".",
+    record_skip: Annotated[
+        int, typer.Option(help="As --skip, of files of records.", metavar="[NUMBER]", rich_help_panel=LAYOUT)
+    ] = 0,
+    record_delimiter: Annotated[
+        str | None,
+        typer.Option(help="As --delimiter, of files of records.", metavar="[NAME]", rich_help_panel=LAYOUT),
+    ] = None,
+    record_decimal: Annotated[
+        str, typer.Option(help="As --decimal, of files of records.", metavar="[SIGN]", rich_help_panel=LAYOUT)
+    ] = ".",
     wrapped: Wrapped = False,
     allow_unusual: Annotated[
         bool,
         typer.Option(
             "--allow-unusual",
-            help="Accept what usually is a wrong unit: a mesh below 1 cm or above 50 m; a record with a PGA above 5 g, "
-            "a PGV above 10 m/s, a step above 0.1 s.",
+            help="Accept what usually is a wrong unit: an object below 1 cm or above 50 m; a record with a PGA above "
+            "5 g, a PGV above 10 m/s, a step above 0.1 s.",
         ),
     ] = False,
     sensitivity: Annotated[
@@ -308,6 +332,7 @@ def assess(
         printable,
         progress,
         split_pulses,
+        stated_columns,
         write_output,
     )
     from rocking_assessment._hazard.curve_files import read_hazard
@@ -315,9 +340,13 @@ def assess(
     from rocking_assessment._objects.objects import Object
     from rocking_assessment._objects.report import Project, report_html
     from rocking_assessment._objects.site import Site
-    from rocking_assessment._objects.tables import ObjectTable, read_objects
+    from rocking_assessment._objects.tables import ObjectTable, read_objects, write_template
 
     with reported_errors(ARGUMENTS):
+        if template is not None:
+            with output_errors("template", template):
+                write_template(template)
+            return
         if report is not None and Path(report).suffix.lower() not in (".html", ".htm"):
             raise InvalidArgumentError(
                 "report", report, "a name that ends in .html or .htm; a browser prints it as PDF"
@@ -336,13 +365,13 @@ def assess(
         "time_step": time_step,
         "time_unit": time_unit,
         "unit": unit,
-        "skip": skip,
-        "delimiter": delimiter,
-        "decimal": decimal,
+        "skip": record_skip,
+        "delimiter": record_delimiter,
+        "decimal": record_decimal,
         "wrapped": wrapped,
         "allow_unusual": allow_unusual,
     }
-    with reported_errors({**ARGUMENTS, "unit": "--unit", "path": "FILE"}):
+    with reported_errors({**ARGUMENTS, **RECORD_ARGUMENTS}):
         records = _read_records(record or [], pair or [], vertical or [], baseline_order, layout)
     with reported_errors(ARGUMENTS):
         ground = Site(
@@ -357,7 +386,17 @@ def assess(
             plain_numbers("floor_damping", floor_damping),
             plain_numbers("floor_participation", floor_participation),
         )
-        table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_meanings(columns or []))
+        table = ObjectTable()
+        if objects is not None:
+            table = read_objects(
+                objects,
+                columns=stated_columns(columns or []),
+                decimal=decimal,
+                delimiter=delimiter,
+                skip=skip,
+                sheet=sheet,
+                allow_unusual=allow_unusual,
+            )
         bad_rows = [f"{objects}, {printable(str(row))}" for row in table.bad_rows]
         meshes = [
             Object.from_mesh(
@@ -405,19 +444,6 @@ def assess(
         raise typer.Exit(2)
 
 
-def _meanings(texts: Sequence[str]) -> dict[str, str]:
-    """The names of columns of the table, by their headers."""
-    from rocking.extension import InvalidArgumentError
-
-    meanings = {}
-    for text in texts:
-        header, _, name = text.rpartition("=")
-        if not header.strip():
-            raise InvalidArgumentError("columns", text, 'a header and a name, such as "Length (cm)=depth"')
-        meanings[header.strip()] = name.strip()
-    return meanings
-
-
 def _read_records(
     paths: Sequence[str], pairs: Sequence[str], verticals: Sequence[str], order: int | None, layout: dict[str, Any]
 ) -> list[Record | tuple[Record, Record]]:
@@ -453,7 +479,7 @@ def _print(
         columns = {column.name: [row[column.name] for row in assessment.rows] for column in OUTPUTS}
         columns_read = {"details": assessment.details, "columns": table.columns, "skipped": table.skipped}
         motions = {"motions": assessment.motions, "resolution": assessment.resolution}
-        print_json({**columns, **columns_read, "totals": table.totals, **motions, "bad_rows": bad_rows})
+        print_json({**columns, **columns_read, "remarks": table.remarks, **motions, "bad_rows": bad_rows})
         return
     if output_format == "csv":
         typer.echo(assessment.to_csv(), nl=False)

@@ -44,14 +44,6 @@ STEP = 15  # between the directions around an object [degrees]
 CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]
 
 
-class RowDetails(dict[str, str]):
-    """Other texts of a row of a table, and the whole row unchanged."""
-
-    def __init__(self, others: Mapping[str, str], row: Mapping[str, str]) -> None:
-        super().__init__(others)
-        self.row = row
-
-
 @dataclass(frozen=True)
 class Object:
     """A free-standing object on a rectangular or round base. Lengths in metres, or texts such as "40 cm".
@@ -82,6 +74,8 @@ class Object:
         Texts for the report.
     details : mapping of str to str
         Other texts, such as an inventory number, by header; tables that are written repeat them.
+    cells : mapping of str to str or float
+        The unchanged row of a table, by header; empty for an object that was not read from one.
 
     Notes
     -----
@@ -103,6 +97,7 @@ class Object:
     pedestal: str = ""
     notes: str = ""
     details: Mapping[str, str] = field(default_factory=dict, hash=False)
+    cells: Mapping[str, str | float] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.width is None and self.diameter is None:
@@ -240,11 +235,6 @@ class Object:
         """
         made = body if isinstance(body, RespondingBody) else describe(body)
         return DescribedObject(name, described=made, **others)
-
-    @property
-    def cells(self) -> Mapping[str, str]:
-        """The unchanged row of its table, by header; empty for an object that was not read from a table."""
-        return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
     def depth_is_missing(self) -> bool:

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator, model_validator
 from rocking_api.models.answer import Solved
-from rocking_api.models.params import Params
 from rocking_api.models.quantity import BaselineOrder, TableFormat, between, read_as, said
+from rocking_api.models.table import TableParams
 
 from rocking.extension import (
     PERIOD,
@@ -49,7 +49,7 @@ PeriodMin: Any = read_as(_PERIOD, "shortest period of the pulses, with `period_m
 PeriodMax: Any = read_as(_PERIOD, "longest period of the pulses, with `period_min`", float | None)
 
 
-class AssessParams(Params):
+class AssessParams(TableParams):
     """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
     pga: Pga = None
@@ -225,8 +225,9 @@ class UnreadRow(BaseModel):
     """A row of the table that was not read."""
 
     row: int = said("number in the table, from 1", unit="-")
-    column: str = said("name of the column; empty: the whole row")
-    reason: str = said("what was found and what is allowed")
+    columns: list[str] = said("the quantity of each reason; row: the whole row")
+    reasons: list[str] = said("what was found and what is allowed")
+    cells: dict[str, str | float] = said("the row as it stands, by the headers of the table", {})
 
 
 class AssessResponse(Solved[AssessParams]):
@@ -239,7 +240,9 @@ class AssessResponse(Solved[AssessParams]):
         "largest relative distance between the factors tried on records, 0 without records", unit="-"
     )
     bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
-    details: dict[str, list[str]] = said("unchanged cells of the object of each row, by the headers of the table", {})
-    columns: dict[str, str] = said("meaning of the columns that were read, by header")
+    details: dict[str, list[str | float]] = said(
+        "unchanged cells of the object of each row, by the headers of the table", {}
+    )
+    columns: dict[str, str] = said("canonical header of each column that was read, by header")
     skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
-    totals: list[str] = said("rows of totals of the table, which are no objects, with their first cells")
+    remarks: list[str] = said("where `columns` states another unit than the header of the table")

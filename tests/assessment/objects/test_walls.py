@@ -90,7 +90,7 @@ def test_rows_of_tables_and_of_json() -> None:
     assert facade.body.sides == "right"
     assert float(facade.body.parameters["rebound"].item()) == 0.4
     assert [len(one.planes) for one in rest] == [2, 2]
-    assert [one.column for one in table.bad_rows] == ["depth", "sides", "rebound"]
+    assert [bad.columns for bad in table.bad_rows] == [["depth"], ["sides"], ["rebound"]]
     (read,) = objects_of_json('[{"name": "a", "width": 0.6, "height": 6.0, "sides": "right", "rebound": 0.4}]').objects
     assert read.planes == facade.planes
     with pytest.raises(InvalidArgumentError, match="against a wall"):

@@ -12,7 +12,7 @@ from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import query
 from tests.sheets import xlsx_bytes
 
-TABLE = "object;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\njug;wide;10;40\n"
+TABLE = "name;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\njug;wide;10;40\n"
 
 
 def column(page, number):
@@ -97,7 +97,7 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
 def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service):
     page = open_page("/objects")
     rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(250))
-    page.locator("#table").fill("object;width [cm];height [cm]\n" + "\n".join(rows))
+    page.locator("#table").fill("name;width [cm];height [cm]\n" + "\n".join(rows))
     service.hold()
     page.locator("#ask").click()
     expect(page.locator("#status")).to_have_text(re.compile(r"Computing … \d+ s"))

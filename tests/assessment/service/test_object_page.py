@@ -75,7 +75,7 @@ def test_a_missing_depth_is_said(client):
     asked = {"shape": "rectangle", "width": "85", "height": "170"}
     assert "Depth missing: measure the depth." in client.get("/object", params=asked | SITE).text
     assert "Depth missing" not in client.get("/object", params=asked | {"depth": "60"} | SITE).text
-    table = "object,width [m],height [m]\nshelf,0.85,1.7\n"
+    table = "name,width [m],height [m]\nshelf,0.85,1.7\n"
     text = client.post("/objects", data={"table": table, **SITE}).text
     assert re.search(r'verdict-2">depth missing<', text)
     assert ">measure the depth<" in text
@@ -96,7 +96,7 @@ def test_round_bases_and_outlines(client):
 
 
 def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
-    given = {"table": "object;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
+    given = {"table": "name;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
     text = client.post("/objects", data=given | FLOOR).text
     (address,) = (unescape(one) for one in re.findall(r'href="(/object\?[^"]*)"', text))
     fields = dict(parse_qsl(urlsplit(address).query, keep_blank_values=True))
