@@ -100,9 +100,9 @@ def print_dataset(data: xr.Dataset, dimension: str, output_format: str) -> None:
     columns = {name: _values(data[name]) for name in names if data[name].dims == (dimension,)}
     units = {name: unit_label(data[name].attrs.get("units", "")) for name in columns}
     attributes = {name: _finite(value) for name, value in data.attrs.items()}
-    others = {name: _values(data[name]) for name in names if name not in columns}
+    other_values = {name: _values(data[name]) for name in names if name not in columns}
     if output_format == "json":
-        print_json({**attributes, **others, **columns})
+        print_json({**attributes, **other_values, **columns})
     elif output_format == "csv":
         print_csv(columns, units)
     else:

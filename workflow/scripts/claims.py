@@ -25,6 +25,10 @@ from workflow.claims.claim import Claim
 from workflow.claims.table import as_html, as_markdown, read_misprints, read_statements
 from workflow.scripts.job import run
 
+PROJECT = Path(__file__).parents[2]
+STATEMENTS = PROJECT / "workflow/claims/statements.md"  # what the paper says, and what is measured
+EQUATIONS = PROJECT / "docs/equations.md"  # the misprints of the paper
+
 
 def main(
     *,
@@ -36,8 +40,6 @@ def main(
     master: Path,
     momentum: Path,
     excitations: Path,
-    statements: Path,
-    equations: Path,
     restitution: Sequence[float],
     table: Path,
     text: Path,
@@ -48,8 +50,7 @@ def main(
 
     `boundaries`, `cubes`: of the sine. Plotted data: `collapse` of figure 6, `similar_blocks` of figure 9, `histories`
     of figures 11 and 12, `master` of figure-master-spectra, `momentum` of figure-master-housner, `excitations` of
-    figure-scale-law-excitations. `statements`: page that says what is measured; `equations`: page with the misprints.
-    `restitution`: eta at which the closed forms are compared with each other.
+    figure-scale-law-excitations. `restitution`: eta at which the closed forms are compared with each other.
     """
     of_sine = [read_spectrum(path) for path in cubes]
     claims: list[Claim] = [
@@ -63,10 +64,10 @@ def main(
         *sections_5_and_6(read_dataset(similar_blocks), [read_dataset(path) for path in histories]),
         earlier_work.quick_method(earlier_work.CLOSED_FORMS, earlier_work.TRACING),
     ]
-    rows = read_statements(statements)
+    rows = read_statements(STATEMENTS)
     results = {claim.key: claim.record() for claim in claims}
     records = [rows[key] | results[key] for key in rows]
-    misprints = read_misprints(equations)
+    misprints = read_misprints(EQUATIONS)
     content = {"claims": records, "misprints": misprints, **provenance}
     markdown = as_markdown(records, misprints)
     write_output(table, json.dumps(content, indent=1) + "\n")
