@@ -14,7 +14,8 @@ from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, NO_FLIGHTS, solver_state
 from rocking._solver.records.record_response import solve_bodies, solve_bodies_under_pulse
 from rocking._solver.records.samples import motion_samples
-from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
+from rocking._solver.restrained import is_restrained, restrained_margin
+from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, restraint_level
 
 
 def solve_motion(
@@ -32,7 +33,7 @@ def solve_motion(
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, EDGE_COLUMNS))
 
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-        state = solver_state.of_steps(motion, FULL_PRECISION)
+        state = solver_state.of_steps(motion, FULL_PRECISION, restraint_level(cells[part]))
         solve_batch(cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
 
     cores = threads or AVAILABLE_CORES
@@ -46,8 +47,15 @@ def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np
     As `rocking._model.energy.outcome_margin`, for bodies with two edges: the largest of three margins, since a
     body that does not escape about its present edge can do so about the other one after an impact, and about the
     present one after two (`rocking._solver.rules.final_outcome`); against a wall all are about the present one.
-    Continuous, zero at the transition. Array (size,).
+    Of bodies with a tendon or a damper `rocking._solver.restrained.restrained_margin`. Continuous, zero at the
+    transition. Array (size,).
     """
+    restrained = is_restrained(cells)
+    if restrained.any():
+        margins = np.empty(cells.size)
+        margins[restrained] = restrained_margin(records[restrained], cells[restrained])
+        margins[~restrained] = outcome_margin_of(records[~restrained], edges[~restrained], cells[~restrained])
+        return margins
     right = edges[:, 2] >= 0.0
     ones = np.ones(cells.size)
     ratio, stiffness = np.stack([ones, cells["ratio"]]), np.stack([ones, cells["stiffness"]])
