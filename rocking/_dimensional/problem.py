@@ -219,6 +219,8 @@ class Problem(EqualByValue):
             in_range(f"slenderness of the {name} edge", np.minimum(slenderness, 1.0), q.SLENDERNESS.lower, math.inf)
             cells["slenderness"][..., side] = slenderness
             cells["eta"][..., side] = np.maximum(etas[side], 0.0)  # departs from (2.4) where that is negative
+        for name, value in body.restraint.items():
+            cells[name] = value
         return cells.ravel()
 
     @property
@@ -265,8 +267,8 @@ class Problem(EqualByValue):
     def solver(self, index: int = 0, stop: StopFlag | None = None) -> Solve:
         """One of the bodies as a `Solve`: slenderness over that of uplift, `rate` of the cell; the rest is not read."""
         cell: KernelRecord = self.cells[index]
-        uplift = cell["slenderness"] / cell["slenderness"].min()
-        vertical = cell["vertical"] * cell["slenderness"].min()  # at uplift
+        level = cell["slenderness"].min() * (1.0 + cell["prestress"])
+        uplift, vertical = cell["slenderness"] / level, cell["vertical"] * level  # at uplift
 
         def solve(slenderness: Array, omega: Array, eta: Array, _alpha: Array) -> tuple[NDArray[np.void], Array]:
             cells = np.repeat(cell, eta.size)

@@ -125,6 +125,11 @@ class AbstractBody(ABC):
         """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
         return np.asarray(self.top_height * np.sin(rotation))
 
+    @property
+    def restraint(self) -> dict[str, Array]:
+        """Groups of a tendon and a damper [-], by the names of cells of the solver; nothing unless a body says so."""
+        return {}
+
     labels: dict[str, Any] = {}  # noqa: RUF012  # not changed
     """The arguments that were given as labelled arrays (xarray), with their labels."""
 
