@@ -43,6 +43,7 @@ rule all:
     input:
         list(PRODUCTS),
         rules.manifest.output,
+        rules.ro_crate.output,
         CHECKED,
     message:
         "All products are made, and listed in the manifest"

@@ -27,7 +27,7 @@ question = {
 }
 with urlopen(f"{server}/v1/blocks/response?{urlencode(question)}") as reply:
     answer = json.load(reply)
-for name in ("meaning", "peak_rotation_deg", "top_displacement", "thresholds", "margins", "warnings"):
+for name in ("meaning", "peak_rotation_deg", "displacement", "thresholds", "margins", "warnings"):
     print(f"{name}: {answer[name]}")
 
 # %%

@@ -31,7 +31,7 @@ table = "".join(f"{x:g},{2e-3 * (0.1 / x) ** 2.5:.6g}\n" for x in np.geomspace(0
 
 # %%
 # The answer:
-rock = rocking_assessment.Object.from_mesh(files / "boulder.stl")
+rock = rocking_assessment.Object.from_mesh(files / "boulder.stl", unit="m")
 folder = Path(os.environ.get("ROCKING_MOTIONS", "workflow/motions"))
 motions = [rocking.read_record(path) for path in sorted(folder.glob("*.csv"))]
 fragility = rocking.fragility(motions, rock, intensity=np.geomspace(0.1, 3.0, 16) * 9.81)

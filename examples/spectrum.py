@@ -26,4 +26,4 @@ plt.show()
 # %%
 # The spectrum also holds the outcome and the displacement of the top.
 
-print(spectrum[["rotation", "top_displacement", "outcome"]].sel(period=0.8, method="nearest"))
+print(spectrum[["rotation", "displacement", "outcome"]].sel(period=0.8, method="nearest"))

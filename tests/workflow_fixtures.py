@@ -31,6 +31,9 @@ def snakemake(
     )
 
 
+AFTERWARDS = {"manifest", "ro_crate", "check_results", "all"}  # rules that follow whatever makes a product again
+
+
 def rules_to_run(output: str) -> set[str]:
     table = output.partition("Job stats:")[2].partition("total")[0]
     return set(re.findall(r"^(\w+) +\d+$", table, flags=re.MULTILINE))

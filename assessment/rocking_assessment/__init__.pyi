@@ -13,4 +13,5 @@ from ._objects.assess import assess as assess
 from ._objects.objects import Object as Object
 from ._objects.site import Site as Site
 from ._objects.tables import read_objects as read_objects
+from ._objects.tables import table_template as table_template
 from ._objects.uncertainty import overturning_probability as overturning_probability

@@ -11,7 +11,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from scipy.optimize import brentq
+from scipy.integrate import quad
+from scipy.optimize import brentq, minimize_scalar
 
 import rocking
 
@@ -52,6 +53,33 @@ def acceleration_of_cosine() -> float:
     alpha = math.radians(15.0)
     eta = 1.0 - 1.5 * math.sin(alpha) ** 2
     return amplitude(1, "cosine", 0.5 * math.pi, eta, alpha) * math.tan(alpha)
+
+
+def sine_over_double_impulse(height_over_width: float) -> float:
+    """The factor on the sine that is equivalent to the critical double impulse at which the sine overturns the block.
+
+    Nabeshima et al. (2016): two equal and opposite velocities of the ground, the second one at the impact, overturn the
+    block if its energy then suffices. The sine has the period of twice the interval and the same largest Fourier
+    amplitude. Angular velocities are over p.
+    """
+    alpha = math.atan(1.0 / height_over_width)
+    eta = 1.0 - 1.5 * math.sin(alpha) ** 2
+    velocity = math.sqrt(2.0 * (1.0 - math.cos(alpha))) / (1.0 + eta)  # after each impulse, theta'/p
+    peak = alpha - math.acos(math.cos(alpha) + 0.5 * velocity**2)
+
+    def time(s: float) -> float:  # of the flight up to the peak, theta = peak - s^2
+        return 2.0 * s / math.sqrt(2.0 * (math.cos(alpha - peak) - math.cos(alpha - peak + s * s)))
+
+    interval = 2.0 * quad(time, 0.0, math.sqrt(peak))[0]
+    spectrum = -minimize_scalar(lambda x: -math.sin(math.pi * x) / (1 - x * x), bounds=(0.3, 0.99)).fun
+    omega = math.pi / interval
+    equivalent = 0.5 * omega * (2.0 / spectrum) * velocity / math.sin(alpha)  # a_g/(g tan alpha)
+    return amplitude(1, "sine", omega, eta, alpha) / equivalent
+
+
+def half_sine_rule(omega: float) -> float:
+    """How far sqrt(1 + (omega/p)^2) is above the amplitude at which half a sine overturns [-]."""
+    return math.hypot(1.0, omega) / amplitude(1, "half_sine", omega, 0.9) - 1.0
 
 
 def energy_kept(alpha: float) -> float:
@@ -96,6 +124,14 @@ COMPARISONS = (
             half_sine_limit(omega), 1e-6, partial(amplitude, 1, "half_sine", omega, 0.9),
         )
         for omega in (1.0, 2.0, 3.0)
+    ),
+    *(
+        Comparison(
+            "Nabeshima et al. (2016)",
+            f"one sine over the one equivalent to the critical double impulse, H/B = {ratio:g}: overturns from",
+            1.535, 0.01, partial(sine_over_double_impulse, ratio), "1.53 to 1.54",
+        )
+        for ratio in (10.0, 5.0, 3.0)
     ),
 )  # fmt: skip
 

@@ -14,6 +14,7 @@ from rocking_api.app import create_app
 from rocking_api.settings import Settings
 from typer.cli import get_docs_for_click
 
+from rocking._base.units import UNITS
 from rocking._cli.app import app as command_line
 from rocking._datasets.cube import AXES, RESTITUTION_ERROR, VARIABLES
 
@@ -148,6 +149,15 @@ class CubeFields(Generated):
         return [*text, ""]
 
 
+class UnitNames(Generated):
+    """Names of the units of each quantity."""
+
+    def lines(self) -> list[str]:
+
+        rows = [f"| {unit} | {', '.join(f'`{name}`' for name in names)} |" for unit, names in UNITS.items()]
+        return ["| SI unit | names |", "|---|---|", *rows, ""]
+
+
 class Command(Generated):
     """Every command with its options, as `typer utils docs` writes them."""
 
@@ -165,4 +175,5 @@ def setup(app: Any) -> dict[str, bool]:
     app.add_directive("service-settings", ServiceSettings)
     app.add_directive("cube-fields", CubeFields)
     app.add_directive("command-options", Command)
+    app.add_directive("unit-names", UnitNames)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -33,6 +33,8 @@ def equal_values(one: Any, other: Any) -> bool:
         return True
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         one, other = np.asarray(one), np.asarray(other)
+        if one.dtype.names and one.dtype == other.dtype:
+            return all(equal_values(one[name], other[name]) for name in one.dtype.names)
         floats = one.dtype.kind in "fc" and other.dtype.kind in "fc"
         return np.array_equal(one, other, equal_nan=floats)
     if isinstance(one, Mapping) and isinstance(other, Mapping):

@@ -404,7 +404,11 @@ class RecordFileError(InvalidArgumentError):
         super().__init__("record", found, expected)
         self.file, self.line, self.expected, self.call = file, line, expected, call
         self.lines = tuple(text.replace("`", "'") for text in lines)
-        self.args = (self.message(_as_argument, f'read_record("{file}", ', ", ", ")"),)
+        self._set_text()
+
+    def _set_text(self) -> None:
+        """Set the message of Python, which proposes a call of the function that reads the file."""
+        self.args = (self.message(_as_argument, f'read_{self.parameter}("{self.file}", ', ", ", ")"),)
 
     def message(self, spell: Callable[[str, Any], str], before: str, between: str, after: str = "") -> str:
         """The message, with arguments as an interface spells them.
@@ -427,6 +431,19 @@ class RecordFileError(InvalidArgumentError):
 
     def __reduce__(self) -> tuple[type[RecordFileError], tuple[Any, ...]]:
         return type(self), (self.file, self.line, self.value, self.expected, self.lines, self.call)
+
+
+class TableFileError(RecordFileError):
+    """A table that is damaged, or whose layout is not stated; `argument` is "objects" or "blocks"."""
+
+    def __init__(self, argument: str, *parts: Any) -> None:
+        super().__init__(*parts)
+        self.parameter = argument
+        self._set_text()
+
+    def __reduce__(self) -> tuple[type[RecordFileError], tuple[Any, ...]]:
+        kind, parts = super().__reduce__()
+        return kind, (self.parameter, *parts)
 
 
 def _as_argument(name: str, value: Any) -> str:

@@ -1,7 +1,6 @@
 """The quantities that people state, declared once: of the groups, bodies, motions, objects and sites.
 
-Those of one kind of body or one family of pulses are in the file of that kind. Names in headers are those that people
-write in English, German, Italian, French, Spanish, Portuguese, Dutch and Greek.
+Those of one kind of body or one family of pulses are in the file of that kind.
 """
 
 from __future__ import annotations
@@ -26,9 +25,7 @@ FREQUENCY_PARAMETER = Quantity("frequency_parameter", "rad/s", "frequency parame
 """Of a block under a recorded motion, whose time is in seconds."""
 
 RESTITUTION = Quantity("restitution", "-", "coefficient of restitution", symbol="eta", lower=0.0, upper=1.0,
-    closed="both", default="momentum", words=("momentum", "kalliontzis"),
-    aliases="coefficient of restitution, restitution coefficient, eta, cor, stosszahl, restituzione, restitucion, "
-    "\u03b7")
+    closed="both", default="momentum", words=("momentum", "kalliontzis"))
 """`momentum`: from the conservation of angular momentum, (2.4) for a block, 0 where that is negative;
 `kalliontzis(k=0.8)`: the same with the impact at that share of the half base."""
 
@@ -60,11 +57,10 @@ RESTRAINTS = (STIFFNESS, PRESTRESS, DAMPING)
 # Motions
 
 PEAK_ACCELERATION = Quantity("peak_acceleration", "m/s2", "peak acceleration of the pulse", symbol="a_g", lower=0.0,
-    example="0.4g",
-    aliases="pga, a g, peak ground acceleration, acceleration, beschleunigung, accelerazione, aceleracion")
+    example="0.4g")
 
 PERIOD = Quantity("period", "s", "period of the pulse; a half sine or rectangular pulse lasts half of it",
-    symbol="T_p = 2 pi/omega_g", lower=0.0, example="0.5s", aliases="t p, tp, t, periode, periodo")
+    symbol="T_p = 2 pi/omega_g", lower=0.0, example="0.5s")
 
 HIGHEST_SCALE = 1e6  # largest factor of a record [-]
 
@@ -75,69 +71,29 @@ TIME_STEP = Quantity("time_step", "s", "time step of the samples", symbol="dt", 
 
 # Bodies
 
-NAME = Quantity("name", "", "name of the object",
-    aliases="object, object name, title, item, bezeichnung, objekt, titel, nome, oggetto, titolo, nom, objet, "
-    "designation, titre, nombre, objeto, titulo, onoma, antikeimeno, "
-    "\u03bf\u03bd\u03bf\u03bc\u03b1, \u03b1\u03bd\u03c4\u03b9\u03ba\u03b5\u03b9\u03bc\u03b5\u03bd\u03bf")
+NAME = Quantity("name", "", "name of the object")
 
-NUMBER = Quantity("number", "", "inventory number, the name of an object without another one",
-    aliases="inventory number, inventory no, inv number, inv no, inv nr, inventarnummer, inventario, object number, "
-    "object id, objectnumber, objectid, identifier, object identifier, idno, accession number, accession no, "
-    "catalogue number, catalog number, numero di inventario, "
-    "numero d inventaire, numero de inventario, id, no, nr, #", stands_for=("name",))
-"""Read where a table has no names."""
+WIDTH = Quantity("width", "m", "width of the base", symbol="2b", lower=0.0, example="0.4m")
 
-WIDTH = Quantity("width", "m", "width of the base", symbol="2b", lower=0.0, example="0.4m",
-    aliases="w, b, breadth, base width, width of base, width of the base, breite, larghezza, largeur, ancho, anchura, "
-    "largura, breedte, platos, \u03c0\u03bb\u03b1\u03c4\u03bf\u03c2, \u5e45, 2b", absent_beside=("diameter",))
+HEIGHT = Quantity("height", "m", "height of the object", symbol="2h", lower=0.0, example="160 cm")
 
-HEIGHT = Quantity("height", "m", "height of the object", symbol="2h", lower=0.0, example="160 cm",
-    aliases="h, overall height, total height, hohe, hoehe, gesamthohe, altezza, hauteur, alto, altura, hoogte, ypsos, "
-    "\u03c5\u03c8\u03bf\u03c2, \u9ad8\u3055, 2h")
+DEPTH = Quantity("depth", "m", "depth of the base", lower=0.0, example="30 cm")
 
-HALF_WIDTH = Quantity("half_width", "m", "half of the width of the base", symbol="b", times=2.0, stands_for=("width",),
-    aliases="half base, half base width, half breadth, halbe breite")
-
-HALF_HEIGHT = Quantity("half_height", "m", "half of the height", symbol="h", times=2.0, stands_for=("height",),
-    aliases="halbe hohe, halbe hoehe")
-
-DEPTH = Quantity("depth", "m", "depth of the base", lower=0.0, example="30 cm",
-    aliases="d, base depth, depth of base, depth of the base, tiefe, profondita, profondeur, p, profundidad, "
-    "profundidade, diepte, vathos, \u03b2\u03b1\u03b8\u03bf\u03c2, \u5965\u884c, \u5965\u884c\u304d",
-    absent_beside=("diameter",))
-
-DIAMETER = Quantity("diameter", "m", "diameter of a round base", lower=0.0, example="30 cm",
-    aliases="dia, diam, base diameter, diameter base, diameter of base, diameter of the base, durchmesser, diametro, "
-    "diametre, diametre base, diametre de la base, \u76f4\u5f84, diametros, "
-    "\u03b4\u03b9\u03b1\u03bc\u03b5\u03c4\u03c1\u03bf\u03c2", absent_beside=("width",))
-
-LENGTH = Quantity("length", "m", "horizontal length: the depth beside a width, otherwise the width",
-    aliases="l, base length, length of base, lange, laenge, longueur, lunghezza, largo, longitud, comprimento, lengte, "
-    "mikos, \u03bc\u03b7\u03ba\u03bf\u03c2", stands_for=("width", "depth"))
-
-THICKNESS = Quantity("thickness", "m", "thickness: the depth beside a width",
-    aliases="thick, thk, t, dicke, starke, staerke, spessore, epaisseur, e, espesor, grosor, espessura, dikte, pachos, "
-    "\u03c0\u03b1\u03c7\u03bf\u03c2", stands_for=("depth",))
+DIAMETER = Quantity("diameter", "m", "diameter of a round base", lower=0.0, example="30 cm")
 
 OFFSET = Quantity("offset", "m", "distance of the centre of mass from the middle of the width, positive to the right",
     default=0.0, example="5 cm")
 
-OFFSET_WIDTH = Quantity("offset_width", "m", "centre of mass from the middle of the width", default=0.0,
-    aliases="offset, offset x, eccentricity x")
+OFFSET_WIDTH = Quantity("offset_width", "m", "centre of mass from the middle of the width", default=0.0)
 
-OFFSET_DEPTH = Quantity("offset_depth", "m", "centre of mass from the middle of the depth", default=0.0,
-    aliases="offset y, eccentricity y")
+OFFSET_DEPTH = Quantity("offset_depth", "m", "centre of mass from the middle of the depth", default=0.0)
 
 MASS_HEIGHT = Quantity("mass_height", "m", "height of the centre of mass above the base; by default half of the height",
-    symbol="h", lower=0.0, example="70 cm",
-    aliases="height of the centre of mass, height of the center of mass, centre of mass height, center of mass height, "
-    "cg height, com height, schwerpunkthohe, altezza del baricentro, hauteur du centre de masse, "
-    "altura del centro de masa")
+    symbol="h", lower=0.0, example="70 cm")
 
 GYRATION = Quantity("gyration", "m",
     "radius of gyration about the centre of mass; by default that of the uniform rectangle", symbol="r", lower=0.0,
-    example="45 cm",
-    aliases="radius of gyration, tragheitsradius, raggio di inerzia, rayon de giration, radio de giro")
+    example="45 cm")
 
 LEFT = Quantity("left", "m", "distance of the centre of mass from the left edge along the base", lower=0.0,
     example="12 cm")
@@ -164,26 +120,17 @@ REBOUND = Quantity("rebound", "-", "velocity after a rebound from the wall over 
 GRAVITY = Quantity("gravity", "m/s2", "acceleration of gravity", symbol="g", lower=0.0, default=STANDARD_GRAVITY)
 
 MASS = Quantity("mass", "kg", "mass, or the weight of it; not needed for the outcome", symbol="m", lower=0.0,
-    example="45 kg", aliases="weight, masse, gewicht, massa, peso, maza, varos, poids, \u03bc\u03b1\u03b6\u03b1, "
-    "\u03b2\u03b1\u03c1\u03bf\u03c2", absent_beside=("height",), assumed="kg")
+    example="45 kg")
 
 FRICTION = Quantity("friction", "-", "coefficient of friction at the base", symbol="mu", lower=0.0, upper=10.0,
-    closed="right",
-    aliases="friction coefficient, coefficient of friction, static friction, coefficient of static friction, "
-    "static friction coefficient, friction coeff, coeff of friction, cof, mu, mu s, reibung, reibungskoeffizient, "
-    "reibungszahl, reibbeiwert, haftreibung, attrito, coefficiente di attrito, frottement, friccion, trivi, "
-    "coefficient de frottement, coeficiente de friccion, coeficiente de atrito, \u03bc, \u03bc s, "
-    "\u03c4\u03c1\u03b9\u03b2\u03b7, \u6469\u64e6\u4fc2\u6570")
+    closed="right")
 
 TOLERANCE = Quantity("tolerance", "m", "uncertainty of the dimensions, up and down", lower=0.0, closed="left",
-    default=0.0, aliases="dimension tolerance, toleranz, tolleranza")
+    default=0.0)
 
-PEDESTAL = Quantity("pedestal", "", "what the object stands on",
-    aliases="sockel, piedistallo, socle, pedestal type, vathro")
+PEDESTAL = Quantity("pedestal", "", "what the object stands on")
 
-NOTES = Quantity("notes", "", "anything else",
-    aliases="note, remark, remarks, comment, comments, bemerkung, bemerkungen, anmerkungen, osservazioni, remarques, "
-    "notas, observaciones, simeioseis, material, location, room", joined=True)
+NOTES = Quantity("notes", "", "anything else")
 
 # Sites
 

@@ -1,7 +1,7 @@
 """The declaration of a quantity, and of kinds of bodies and pulses, whose parameters are quantities.
 
 Python, tables, options, HTTP and the pages derive from a `Quantity`. It imports nothing heavy: the layer of an
-interface makes its own object from the declaration, an option of typer in `rocking/_cli/options.py`, a field of
+interface makes its own object from the declaration, an option of typer in `rocking/_cli/parameters.py`, a field of
 pydantic in `api/rocking_api/models/quantity.py`.
 
 A `Kind` is a function with annotated parameters. A text describes a body or
@@ -51,20 +51,8 @@ class Quantity:
         Value where none is stated; None: it is needed, or the meaning says what applies.
     example : str
         As people write it, with its unit.
-    aliases : str
-        Other names in headers of tables, in small letters without accents, the best ones first, with commas between.
-    stands_for : tuple of str
-        Quantities of which this one is the first that the table has no column for: a length beside a width is a depth.
-    times : float
-        What a cell is multiplied by to have the quantity that it stands for, 2 of a half size.
-    absent_beside : tuple of str
-        Quantities beside which 0 says that this one does not apply.
     words : tuple of str
         Texts that are values.
-    joined : bool
-        Whether the texts of several columns are joined; otherwise the column with the best name counts.
-    assumed : str
-        Unit of cells where none is stated; "": they are refused.
     """
 
     name: str
@@ -77,13 +65,7 @@ class Quantity:
     closed: str = "neither"
     default: Any = None
     example: str = ""
-    aliases: str = ""
-    stands_for: tuple[str, ...] = ()
-    times: float = 1.0
-    absent_beside: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
-    joined: bool = False
-    assumed: str = ""
 
     def convert(self, value: Values) -> NDArray[np.float64]:
         """The value in the SI unit as a float64 array, shape kept; checked as `rocking._base.errors` says."""
@@ -148,6 +130,18 @@ class Quantity:
         return self.named + (f" [{self.unit}]" if self.unit not in ("", "bool") else "")
 
     @property
+    def sentence(self) -> str:
+        """Meaning, symbol, range of a number, words and example, for the help of an option."""
+        parts = [self.named[0].upper() + self.named[1:]]
+        if self.unit == "-" and (self.lower > 0.0 or math.isfinite(self.upper)):
+            parts.append(self.interval)
+        parts += [f"or {word}" for word in self.words]
+        if self.example:
+            example = repr(self.example) if " " in self.example else self.example
+            parts.append(f"such as {example}")
+        return f"{', '.join(parts)}."
+
+    @property
     def label(self) -> str:
         """Meaning and symbol for the axis of a picture; the symbol alone if both are longer than a label may be."""
         symbol = self.symbol.partition(" = ")[0]
@@ -163,11 +157,6 @@ class Quantity:
     def option(self) -> str:
         """The name of the option of the command line."""
         return "--" + self.name.replace("_", "-")
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """What headers of tables may call it, the best names first."""
-        return (self.name.replace("_", " "), *filter(None, self.aliases.split(", ")))
 
     def restricted(self, lower: float, upper: float) -> Quantity:
         """The same on a smaller range, closed at its finite ends; `ValueError` if that is no part of its own."""

@@ -17,7 +17,7 @@ from rocking._base.units import Scalar
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.scan import Index, Lines, checked_resolution, outcome_changes
 from rocking._boundary.search import UNCOUNTED, Floats, Solve, block_solver, classifier, counted_code, outcomes_along
-from rocking._excitation.pulses import AbstractPulse, as_pulse
+from rocking._excitation.pulses import Motion, as_motion
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import (
     HIGHEST_VERTICAL_SCALE,
@@ -30,7 +30,7 @@ from rocking._model.labelled import variable
 from rocking._model.outcome import SURVIVES, decode_outcomes
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import frequency_parameter_range, record_cells, record_response
+from rocking._solver.records.record_response import record_cells, record_response
 from rocking._solver.records.samples import motion_samples
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Thresholds(EqualByValue):
 
 
 def thresholds(
-    motion: str | AbstractPulse | Record,
+    motion: Motion,
     *,
     frequency_ratio: Scalar | None = None,
     frequency_parameter: Scalar | None = None,
@@ -135,24 +135,24 @@ def thresholds(
     >>> thresholds("sine", frequency_ratio=3.0, restitution=0.9)
     <rocking.Thresholds: overturns above a = 1.40357, survives above a = 3.48466, overturns above a = 3.63115>
     """
+    motion = as_motion(motion)
     if highest is None:
-        highest = 10.0 if isinstance(motion, Record) else 100.0
+        highest = motion.highest_amplitude
     top = number("highest", highest, 1.0, 1e6, closed="right")
     eta = RESTITUTION.number(known_restitution(restitution, alpha))
     restraint = one_restraint(stiffness, prestress, damping)
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         given = needed("a record", frequency_parameter=frequency_parameter)
-        p = number("frequency_parameter", given, *frequency_parameter_range(motion), unit="rad/s")
+        p = number("frequency_parameter", given, *motion.frequency_parameters, unit="rad/s")
         groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha), "restraint": restraint}
         return _record_changes(motion, groups, vertical_scale, top, checked_resolution(resolution), stop)
-    made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = FREQUENCY_RATIO.number(needed("a pulse", frequency_ratio=frequency_ratio))
     level = 1.0 + float(restraint.get("prestress", 0.0))
     if top <= level:  # no uplift
         return Thresholds(np.empty(0), np.empty(0, np.bool_), np.empty(0, np.int8), np.empty(0, np.int32))
-    solver = block_solver(made, stop=stop, restraint=restraint)
+    solver = block_solver(motion, stop=stop, restraint=restraint)
     found = amplitude_changes(solver, omega, eta, top / level, check_one_alpha(alpha))
     return replace(found, amplitude=found.amplitude * level)
 

@@ -2,135 +2,128 @@
 
 from __future__ import annotations
 
-import json as json_format
-import re
-from collections.abc import Iterator
-from contextlib import contextmanager
+import json
 from dataclasses import replace
-from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking._cli.options import BaselineOrder, OutputOptions, said, with_options
-from rocking._cli.progress import progress
-from rocking._cli.record import file_errors
+from rocking._cli.errors import reported_errors
+from rocking._cli.parameters import BaselineOrder, Configuration, OutputFormat
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.suites.configuration import SuiteConfiguration
 
-Configuration = Annotated[
-    str,
-    typer.Argument(
-        help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.",
-        metavar="CONFIGURATION",
-    ),
-]
 
-MAX_NESTING = 100  # most brackets within brackets of a suite in YAML
-
-MAX_LINE = 4096
-"""Most characters of a line of TOML: the time of tomllib grows with the square of the parts of a key such as a.b.c."""
-
-
-@with_options
 def fragility(
     configuration: Configuration,
-    output: OutputOptions,
     table: Annotated[
         Literal["levels", "curves", "distribution", "sensitivity"],
         typer.Option(
-            "--table",
-            help="What --format csv holds: counts at each level; fitted curves; the distribution of the peak rotation "
-            "at each level; friction demand, and the effect of restitution and sampling, if the configuration asks "
-            "for them.",
+            help="Table to print: counts at each level; fitted curves; distribution of the peak rotation at each "
+            "level; friction demand, and the effect of restitution and sampling, if the configuration asks for them. "
+            "JSON holds all of them but the distribution."
         ),
     ] = "levels",
     baseline_order: BaselineOrder = None,
-    file: Annotated[
+    output: Annotated[
         str | None,
-        said("File to write: .csv or .json.", "FILE", "--output", "-o"),
+        typer.Option("--output", "-o", help="File to write in place of printing: .csv or .json.", metavar="[FILE]"),
     ] = None,
+    output_format: OutputFormat = "table",
 ) -> None:
-    """Fragility of blocks under a suite of records: counts, intervals, fitted curves.
-
-    If the configuration asks for it, also the friction demand, and the effect of restitution and sampling.
-    """
-    from rocking._base.errors import InvalidArgumentError
+    """Fragility of blocks under a suite of records: counts, intervals, fitted curves."""
+    from rocking._base.errors import InvalidArgumentError, one_of
     from rocking._base.output_file import output_errors
-    from rocking._cli import printing
-    from rocking._cli.arguments import option_errors
+    from rocking._cli.printing import print_columns, print_json, print_values, unit_label
     from rocking.suites.files import ENDINGS, write_fragility
-    from rocking.suites.table import curve_table, distribution_table, finite, fragility_table
+    from rocking.suites.table import curve_table, distribution_table, finite_columns, fragility_table
 
-    with configuration_errors():
-        form = printing.output_format(output)
-    suite = read_suite(configuration)
-    if baseline_order is not None:
-        suite = replace(suite, records=replace(suite.records, baseline_order=baseline_order))
-    with option_errors():
+    if output is not None:
+        with reported_errors():
+            one_of("output", Path(output).suffix.lower(), ENDINGS)
+    with reported_errors(source="CONFIGURATION"):
+        suite = read_suite(configuration)
+        if baseline_order is not None:
+            suite = replace(suite, records=replace(suite.records, baseline_order=baseline_order))
         if table == "sensitivity" and suite.sensitivity is None:
             raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
-        if table != "levels" and form.kind != "csv":
-            raise InvalidArgumentError("table", table, "with --format csv; the other formats hold all tables")
-        if file is not None and (form.kind != "table" or not file.lower().endswith(ENDINGS)):
-            raise InvalidArgumentError(
-                "output", file, f"a name that ends in {', '.join(ENDINGS)}, without --format csv or json"
-            )
-    found = suite_fragility(suite)
-    with option_errors({"fragility": "--output", "format": "--output"}):
-        if file is not None:
-            with output_errors("output", file):
-                write_fragility(found, file)
+        found = suite_fragility(suite)
+    if output is not None:
+        with reported_errors(), output_errors("output", output):
+            write_fragility(found, output)
+        return
+    with reported_errors(source="CONFIGURATION"):
+        unit = found["intensity"].attrs["units"]
+        records = found["record"].values.tolist()
+        about = {"suite": suite.name, "records": records, "measure": suite.measure, "unit": unit}
+        if output_format == "json":
+            tables = {"levels": finite_columns(fragility_table(found)), "curves": finite_columns(curve_table(found))}
+            if suite.sensitivity is not None:
+                tables["sensitivity"] = finite_columns(_sensitivity(suite))
+            print_json({**about, "confidence": suite.confidence, **tables})
             return
-    tables = {"levels": fragility_table(found), "curves": curve_table(found)}
-    if table == "distribution":
-        tables[table] = distribution_table(found)
-    if suite.sensitivity is not None and (form.kind != "csv" or table == "sensitivity"):
-        tables["sensitivity"] = _sensitivity(suite)
-    unit = found["intensity"].attrs["units"]
-    measured = ("intensity", *(f"median_intensity{end}" for end in ("", "_lower", "_upper")))
-    usual = re.sub(r" s-(\d)", lambda power: "/s" + power[1].replace("1", ""), unit)  # m/s2 for m s-2
-    units = dict.fromkeys(measured, usual) if unit != "1" else {}
-    if form.kind == "csv":
-        printing.print_csv(tables[table], form, units)
-        return
-    about = {"suite": suite.name, "records": found["record"].values.tolist(), "measure": suite.measure, "unit": unit}
-    rows = {name: finite(columns) for name, columns in tables.items()}
-    if form.kind == "json":
-        printing.print_json({**about, "confidence": suite.confidence, **rows})
-        return
-    printing.print_text({**about, "records": len(about["records"]), "unit": usual}, form)
-    printing.print_table(_with_intervals(rows["curves"]), units)
-    typer.echo()
-    printing.print_table(rows["levels"], units)
-    if "sensitivity" in rows:
-        typer.echo()
-        printing.print_table(_of_sensitivity(rows["sensitivity"], len(about["records"])), units)
+        if table == "sensitivity":
+            columns = _sensitivity(suite)
+        elif table == "distribution":
+            columns = distribution_table(found)
+        elif table == "curves":
+            columns = curve_table(found)
+        else:
+            columns = fragility_table(found)
+    label = unit_label(unit)
+    units = {name: label for name in columns if name.startswith(("intensity", "median_intensity"))}
+    units |= {"width": "m", "height": "m"}
+    if output_format == "table":
+        print_values({**about, "records": len(records), "unit": label})
+    print_columns(finite_columns(columns), output_format, units)
 
 
 def read_suite(configuration: str) -> SuiteConfiguration:
-    """The suite in a file; errors name the key."""
+    """The suite in a file."""
+    from rocking._base.errors import InvalidArgumentError, UnreadableFileError
     from rocking.suites.configuration import suite_configuration
 
     path = Path(configuration)
-    with configuration_errors():
-        given = _read(path)
-        return suite_configuration(given.get("suite", given), path.parent)
+    try:
+        values = _parsed(path.suffix, path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UnreadableFileError("file", configuration, error) from None
+    except (ValueError, RecursionError) as error:  # brackets within brackets
+        raise InvalidArgumentError("file", configuration, f"a readable configuration ({error})") from None
+    if not isinstance(values, dict):
+        raise InvalidArgumentError("file", configuration, "a mapping of keys to values")
+    return suite_configuration(values.get("suite", values), path.parent)
+
+
+def _parsed(ending: str, text: str) -> Any:
+    """The content of a file by the ending of its name: TOML, JSON, else YAML."""
+    if ending == ".toml":
+        import tomllib
+
+        return tomllib.loads(text)
+    if ending == ".json":
+        return json.loads(text)
+    try:
+        import yaml  # of the extra `workflow`
+    except ModuleNotFoundError:
+        raise ValueError("YAML needs the package pyyaml; TOML and JSON need none") from None
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ValueError(" ".join(str(error).split())) from None
 
 
 def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
-    """The fragility of a suite; errors name the key or the file."""
+    """The fragility of a suite; remarks and warnings are printed on stderr."""
+    from rocking._cli.printing import progress
     from rocking.suites.fragility import fragility as fragility_of
 
-    with configuration_errors(), file_errors(), progress("solving the blocks under the records"):
-        motions = suite.motions()
-        for motion in motions:
-            for remark in motion.remarks:
-                typer.echo(f"warning: {motion.name}: {remark}", err=True)
+    motions = suite.motions()
+    with progress("solving the blocks under the records"):
         found = fragility_of(
             motions,
             suite.blocks,
@@ -140,6 +133,9 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
             demand=suite.demand,
             confidence=suite.confidence,
         )
+    for motion in motions:
+        for remark in motion.remarks:
+            typer.echo(f"warning: {motion.name}: {remark}", err=True)
     for warning in filter(None, found.attrs.get("warnings", "").split("; ")):
         typer.echo(f"warning: {warning}", err=True)
     return found
@@ -147,12 +143,13 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
 
 def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
     """The table of friction demand, and of the effect of restitution and sampling."""
+    from rocking._cli.printing import progress
     from rocking.suites.sensitivity import suite_sensitivity
     from rocking.suites.table import sensitivity_table
 
     assert suite.sensitivity is not None
     assert isinstance(suite.blocks, tuple)  # by `suite_configuration`
-    with configuration_errors(), file_errors(), progress("solving the blocks with other restitution and sampling"):
+    with progress("solving the blocks with other restitution and sampling"):
         found = suite_sensitivity(
             suite.motions(),
             suite.blocks,
@@ -163,88 +160,3 @@ def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
             confidence=suite.confidence,
         )
     return sensitivity_table(found)
-
-
-@contextmanager
-def configuration_errors() -> Iterator[None]:
-    """Convert an invalid configuration into an error of the command line that names the key."""
-    from rocking._base.errors import InvalidArgumentError
-
-    try:
-        yield
-    except InvalidArgumentError as error:
-        message = str(error).replace("`", "")
-        raise typer.BadParameter(message, param_hint="CONFIGURATION") from None
-
-
-def _read(path: Path) -> dict[str, Any]:
-    """The mapping in a file, by the ending of its name."""
-    from rocking._base.errors import InvalidArgumentError, UnreadableFileError
-
-    try:
-        text = path.read_text(encoding="utf-8")
-        if path.suffix == ".toml":
-            found: Any = _toml(text)
-        elif path.suffix == ".json":
-            found = json_format.loads(text)
-        else:
-            found = _yaml(text)
-    except OSError as error:
-        raise UnreadableFileError("file", str(path), error) from None
-    except (ValueError, RecursionError) as error:  # brackets within brackets
-        raise InvalidArgumentError("file", str(path), f"a readable configuration ({error})") from None
-    if not isinstance(found, dict):
-        raise InvalidArgumentError("file", str(path), "a mapping of keys to values")
-    return found
-
-
-def _toml(text: str) -> Any:
-    if max(map(len, text.split("\n"))) > MAX_LINE:
-        raise ValueError(f"lines of TOML have at most {MAX_LINE} characters")
-    import tomllib
-
-    return tomllib.loads(text)
-
-
-def _yaml(text: str) -> Any:
-    try:
-        import yaml  # of the extra `workflow`
-    except ModuleNotFoundError:
-        raise ValueError("YAML needs the package pyyaml; TOML and JSON need none") from None
-    open_brackets = accumulate((c in "[{") - (c in "]}") for c in text)
-    if max(open_brackets, default=0) > MAX_NESTING:  # the reader takes time with the square of the depth
-        raise ValueError(f"brackets are nested at most {MAX_NESTING} deep")
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise ValueError(" ".join(str(error).split())) from None
-
-
-def _with_intervals(curves: dict[str, list[Any]]) -> dict[str, list[Any]]:
-    """The columns of the table of curves that fit a screen, intervals beside their values; JSON has all of them."""
-    shown = ("demand", "width", "height", "model", "fit_status", "median_intensity", "dispersion")
-
-    def column(name: str) -> list[Any]:
-        if name not in ("median_intensity", "dispersion"):
-            return curves[name]
-        ends = zip(*(curves[name + end] for end in ("", "_lower", "_upper")), strict=True)
-        texts = [["-" if value is None else f"{value:.4g}" for value in row] for row in ends]
-        return [f"{value} ({low} to {high})" for value, low, high in texts]
-
-    return {name: column(name) for name in (*shown, "records_surviving_above_first")}
-
-
-def _of_sensitivity(rows: dict[str, list[Any]], records: int) -> dict[str, list[Any]]:
-    """The columns of the table of sensitivities that fit a screen; CSV and JSON have all of them."""
-
-    def count(fraction: float) -> str:
-        return f"{round(fraction * records)} of {records}"
-
-    shown = {name: rows[name] for name in ("width", "height", "intensity")}
-    shown["overturn"] = [count(value) for value in rows["fraction"]]
-    for end in ("low", "high"):
-        pairs = zip(rows[f"fraction_{end}_restitution"], rows[f"restitution_{end}"], strict=True)
-        shown[f"{end}_restitution"] = [f"{count(value)} (eta {eta:.3g})" for value, eta in pairs]
-    shown["resampled"] = [count(value) for value in rows["fraction_resampled"]]
-    friction = ("friction_demand_median", "friction_demand_largest", "records_changed_by_sampling")
-    return shown | {name: rows[name] for name in friction}

@@ -1,19 +1,38 @@
-"""`rocking record`: one block under a recorded ground motion."""
+"""`rocking record`: one body under a recorded ground motion."""
 
 from __future__ import annotations
 
 import math
-import shlex
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from rocking._base.quantities import MASS
-from rocking._cli.options import OutputOptions, RecordOptions, option, said, with_options
+from rocking._cli.errors import reported_errors
+from rocking._cli.parameters import (
+    LAYOUT,
+    MOTION,
+    Acceleration,
+    BaselineOrder,
+    Body,
+    Decimal,
+    Delimiter,
+    FileFormat,
+    Height,
+    OutputFormat,
+    RecordFile,
+    Restitution,
+    Scale,
+    Skip,
+    Time,
+    TimeStep,
+    TimeUnit,
+    Unit,
+    Width,
+    Wrapped,
+)
 
 if TYPE_CHECKING:
     from rocking._dimensional.body import RespondingBody
@@ -21,152 +40,188 @@ if TYPE_CHECKING:
     from rocking._excitation.records.record import Record
     from rocking._model.block import AbstractBlock
 
-File = Annotated[
-    str,
-    typer.Argument(
-        help="Accelerogram: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet, SAC, miniSEED, TSPAIR, SLIST, or columns whose "
-        "layout is stated.",
-        metavar="FILE",
-    ),
-]
+HISTORY = "Motion against time"
 
 
-@with_options
 def record(
-    file: File,
-    block: RecordOptions,
-    output: OutputOptions,
-    thresholds: Annotated[
-        bool, said("Find all factors at which the outcome changes.", "", "--thresholds/--no-thresholds")
-    ] = True,
-    fit: Annotated[bool, said("Fit a pulse and compare when both overturn the block.", "", "--fit")] = False,
-    second: Annotated[
-        str | None, said("Second horizontal component: the answer is for the worst direction.", "FILE|NAME")
+    file: RecordFile,
+    vertical: Annotated[
+        str | None,
+        typer.Option(
+            help="File of the vertical component, upwards, or its column or channel in the file.",
+            metavar="[FILE|NAME]",
+            rich_help_panel=MOTION,
+        ),
     ] = None,
-    mirrored: Annotated[bool, said("The record with the other sign.", "", "--mirrored")] = False,
-    history: Annotated[bool, said("Print the motion against time instead.", "", "--history")] = False,
+    second: Annotated[
+        str | None,
+        typer.Option(
+            help="Second horizontal component: the answer is for the worst direction.",
+            metavar="[FILE|NAME]",
+            rich_help_panel=MOTION,
+        ),
+    ] = None,
+    scale: Scale = 1.0,
+    mirrored: Annotated[
+        bool, typer.Option("--mirrored", help="The record with the other sign.", rich_help_panel=MOTION)
+    ] = False,
+    baseline_order: BaselineOrder = None,
+    width: Width = None,
+    height: Height = None,
+    body: Body = None,
+    restitution: Restitution = "momentum",
+    file_format: FileFormat = None,
+    acceleration: Acceleration = None,
+    time: Time = None,
+    time_step: TimeStep = None,
+    time_unit: TimeUnit = None,
+    unit: Unit = None,
+    skip: Skip = 0,
+    delimiter: Delimiter = None,
+    decimal: Decimal = ".",
+    wrapped: Wrapped = False,
+    allow_unusual: Annotated[
+        bool,
+        typer.Option(
+            "--allow-unusual",
+            help="Accept a PGA above 5 g, a PGV above 10 m/s, a step above 0.1 s.",
+            rich_help_panel=LAYOUT,
+        ),
+    ] = False,
+    thresholds: Annotated[bool, typer.Option(help="Find all factors at which the outcome changes.")] = True,
+    fit: Annotated[bool, typer.Option("--fit", help="Fit a pulse and compare when both overturn the block.")] = False,
+    history: Annotated[
+        bool, typer.Option("--history", help="Print the motion against time instead.", rich_help_panel=HISTORY)
+    ] = False,
     samples: Annotated[
-        int | None, said("Number of uniform samples of this motion; by default those of the record.", "NUMBER")
+        int | None,
+        typer.Option(
+            help="Number of uniform samples; by default those of the record.",
+            metavar="[NUMBER]",
+            rich_help_panel=HISTORY,
+        ),
     ] = None,
     contact: Annotated[
-        bool, said("Add reactions of the ground and friction demand to this motion.", "", "--contact")
+        bool,
+        typer.Option("--contact", help="Add reactions of the ground and friction demand.", rich_help_panel=HISTORY),
     ] = False,
-    mass: Annotated[str | None, option(MASS, text="Mass of the body, for these reactions in newtons")] = None,
+    mass: Annotated[
+        str | None,
+        typer.Option(
+            help="Mass of the body, such as 45kg, for these reactions in newtons.",
+            metavar="[kg]",
+            rich_help_panel=HISTORY,
+        ),
+    ] = None,
+    output_format: OutputFormat = "table",
 ) -> None:
-    """Outcome and peak rotation of a block under a recorded ground motion, by the solver.
+    """Outcome and peak rotation of a body under a recorded ground motion.
 
     With a second component the motion is turned in steps of 15 degrees towards it; the worst one has the lowest factor.
     """
     from rocking._base.errors import InvalidArgumentError, reject_given
-    from rocking._cli import printing
-    from rocking._cli.arguments import option_errors
-    from rocking._cli.progress import progress
+    from rocking._base.quantities import RESTITUTION
+    from rocking._cli.arguments import read_body
+    from rocking._cli.printing import print_dataset, print_response, progress, response_values
     from rocking._dimensional.curves import with_forces
+    from rocking._excitation.records.readers.read_record import read_record
     from rocking._excitation.records.record import summary_of
     from rocking._model.block import AbstractBlock
 
-    with option_errors({"records": "--second", "format": "--file-format"}), file_errors():
-        form = printing.output_format(output, block)
-        motion, body, restitution = read_problem(file, block)
+    with reported_errors({"records": "--second"}):
+        rigid_body, eta = read_body(width, height, body), RESTITUTION.read(restitution)
+        layout: dict[str, Any] = {
+            "format": file_format,
+            "time": time,
+            "time_step": time_step,
+            "time_unit": time_unit,
+            "unit": unit,
+            "skip": skip,
+            "delimiter": delimiter,
+            "decimal": decimal,
+            "wrapped": wrapped,
+            "allow_unusual": allow_unusual,
+        }
+        motion = read_record(file, acceleration=acceleration, vertical=vertical, **layout)
+        motion = motion.baseline_corrected(order=baseline_order)
         if mirrored:
             motion = motion.mirrored()
         if history:
             reject_given("--history", second=second, fit=fit or None)
-            options: dict[str, Any] = {"scale": block.scale, "restitution": restitution, "samples": samples}
             with progress("solving the motion"):
-                moving = body.history(motion, **options, contact=contact or mass is not None)
+                moving = rigid_body.history(
+                    motion, scale=scale, restitution=eta, samples=samples, contact=contact or mass is not None
+                )
             if mass is not None:
-                moving = with_forces(moving, MASS.number(mass), float(body.gravity))
-            printing.print_motion(moving, form)
+                moving = with_forces(moving, MASS.number(mass), float(rigid_body.gravity))
+            print_dataset(moving, "time", output_format)
             return
         reject_given("an answer without --history", samples=samples, contact=contact or None, mass=mass)
-        if fit and not isinstance(body, AbstractBlock):
+        if fit and not isinstance(rigid_body, AbstractBlock):
             raise InvalidArgumentError("fit", fit, "a block whose centre of mass is in its middle")
-        with progress("solving the block under the record"):
-            given: dict[str, Any] = {"scale": block.scale, "restitution": restitution, "thresholds": thresholds}
-            direction: dict[str, float] = {}
+        direction: dict[str, float] = {}
+        with progress("solving the body under the record"):
             if second is None:
-                found = body.response(motion, **given)
+                found = rigid_body.response(
+                    motion, scale=scale, restitution=eta, error_bound=True, thresholds=thresholds
+                )
             else:
-                apart = Path(second).is_file()
-                other = replace(block, acceleration=block.acceleration if apart else second, vertical=None)
-                pair = motion, read_problem(second if apart else file, other)[0]
-                angle, motion, found = _worst_direction(body, pair, given)
-                direction = {"direction_deg": angle}
-            about = printing.body_columns(found)
-            changes = about.pop("thresholds")
-            if changes is None:
-                about.pop("overturning_scale")
-            else:
-                about["threshold_scale"] = [one["scale"] for one in changes]
-                about["overturns_above"] = [one["overturns_above"] for one in changes]
-            measures = summary_of(motion)
-            about |= {"scale": block.scale, "record": measures.pop("name"), **measures}
-            if isinstance(body, AbstractBlock):
-                about |= {"alpha": body.alpha} | (_fitted(motion, body) if fit else {})
-        sentences = [text for text in (about["meaning"], about["margin"]) if text]
-        about |= direction
-    printing.print_answer(about, sentences, form)
+                if Path(second).is_file():
+                    other = read_record(second, acceleration=acceleration, **layout)
+                else:
+                    other = read_record(file, acceleration=second, **layout)
+                pair = motion, other.baseline_corrected(order=baseline_order)
+                worst = _worst_direction(rigid_body, pair, scale, eta, thresholds)
+                direction, motion, found = {"direction_deg": worst.angle}, worst.motion, worst.response
+            values = response_values(found) | direction | summary_of(motion)
+            values.pop("name")  # that of `record`
+            if fit and isinstance(rigid_body, AbstractBlock):
+                values |= _fitted(motion, rigid_body)
+    print_response(found, values, output_format)
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A direction of the motion, and the response of the body in it."""
+
+    angle: float  # from the first towards the second component [degrees]
+    motion: Record
+    response: BodyResponse
+
+    @property
+    def order(self) -> tuple[float, bool, float]:
+        """Rank among other directions, the lowest is the worst: lowest factor, outcome, rotation."""
+        factor = self.response.overturning_scale
+        overturned = bool(self.response.overturned)
+        rotation = 0.0 if overturned else float(self.response.rotation)
+        return math.inf if factor is None else factor, not overturned, -rotation
 
 
 def _worst_direction(
-    body: RespondingBody, pair: tuple[Record, Record], given: dict[str, Any]
-) -> tuple[float, Record, BodyResponse]:
-    """The worst angle from the first towards the second component [degrees], the motion along it, the response."""
+    body: RespondingBody, pair: tuple[Record, Record], scale: float, restitution: float | str, thresholds: bool
+) -> Direction:
+    """The direction in which a body overturns at the lowest factor, or with the largest rotation."""
     from rocking._excitation.records.pair import PAIR_ANGLES, checked_pair, rotated
 
     checked_pair(pair)
-    motions = [one for _, one in rotated(*pair)]
-    if not body.is_block:
-        motions = [*motions, *[one.mirrored() for one in motions]]  # in the opposite directions
-    found = [(180.0 * k / PAIR_ANGLES, one, body.response(one, **given)) for k, one in enumerate(motions)]
-
-    def order(one: tuple[float, Record, BodyResponse]) -> tuple[float, bool, float]:
-        known = one[2].overturning_scale if given["thresholds"] else None
-        overturned = bool(one[2].overturned)
-        return math.inf if known is None else known, not overturned, 0.0 if overturned else -float(one[2].rotation)
-
-    return min(found, key=order)
-
-
-@contextmanager
-def file_errors() -> Iterator[None]:
-    """Convert an error of a file into an error of the command line: file, line, what was found, what was expected."""
-    from rocking._base.errors import RecordFileError, UnreadableFileError
-
-    try:
-        yield
-    except RecordFileError as error:
-        raise typer.BadParameter(error.message(_as_option, "", " "), param_hint="FILE") from None
-    except UnreadableFileError as error:
-        if error.parameter not in ("path", "file"):
-            raise
-        raise typer.BadParameter(f"{error.value}: {error.reason}", param_hint="FILE") from None
-
-
-def _as_option(name: str, value: Any) -> str:
-    """An argument of `read_record` as an option."""
-    option = "--" + {"format": "file-format"}.get(name, name).replace("_", "-")
-    if value is None or value is True:
-        return option
-    return f"{option} {'...' if value is ... else shlex.quote(str(value))}"
-
-
-def read_problem(file: str, options: RecordOptions) -> tuple[Record, RespondingBody, float | str]:
-    """The record in a file, the body, and its restitution."""
-    from rocking._base.quantities import RESTITUTION
-    from rocking._cli.arguments import read_body
-    from rocking._excitation.records.readers.read_record import read_record
-
-    body, eta = read_body(options), RESTITUTION.read(options.restitution)
-    motion = read_record(file, vertical=options.vertical, **options.stated())
-    return motion.baseline_corrected(order=options.baseline_order), body, eta
+    motions = [motion for _, motion in rotated(*pair)]
+    if not body.moves_as_block:
+        motions += [motion.mirrored() for motion in motions]  # in the opposite directions
+    directions = [
+        Direction(
+            180.0 * k / PAIR_ANGLES,
+            motion,
+            body.response(motion, scale=scale, restitution=restitution, error_bound=True, thresholds=thresholds),
+        )
+        for k, motion in enumerate(motions)
+    ]
+    return min(directions, key=lambda direction: direction.order)
 
 
 def _fitted(motion: Record, block: AbstractBlock) -> dict[str, Any]:
     """The printed values of the pulse fitted to a record, by name."""
     from rocking.suites.pulse_fit import fit_pulse, summary_of
 
-    found = summary_of(fit_pulse(motion, blocks=block))
-    named = {name if name in ("pulse", "period") else f"pulse_{name}": value for name, value in found.items()}
-    return {name: value for name, value in named.items() if name != "pulse_centre"}
+    values = summary_of(fit_pulse(motion, blocks=block))
+    values.pop("centre")
+    return {name if name == "pulse" else f"pulse_{name}": value for name, value in values.items()}

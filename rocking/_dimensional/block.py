@@ -34,7 +34,7 @@ class Block(RectangularBlock, RespondingBody):
 
     Examples
     --------
-    >>> Block(width=0.4, height=1.6).response("sine", peak_acceleration=4.0, period=0.5).overturned
+    >>> bool(Block(width=0.4, height=1.6).response("sine", peak_acceleration=4.0, period=0.5).overturned)
     False
     """
 

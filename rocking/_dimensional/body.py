@@ -11,24 +11,21 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rocking._base.arrays import Array
-from rocking._base.errors import InvalidArgumentError, in_range, integer, number, positive, reject_given
-from rocking._base.quantities import HIGHEST_SCALE, RESTITUTION, START
+from rocking._base.errors import InvalidArgumentError, in_range, integer, positive, reject_given
+from rocking._base.quantities import PERIOD, RESTITUTION, START
 from rocking._base.units import Scalar, Values
 from rocking._boundary.scan import RESOLUTION, checked_resolution
-from rocking._dimensional.curves import boundary, history, over_axis, release, spectrum
-from rocking._dimensional.fields import FIELDS
+from rocking._dimensional.curves import boundary, history, over_axis, release
+from rocking._dimensional.fields import ERROR_BOUND, FIELDS
 from rocking._dimensional.problem import (
     STRENGTHS,
-    Motion,
     Problem,
-    are_numbers,
     checked_restitution,
     spread_restitution,
 )
 from rocking._dimensional.response import BodyResponse, respond
-from rocking._dimensional.thresholds import BodyThresholds, block_thresholds, thresholds_of
-from rocking._excitation.pulses import AbstractPulse
-from rocking._excitation.records.record import Record
+from rocking._dimensional.thresholds import BodyThresholds, thresholds_of
+from rocking._excitation.pulses import AbstractPulse, Motion, as_motion
 from rocking._model.body import AbstractBody, Edge
 from rocking._model.labelled import in_unit, is_labelled, labelled_response
 from rocking._numba.cancellation import StopFlag
@@ -58,6 +55,7 @@ class RespondingBody(AbstractBody):
         period: Values | None = None,
         scale: Values | None = None,
         restitution: Values = "momentum",
+        error_bound: bool = False,
         thresholds: bool = True,
         threads: int | None = None,
         stop: StopFlag | None = None,
@@ -71,14 +69,12 @@ class RespondingBody(AbstractBody):
         period: Values | None = None,
         scale: Values | None = None,
         restitution: Values = "momentum",
+        error_bound: bool = False,
         thresholds: bool = True,
         threads: int | None = None,
         stop: StopFlag | None = None,
     ) -> BodyResponse | xr.Dataset:
         """Outcome, peak rotation and displacement under a pulse or a record. The arguments broadcast.
-
-        One block with numbers is solved with a bound of its error and has margins; arrays, and bodies whose edges
-        differ, by their two edges.
 
         Labelled ones (`xarray.DataArray`), also of the body, broadcast by the names of their dimensions and give an
         `xarray.Dataset` of the same fields, which stays lazy where they are backed by dask.
@@ -96,6 +92,8 @@ class RespondingBody(AbstractBody):
         restitution : array_like, "momentum" or "kalliontzis(k=...)"
             eta [-], [0, 1], of every impact; or from conservation of angular momentum, (2.4) for a block, 0 where that
             is negative.
+        error_bound : bool
+            Whether the response has a bound of the error of the peak rotation, which takes twice the time.
         thresholds : bool
             Whether the strengths of the motion at which the outcome changes are searched, when they, the warnings or
             the text of the response to a record are first asked for.
@@ -107,25 +105,26 @@ class RespondingBody(AbstractBody):
         Raises
         ------
         InvalidArgumentError
-            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast;
-            for arrays where the equation of motion is the linear one (3.1).
+            If a value is out of range, missing, or has no meaning for the kind of motion; if shapes do not broadcast.
 
         Examples
         --------
         >>> import rocking
         >>> block = rocking.Block("40 cm", "160 cm")
-        >>> block.response("sine", peak_acceleration="0.4 g", period="500 ms").overturned
+        >>> bool(block.response("sine", peak_acceleration="0.4 g", period="500 ms").overturned)
         False
         """
         if threads is not None:
             threads = integer("threads", threads, 1, math.inf)
         given = {"peak_acceleration": peak_acceleration, "period": period, "scale": scale, "restitution": restitution}
-        if self.labels or (not are_numbers(*given.values()) and is_labelled(*given.values())):
-            return self._labelled_response(motion, given, {"threads": threads, "stop": stop})
+        if self.labels or is_labelled(*given.values()):
+            return self._labelled_response(motion, given, error_bound, {"threads": threads, "stop": stop})
         problem = Problem.of(self, motion, peak_acceleration, period, restitution, scale=scale)
-        return respond(problem, threads, stop, thresholds=thresholds)
+        return respond(problem, threads, stop, error_bound=error_bound, thresholds=thresholds)
 
-    def _labelled_response(self, motion: Motion, given: dict[str, Any], options: dict[str, Any]) -> xr.Dataset:
+    def _labelled_response(
+        self, motion: Motion, given: dict[str, Any], error_bound: bool, options: dict[str, Any]
+    ) -> xr.Dataset:
         """The response to labelled arguments, or of a body built from labelled values."""
         eta, own = given.pop("restitution"), self.labels
         if not is_labelled(eta):
@@ -137,9 +136,9 @@ class RespondingBody(AbstractBody):
         }
         plain = {name: value for name, value in self.parameters.items() if name not in own}
         make = partial(type(self), **plain) if own else lambda: self
-        solve = partial(_respond_part, make, tuple(own), motion)
-        one_kind = "record" if isinstance(motion, Record) else "pulse"
-        fields = [one for one in FIELDS if {one_kind, "edges", "many"} <= one.kinds]
+        solve = partial(_respond_part, make, tuple(own), motion, error_bound)
+        kinds = {as_motion(motion).kind, "block" if self.moves_as_block else "edges"}
+        fields = [one for one in FIELDS if kinds <= one.kinds and (error_bound or one is not ERROR_BOUND)]
         return labelled_response(solve, {**own, **strengths, "restitution": eta}, options, fields)
 
     def thresholds(
@@ -165,20 +164,14 @@ class RespondingBody(AbstractBody):
             Largest relative distance of the factors of a record that are tried in search of the lowest [-],
             [1e-4, 0.1]; above it they are 0.2 % apart.
         """
-        share = checked_resolution(resolution)
+        share, motion = checked_resolution(resolution), as_motion(motion)
         if highest is not None:
-            highest = (
-                number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
-                if isinstance(motion, Record)
-                else positive("highest", highest, "m/s2")
-            )
+            highest = replace(motion.strength, name="highest").number(highest)
         uplift = float(np.min(self.uplift_acceleration))  # a strength that is not read
-        strength: dict[str, Any] = {"peak_acceleration": uplift}
-        if isinstance(motion, Record):
-            reject_given("a record", period=period)
-            strength = {"scale": min(uplift / motion.peak_acceleration, HIGHEST_SCALE)}
-        problem = Problem.of(self, motion, **strength, period=period, restitution=restitution, flies=True)
-        return (block_thresholds if problem.is_block else thresholds_of)(problem, highest, stop, share)
+        value = min(uplift / motion.unit_acceleration, motion.strength.upper)
+        strength: dict[str, Any] = {motion.strength.name: value}
+        problem = Problem.of(self, motion, **strength, period=period, restitution=restitution)
+        return thresholds_of(problem, highest, stop, share)
 
     def spectrum(
         self,
@@ -205,12 +198,12 @@ class RespondingBody(AbstractBody):
         Returns
         -------
         xarray.Dataset
-            As `BodyResponse.to_xarray`, with the dimension `period` or `size`; of a block against the period rotation
-            [rad], top_displacement [m], peak_rotation [-] and its error_bound, overturned, outcome, impacts.
+            As `BodyResponse.to_xarray`, with the dimension `period` or `size`.
         """
         self._need_one("spectrum", restitution, peak_acceleration=peak_acceleration, scale=scale)
-        if size is None and isinstance(motion, Record):
-            raise InvalidArgumentError("size", None, "factors of all lengths, for the spectrum of a record")
+        motion = as_motion(motion)
+        if size is None and PERIOD not in motion.arguments:
+            raise InvalidArgumentError("size", None, f"factors of all lengths, for the spectrum of a {motion.kind}")
         axis, values = ("period", period) if size is None else ("size", size)
         if values is None:
             raise InvalidArgumentError("period", None, "one dimension of periods")
@@ -221,9 +214,6 @@ class RespondingBody(AbstractBody):
         body, times = (self, along) if size is None else (self.scaled(along), period)
         if size is not None and period is not None:
             times = positive("period", period, "s")
-        if size is None and self.is_block:
-            one = Problem.of(self, motion, peak_acceleration, 1.0, restitution, scale=scale)
-            return spectrum(one, along, stop)
         found = respond(Problem.of(body, motion, peak_acceleration, times, restitution, scale=scale), stop=stop)
         return over_axis(found, axis, along)
 
@@ -254,7 +244,7 @@ class RespondingBody(AbstractBody):
             peak_acceleration(point) [m/s2] and period(point) [s].
         """
         self._need_one("boundary", restitution)
-        if isinstance(motion, Record):
+        if PERIOD not in as_motion(motion).arguments:
             raise InvalidArgumentError("motion", motion, "a pulse; `thresholds` gives the factors of a record")
         unit = 2.0 * math.pi / float(self.right.frequency_parameter)  # period at frequency ratio 1 [s]
         problem = Problem.of(self, motion, 1.0, unit, restitution)
@@ -296,11 +286,10 @@ class RespondingBody(AbstractBody):
         xarray.Dataset
             time(time) [s]; rotation(time) [rad], positive about the right edge; angular_velocity(time) [rad/s], after
             the impact at an impact; edge(time): 1 right, -1 left, 0 at rest; ground_acceleration(time) and
-            vertical_acceleration(time) [m/s2]; top_displacement(time) [m]; impact_time(impact) [s]. With `contact`
+            vertical_acceleration(time) [m/s2]; displacement(time) [m]; impact_time(impact) [s]. With `contact`
             horizontal_reaction(time), normal_reaction(time): along the base and normal to it, over the weight [-];
             friction_demand(time) [-], infinite where the body lifts off; attributes largest_friction_demand,
-            smallest_normal_reaction, impulse_ratio, lifts_off, warnings. Of a block without `edge`, with
-            vertical_acceleration where the motion has it, and the attributes of `rocking.time_history`.
+            smallest_normal_reaction, impulse_ratio, lifts_off, warnings.
         """
         length = None if duration is None else positive("duration", duration, "s")
         self._need_one("history", restitution, peak_acceleration=peak_acceleration, period=period, scale=scale)
@@ -383,7 +372,9 @@ class ScaledBody(RespondingBody):
         return replace(edge, frequency_parameter=edge.frequency_parameter / np.sqrt(self.size))
 
 
-def _respond_part(make: Callable[..., RespondingBody], own: tuple[str, ...], motion: Motion, **values: Any) -> Any:
+def _respond_part(
+    make: Callable[..., RespondingBody], own: tuple[str, ...], motion: Motion, error_bound: bool, **values: Any
+) -> Any:
     """The response to arguments as arrays; `make` builds the body from those that belong to it."""
     body = make(**{name: values.pop(name) for name in own})
-    return RespondingBody.response(body, motion, **values)
+    return RespondingBody.response(body, motion, error_bound=error_bound, **values)

@@ -31,8 +31,8 @@ _TABLED = [BODIES[make.__name__] for make in RIGID]
 
 def columns_beside(own: Iterable[Quantity], *left_out: str) -> tuple[Quantity, ...]:
     """The columns of tables of bodies: the kind, and the parameters of rigid ones that are not among a table's own."""
-    taken = {name for one in own for name in one.names} | {"gravity", *left_out}
-    found = {name: one for kind in _TABLED for name, one in kind.fields.items() if one.names[0] not in taken}
+    taken = {quantity.name for quantity in own} | {"gravity", *left_out}
+    found = {name: one for kind in _TABLED for name, one in kind.fields.items() if name not in taken}
     return (KIND, *found.values())
 
 

@@ -2,52 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-
-from rocking._base.arrays import Array
 from rocking._dimensional.problem import STRENGTHS
 from rocking._model import fields
-from rocking._model.outcome import Outcome
 
-ONE, EDGES, BLOCK = fields.KINDS - {"many"}, fields.KINDS - {"block"}, fields.KINDS - {"edges", "many"}
+ALL, BLOCK = fields.KINDS, fields.KINDS - {"edges"}
 
-PULSES, RECORDS = BLOCK - {"record"}, BLOCK - {"pulse"}
-
-
-def _rotation(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> Any:
-    if "over_right" not in known:
-        return known["peak_rotation"] * body.alpha
-    return np.max(np.stack(_rotations(known, body)), axis=0)
-
-
-def _rotations(known: Mapping[str, Any], body: Any) -> tuple[Array, Array]:
-    """Peak rotations about the right and the left edge [rad]: z has the scale of the right one."""
-    alpha = body.right.alpha
-    return known["over_right"] * alpha, known["over_left"] * alpha
-
-
-def _edge(known: Mapping[str, Any], _groups: Any, _motion: Any, body: Any) -> Any:
-    right, left = _rotations(known, body)
-    larger = np.where(right / body.right.alpha >= left / body.left.alpha, 1, -1)
-    larger = np.where(known["outcome"] == Outcome.NO_UPLIFT, 0, larger)
-    return np.where(known["overturned"], known["last_edge"], larger)
-
+PULSES, RECORDS = ALL - {"record"}, ALL - {"pulse"}
 
 ROTATION = fields.ResponseField(
-    "rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns", derive=_rotation,
-    shown="peak_rotation_deg",
-)  # fmt: skip
+    "rotation", "f8", "rad", "3.2", "peak rotation max |theta|", "the block overturns", shown="peak_rotation_deg"
+)
 
 DISPLACEMENT = fields.ResponseField(
-    "displacement", "f8", "m", "3.2", "largest horizontal displacement of the top", "the block overturns",
-    derive=lambda known, groups, motion, body: body.top_displacement(_rotation(known, groups, motion, body)),
-    shown="top_displacement",
+    "displacement", "f8", "m", "3.2", "largest top displacement", "the block overturns",
+    detail="horizontal",
 )  # fmt: skip
+
+ERROR_BOUND = fields.ERROR_BOUND
 
 CONTACT_FORCES = {
     "horizontal_force": ("horizontal_reaction", "horizontal reaction H of the ground at the pivot"),
@@ -55,60 +31,51 @@ CONTACT_FORCES = {
 }
 """Variables of a motion of a body of known mass [N]: the reaction over the weight of each, and its meaning."""
 
-ARGUMENTS = ("scale", "peak_acceleration", "period", "slenderness", "frequency_ratio", "restitution")
-"""Fields that are arguments or groups of the problem."""
 
-
-def _about(
-    name: str, unit: str, equation: str, meaning: str, kinds: frozenset[str], of_body: str = ""
-) -> fields.ResponseField:
+def _about(name: str, unit: str, equation: str, meaning: str, kinds: frozenset[str] = ALL) -> fields.ResponseField:
     """A number that is an argument, a group or a property of the body."""
+    return fields.ResponseField(name, "f8", unit, equation, meaning, kinds=kinds)
 
-    def derive(_known: Any, groups: Any, _motion: Any, body: Any) -> Any:
-        return groups[name] if name in ARGUMENTS else attrgetter(of_body or name)(body)
 
-    return fields.ResponseField(name, "f8", unit, equation, meaning, derive=derive, kinds=kinds)
-
+_IN_CUBE = "the block overturns, or it is interpolated in a data set"
 
 FIELDS = (
     ROTATION,
-    replace(ROTATION, name="rotation_left", meaning="peak rotation about the left edge", kinds=EDGES, shown="",
-            derive=lambda known, _groups, _motion, body: _rotations(known, body)[1]),
-    replace(ROTATION, name="rotation_right", meaning="peak rotation about the right edge", kinds=EDGES, shown="",
-            derive=lambda known, _groups, _motion, body: _rotations(known, body)[0]),
+    replace(ROTATION, name="rotation_left", meaning="peak rotation about the left edge", missing=_IN_CUBE, shown=""),
+    replace(ROTATION, name="rotation_right", meaning="peak rotation about the right edge", missing=_IN_CUBE, shown=""),
     DISPLACEMENT,
     fields.OVERTURNED,
     fields.OUTCOME,
     fields.ResponseField("edge", "i1", "1", "2.2",
                   "edge of the largest rotation over alpha, or of overturning: 1 right, -1 left, 0 without uplift",
-                  kinds=EDGES, derive=_edge),
+                  detail="0 also where it is interpolated in a data set"),
     fields.IMPACTS,
     fields.EXCEEDED_ALPHA,
     fields.PEAK_ROTATION,
-    replace(fields.UPLIFT_TIME, unit="s", meaning="time of the first uplift", kinds=EDGES,
-            derive=lambda known, _groups, _motion, body: known["uplift_time"] / body.right.frequency_parameter),
-    replace(fields.ERROR_BOUND, kinds=PULSES),
-    *fields.DERIVED_FIELDS,
+    replace(fields.UPLIFT_TIME, unit="s", meaning="time of the first uplift",
+            missing="there is no uplift, or it is interpolated in a data set"),
+    ERROR_BOUND,
+    fields.RESIDUAL_ENERGY,
     _about("width", "m", "2.1", "width 2b of the block", BLOCK),
     _about("height", "m", "2.1", "height 2h of the block", BLOCK),
     _about("half_diagonal", "m", "2.2", "half-diagonal R of the block", BLOCK),
     _about("alpha", "rad", "2.1", "slenderness angle", BLOCK),
-    _about("alpha_left", "rad", "2.1", "slenderness angle of the left edge", ONE - {"block"}, "left.alpha"),
-    _about("alpha_right", "rad", "2.1", "slenderness angle of the right edge", ONE - {"block"}, "right.alpha"),
+    _about("alpha_left", "rad", "2.1", "slenderness angle of the left edge"),
+    _about("alpha_right", "rad", "2.1", "slenderness angle of the right edge"),
     _about("frequency_parameter", "rad s-1", "2.2", "frequency parameter p", BLOCK),
-    _about("uplift_acceleration", "m s-2", "2.1", "smallest ground acceleration that starts rocking", ONE),
-    _about("scale", "1", "2.2", "factor of the record", ONE - {"pulse"}),
-    _about("peak_acceleration", "m s-2", "3.2", "peak ground acceleration a_g", ONE),
-    _about("period", "s", "3.2", "period T_p of the pulse", ONE - {"record"}),
+    _about("uplift_acceleration", "m s-2", "2.1", "smallest ground acceleration that starts rocking"),
+    _about("scale", "1", "2.2", "factor of the record", RECORDS),
+    _about("peak_acceleration", "m s-2", "3.2", "peak ground acceleration a_g"),
+    _about("period", "s", "3.2", "period T_p of the pulse", PULSES),
     _about("slenderness", "1", "5.3", "dimensionless slenderness g tan(alpha)/a_g", BLOCK),
-    _about("frequency_ratio", "1", "5.3", "frequency ratio omega_g/p", PULSES),
+    _about("frequency_ratio", "1", "5.3", "frequency ratio omega_g/p", BLOCK & PULSES),
     _about("restitution", "1", "2.4", "coefficient of restitution eta", BLOCK),
 )  # fmt: skip
-"""Fields of a response in SI units, in order; each is an attribute of the responses of its kinds."""
+"""Fields of a response in SI units, in order; each is an attribute of `BodyResponse`."""
 
 
 def _judged(
-    name: str, meaning: str, missing: str = "", *, dtype: str = "f8", unit: str = "1", kinds: frozenset[str] = ONE,
+    name: str, meaning: str, missing: str = "", *, dtype: str = "f8", unit: str = "1", kinds: frozenset[str] = ALL,
     source: Callable[[Any], Any] | None = None,
 ) -> tuple[fields.ResponseField, Callable[[Any], Any]]:  # fmt: skip
     """A value computed on request: an attribute of the response, or a function of it."""
@@ -135,23 +102,23 @@ JUDGED = dict((
             source=lambda found: found.contact.lifts_off),
     _judged("friction_at_uplift", "coefficient of friction below which it slides instead of rocking", kinds=BLOCK,
             source=lambda found: found.block.half_width / found.block.half_height),
-    _judged("pulse_duration", "duration of the pulse", unit="s", kinds=ONE - {"record"},
+    _judged("pulse_duration", "duration of the pulse", unit="s", kinds=PULSES,
             source=lambda found: float(found.problem.duration)),
     _judged("largest_surviving_acceleration", "peak acceleration below which this block, of this size, does not "
             "overturn under this pulse at this period; a smaller block of the same shape may",
             "no change of outcome was found, or the rocking model does not apply just below the lowest of "
             "`thresholds`, see `warnings`",
-            unit="m s-2", kinds=PULSES),
+            unit="m s-2", kinds=BLOCK & PULSES),
     _judged("largest_surviving_friction_demand",
             "coefficient of friction that it needs just below `largest_surviving_acceleration`",
-            "that is null, or it is not known", kinds=PULSES),
+            "that is null, or it is not known", kinds=BLOCK & PULSES),
     _judged("nearest_acceleration", "nearest peak acceleration, by ratio, at which the outcome changes",
-            "none was found", unit="m s-2", kinds=PULSES,
+            "none was found", unit="m s-2", kinds=BLOCK & PULSES,
             source=lambda found: found.margins and found.margins.nearest_acceleration),
     _judged("nearest_period", "nearest period, by ratio, at which the outcome changes", "none was found",
-            unit="s", kinds=PULSES, source=lambda found: found.margins and found.margins.nearest_period),
+            unit="s", kinds=BLOCK & PULSES, source=lambda found: found.margins and found.margins.nearest_period),
     _judged("overturning_scale", "lowest factor of the record found at which it overturns", "none was found, or it was "
-            "not asked for; narrower ranges than 0.2 % can be missed", kinds=ONE - {"pulse"}),
+            "not asked for; narrower ranges than 0.2 % can be missed", kinds=RECORDS),
     _judged("amplification", "relative change of the peak rotation over that of the amplitude of the record",
             "it overturns or does not uplift, or the outcome changes within 1e-9 of the amplitude", kinds=RECORDS),
     _judged("peak_is_determined", "false: the amplification exceeds 1e4, the record does not determine the peak, see "
@@ -168,36 +135,3 @@ JUDGED = dict((
 
 SHOWN = (*(one for one in FIELDS if one.name not in STRENGTHS), *JUDGED)
 """Values of one body that the command line and the service show, in order, without the strength of the motion."""
-
-
-class ResponseFields:
-    """The fields of responses in SI units: a float, int or bool of one body, an array of several."""
-
-    if TYPE_CHECKING:  # those of `FIELDS`, which are set below
-        rotation: Any
-        rotation_left: Any
-        rotation_right: Any
-        displacement: Any
-        overturned: Any
-        outcome: Any
-        edge: Any
-        impacts: Any
-        exceeded_alpha: Any
-        peak_rotation: Any
-        uplift_time: Any
-        error_bound: Any
-        residual_energy: Any
-        width: Any
-        height: Any
-        half_diagonal: Any
-        alpha: Any
-        alpha_left: Any
-        alpha_right: Any
-        frequency_parameter: Any
-        uplift_acceleration: Any
-        scale: Any
-        peak_acceleration: Any
-        period: Any
-        slenderness: Any
-        frequency_ratio: Any
-        restitution: Any

@@ -18,11 +18,11 @@ from rocking._boundary.search import RESOLUTION, refine_brackets
 from rocking._dimensional.problem import Problem
 from rocking._excitation.impulse import impulse_of
 from rocking._excitation.pulses import AbstractPulse
-from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.bodies import outcome_margin_of, solve_motion
+from rocking._solver.bodies import outcome_margin_of
+from rocking._solver.bodies import solve as solve_bodies
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.samples import motion_samples
 
@@ -97,21 +97,21 @@ def lowest_thresholds(
     """
     motion = problem.motion
     shape = np.broadcast_shapes(problem.shape, np.shape(highest))
-    if isinstance(motion, Record):
-        peak = motion.peak_acceleration
-        lines = replace(problem, peak_acceleration=np.full(shape, peak))
+    if motion.is_scanned:
+        peak = motion.unit_acceleration
+        lines = replace(problem, strength=np.ones(shape))
         start, limit = record_range(lines)
         factor = np.broadcast_to(highest, shape).ravel() / peak
         given = record_lines(lines, stop)
         found = lowest_overturning(given, start, factor, limit, resolution=resolution, enough=enough / peak)
         return found.reshape(shape) * peak
     uplift = np.broadcast_to(problem.body.uplift_acceleration, shape)
-    cells = replace(problem, peak_acceleration=np.asarray(uplift)).cells
+    cells = replace(problem, strength=uplift).cells
     top = np.minimum(np.broadcast_to(highest, shape) / uplift, HIGHEST).ravel()
-    lowest = np.full(top.size, np.nan)
+    lowest, pulse = np.full(top.size, np.nan), problem.pulse
 
     def fill(part: slice, _flag: NDArray[np.uint8]) -> None:
-        lowest[part] = _lowest_under_pulse(motion, cells[part], top[part], PULSE_SHARE * resolution, stop)
+        lowest[part] = _lowest_under_pulse(pulse, cells[part], top[part], PULSE_SHARE * resolution, stop)
 
     fill_chunks(fill, top.size, max(FEWEST, math.ceil(top.size / (SHARES * AVAILABLE_CORES))), AVAILABLE_CORES, stop)
     return lowest.reshape(shape) * uplift
@@ -168,7 +168,7 @@ def _lowest_under_pulse(
     def solve(line: Index, slenderness: Array) -> tuple[NDArray[np.void], Flags, Array]:
         chosen = cells[line]
         chosen["slenderness"] *= slenderness[:, None]
-        records, edges = solve_motion(motion, chosen, 1, stop)
+        records, edges = solve_bodies(motion, chosen, 1, stop)
         margin = np.maximum(outcome_margin_of(records, edges, chosen), -1.0)
         return records, records["outcome"] >= Outcome.OVERTURNED_DIRECTLY, margin
 

@@ -89,18 +89,18 @@ def margins_of(
     stop: StopFlag | None = None,
     served: tuple[float, float] = (FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper),
 ) -> Margins:
-    """Nearest changes of outcome of a block under a pulse, from those of `block_thresholds`.
+    """Nearest changes of outcome of a block under a pulse, from those of `thresholds_of`.
 
     `served`: frequency ratios beyond which periods are not searched [-].
     """
-    groups, block = dict(problem.groups), problem.block
+    groups, block, pulse_period = dict(problem.groups), problem.block, float(problem.period)
     omega = groups.pop("frequency_ratio")
     low, high = max(omega / SEARCH_FACTOR, served[0]), min(omega * SEARCH_FACTOR, served[1])
     found = critical_frequency_ratio(problem.pulse, **groups, window=(low, high), stop=stop)
     changes = list(zip(found.frequency_ratio.tolist(), found.overturns_above.tolist(), strict=True))
 
     def period(ratio: float) -> float:
-        return float(problem.period * omega / ratio)  # omega_g = 2 pi/T_p: longer is lower
+        return float(pulse_period * omega / ratio)  # omega_g = 2 pi/T_p: longer is lower
 
     def size(ratio: float) -> float:
         return float(block.half_diagonal * (ratio / omega) ** 2)  # p = sqrt(3 g/(4 R)): larger is higher (2.2)
@@ -109,13 +109,14 @@ def margins_of(
     sizes = tuple([Threshold(size(w), above) for w, above in changes])
     smallest, largest = size(low), size(high)
     overturns_small, overturns_large = found.overturns_at_ends
-    nearest_acceleration = _nearest(problem.peak_acceleration, accelerations)
-    nearest_period = _nearest(problem.period, periods)
+    peak = float(problem.peak_acceleration)
+    nearest_acceleration = _nearest(peak, accelerations)
+    nearest_period = _nearest(pulse_period, periods)
     return Margins(
         nearest_acceleration=nearest_acceleration,
-        acceleration_factor=_factor(nearest_acceleration, problem.peak_acceleration),
+        acceleration_factor=_factor(nearest_acceleration, peak),
         nearest_period=nearest_period,
-        period_factor=_factor(nearest_period, problem.period),
+        period_factor=_factor(nearest_period, pulse_period),
         periods=periods,
         periods_searched=(period(high), period(low)),
         smallest_surviving_half_diagonal=(

@@ -1,41 +1,41 @@
 """Responses in SI units: fields, outcome in words, margins, contact with the ground, conditioning, warnings.
 
-A field is declared once, in `FIELDS`: attributes, exports, the columns of the command line and the models of the
-service derive from it. Margins, contact and warnings are found when they are first asked for.
+A field is declared in `FIELDS` and computed by the property of its name; exports, the columns of the command line and
+the models of the service derive from the declaration. Margins, contact and warnings are found when first asked for.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property, partial
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.quantities import FREQUENCY_RATIO
-from rocking._dimensional.doubts import LARGEST_AMPLIFICATION, notes_of, resampled_response, warnings_of
-from rocking._dimensional.fields import FIELDS, JUDGED, SHOWN, ResponseFields
+from rocking._base.quantities import FREQUENCY_RATIO, SCALE
+from rocking._dimensional.doubts import LARGEST_AMPLIFICATION, notes_of, resampled_problem, warnings_of
+from rocking._dimensional.fields import ERROR_BOUND, FIELDS, JUDGED
 from rocking._dimensional.margins import Margins, margins_of
-from rocking._dimensional.problem import Problem
-from rocking._dimensional.thresholds import WORDS, BodyThresholds, block_thresholds, thresholds_of
-from rocking._excitation.pulses import AbstractPulse
-from rocking._excitation.records.record import Record
+from rocking._dimensional.problem import STRENGTHS, Problem
+from rocking._dimensional.thresholds import WORDS, BodyThresholds, thresholds_of
+from rocking._excitation.motion import AbstractMotion
 from rocking._history.contact import ContactExtremes, contact_extremes
 from rocking._model.block import AbstractBlock
 from rocking._model.body import AbstractBody
-from rocking._model.fields import DERIVED_FIELDS, OUTCOME, OVERTURNED, ResponseField
+from rocking._model.fields import EXCEEDED_ALPHA, IMPACTS, OUTCOME, PEAK_ROTATION, SOLVED_FIELDS, ResponseField
 from rocking._model.labelled import with_index
 from rocking._model.outcome import Outcome
-from rocking._model.response import Response, along_own_axes, axis_names
+from rocking._model.response import along_own_axes, axis_names
 from rocking._numba.cancellation import StopFlag, run_with_timeout
-from rocking._solver.bounded_response import BoundedResponse
-from rocking._solver.records.amplification import record_amplification
+from rocking._solver.bodies import amplification_of, residual_energy_of, solve_with_bound
+from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,47 +47,25 @@ SEARCH_SECONDS = 12.0  # time limit of the search along one line for one block [
 RELATIVE_OFFSET = 1e-9  # relative distance below the lowest change of outcome at which the contact is judged [-]
 
 
-def _value(found: Any, about: ResponseField) -> Any:
-    """The values of a field; a number of one body, the code of an outcome as an `Outcome`."""
-    problem, known = found.problem, found._known
-    if not problem.kinds <= about.kinds:
-        raise AttributeError(about.name)
-    if about in DERIVED_FIELDS:
-        value = getattr(found.dimensionless, about.name)
-    elif about.derive is None:
-        value = known[about.name]
-    else:
-        value = about.derive(known, found._given, problem.motion, problem.body)
-    if problem.shape:
-        return np.array(np.broadcast_to(value, problem.shape), about.dtype)
-    one = np.asarray(value, about.dtype).reshape(()).item()
-    return Outcome(one) if about is OUTCOME else one
-
-
-for _field in FIELDS:
-    _cached = cached_property(partial(_value, about=_field))
-    _cached.__doc__ = _field.description("nan")
-    _cached.__set_name__(ResponseFields, _field.name)
-    setattr(ResponseFields, _field.name, _cached)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class BodyResponse(ResponseFields, EqualByValue):
+class BodyResponse(EqualByValue):
     """The response of bodies to a pulse or a record, in SI units.
 
-    Its fields, those of `fields`, are attributes: numbers for one body under one motion, arrays of the broadcast shape
-    otherwise; `outcome` is a `rocking.Outcome`, or its codes. What concerns one body is found when it is first asked
-    for, in some hundredths of a second under a pulse, some tenths under a record, and refused for several: `sentence`,
+    Its fields, those of `fields`, are numpy scalars for one body under one motion and arrays of the broadcast shape
+    otherwise; `outcome` of one body is a `rocking.Outcome`. What concerns one body is found when it is first asked for,
+    in some hundredths of a second under a pulse, some tenths under a record, and refused for several: `sentence`,
     `margin`, `margins`, `contact`, `warnings`, `notes`.
 
     Attributes
     ----------
-    dimensionless : Response or BoundedResponse
-        The response in groups; of one block under a pulse with a bound of its error.
     problem : Problem
         Bodies and ground motion.
-    edges : float array (size, 4) or None
-        What differs from edge to edge, see `rocking._solver.state.EDGE_COLUMNS`; None for one block.
+    records : array of `RESPONSE_RECORD` (size,)
+        The responses of the solver; times are p t, rotations over alpha of the right edge.
+    edges : float array (size, 4)
+        What differs from edge to edge, see `rocking._solver.state.EDGE_COLUMNS`.
+    bound : float array (size,) or None
+        Bound of the error of the peak rotation [-]; None unless it was asked for.
     searches_thresholds : bool
         Whether the strengths at which the outcome changes are searched for sentences, warnings and margins.
     seconds : float
@@ -98,19 +76,176 @@ class BodyResponse(ResponseFields, EqualByValue):
         Cancels also what is found later.
     """
 
-    dimensionless: Response | BoundedResponse
     problem: Problem
-    edges: Array | None = None
+    records: NDArray[np.void]
+    edges: Array
+    bound: Array | None = None
     searches_thresholds: bool = True
     seconds: float = field(default=SEARCH_SECONDS, compare=False)
     served: tuple[float, float] = field(default=(FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper), compare=False)
     stop: StopFlag | None = field(default=None, compare=False)
 
     @property
+    def rotation(self) -> Any:
+        """Peak rotation max |theta| [rad], (3.2); nan where the body overturns."""
+        largest = np.maximum(self.rotation_right, self.rotation_left)
+        # a data set, of blocks, does not say about which edge
+        return np.where(np.isnan(largest), self.peak_rotation * self.problem.body.right.alpha, largest)[()]
+
+    @property
+    def rotation_left(self) -> Any:
+        """Peak rotation about the left edge [rad]; nan where the body overturns."""
+        return self._shaped(self.edges[:, 1]) * self.problem.body.right.alpha  # z has the scale of the right edge
+
+    @property
+    def rotation_right(self) -> Any:
+        """Peak rotation about the right edge [rad]; nan where the body overturns."""
+        return self._shaped(self.edges[:, 0]) * self.problem.body.right.alpha
+
+    @property
+    def displacement(self) -> Any:
+        """Largest horizontal displacement of the top [m], `top_height` sin(theta); nan where the body overturns."""
+        return self.problem.body.top_height * np.sin(self.rotation)
+
+    @property
+    def overturned(self) -> Any:
+        """True where the body overturns in the end."""
+        return self._shaped(self.records["outcome"]) >= Outcome.OVERTURNED_DIRECTLY
+
+    @property
+    def outcome(self) -> Any:
+        """Final outcome, (3.8): a `rocking.Outcome`, of several bodies its codes."""
+        codes = self._shaped(self.records["outcome"])
+        return codes if self.shape else Outcome(int(codes))
+
+    @property
+    def edge(self) -> Any:
+        """Edge of the largest rotation over alpha, or of overturning: 1 right, -1 left, 0 without uplift."""
+        body = self.problem.body
+        right, left = self.rotation_right / body.right.alpha, self.rotation_left / body.left.alpha
+        larger = np.where(right >= left, 1, np.where(left > right, -1, 0))
+        larger = np.where(self._shaped(self.records["outcome"]) == Outcome.NO_UPLIFT, 0, larger)
+        last = self._shaped(self.edges[:, 3])
+        return np.where(self.overturned, last, larger).astype(np.int8)[()]
+
+    @property
+    def impacts(self) -> Any:
+        """Number of impacts before the motion ends, and the one after it that is followed by overturning, (2.3)."""
+        return self._shaped(self.records["impacts"])
+
+    @property
+    def exceeded_alpha(self) -> Any:
+        """True where |theta| passed alpha at some time."""
+        return self._shaped(self.records["exceeded_alpha"])
+
+    @property
+    def peak_rotation(self) -> Any:
+        """Peak of |theta|/alpha [-], (3.2); nan where the body overturns."""
+        return self._shaped(self.records["peak_rotation"])
+
+    @property
+    def uplift_time(self) -> Any:
+        """Time of the first uplift [s]; nan where there is none."""
+        return self._shaped(self.records["uplift_time"]) / self.problem.body.right.frequency_parameter
+
+    @property
+    def error_bound(self) -> Any:
+        """Bound of the absolute error of `peak_rotation` [-], see `rocking._solver.bodies.error_bound`.
+
+        Raises `InvalidArgumentError` unless it was asked for.
+        """
+        if self.bound is None:
+            raise InvalidArgumentError("error_bound", False, "True, for a response with a bound of its error")
+        return self._shaped(self.bound)
+
+    @property
+    def residual_energy(self) -> Any:
+        """Energy at the end of the motion over that of the unstable equilibrium at alpha [-], (3.11)."""
+        return self._shaped(residual_energy_of(self.records, self.edges, self.problem.cells))
+
+    @property
+    def width(self) -> Any:
+        """Width 2b of the block [m]."""
+        return self._spread(self.block.width)
+
+    @property
+    def height(self) -> Any:
+        """Height 2h of the block [m]."""
+        return self._spread(self.block.height)
+
+    @property
+    def half_diagonal(self) -> Any:
+        """Half-diagonal R of the block [m], (2.2)."""
+        return self._spread(self.block.half_diagonal)
+
+    @property
+    def alpha(self) -> Any:
+        """Slenderness angle of the block [rad], (2.1)."""
+        return self._spread(self.block.alpha)
+
+    @property
+    def alpha_left(self) -> Any:
+        """Slenderness angle of the left edge [rad]."""
+        return self._spread(self.problem.body.left.alpha)
+
+    @property
+    def alpha_right(self) -> Any:
+        """Slenderness angle of the right edge [rad]."""
+        return self._spread(self.problem.body.right.alpha)
+
+    @property
+    def frequency_parameter(self) -> Any:
+        """Frequency parameter p of the block [rad/s], (2.2)."""
+        return self._spread(self.block.frequency_parameter)
+
+    @property
+    def uplift_acceleration(self) -> Any:
+        """Smallest ground acceleration that starts rocking [m/s2]."""
+        return self._spread(self.problem.body.uplift_acceleration)
+
+    @property
+    def scale(self) -> Any:
+        """Factor of the record [-]."""
+        return self._spread(self.problem.strength)
+
+    @property
+    def peak_acceleration(self) -> Any:
+        """Peak ground acceleration a_g [m/s2]."""
+        return self._spread(self.problem.peak_acceleration)
+
+    @property
+    def period(self) -> Any:
+        """Period T_p of the pulse [s]."""
+        return self._spread(self.problem.period)
+
+    @property
+    def slenderness(self) -> Any:
+        """Dimensionless slenderness g tan(alpha)/a_g of the block [-], (5.3)."""
+        return self.uplift_acceleration / self.peak_acceleration
+
+    @property
+    def frequency_ratio(self) -> Any:
+        """Frequency ratio omega_g/p of the block [-], (5.3)."""
+        return 2.0 * math.pi / self.period / self.frequency_parameter
+
+    @property
+    def restitution(self) -> Any:
+        """Coefficient of restitution eta of the block [-]."""
+        return self._spread(self.problem.restitutions[0])
+
+    def _shaped(self, values: Array) -> Any:
+        """Values (size,) in the shape of the responses, of one body a numpy scalar."""
+        return values.reshape(self.problem.shape)[()]
+
+    def _spread(self, values: Any) -> Any:
+        """Values that broadcast in the shape of the responses."""
+        return np.array(np.broadcast_to(values, self.problem.shape))[()]
+
+    @property
     def fields(self) -> tuple[ResponseField, ...]:
-        """The fields of this kind of response, in order."""
+        """The fields of this response, in order."""
         kinds = self.problem.kinds
-        return tuple(one for one in FIELDS if kinds <= one.kinds)
+        return tuple(one for one in FIELDS if kinds <= one.kinds and (self.bound is not None or one is not ERROR_BOUND))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -128,49 +263,21 @@ class BodyResponse(ResponseFields, EqualByValue):
         return self.problem.block
 
     @property
-    def record(self) -> Record:
-        """The record without its factor, where the motion is one."""
-        if not isinstance(self.problem.motion, Record):
-            raise InvalidArgumentError("motion", self.problem.motion, "a record")
-        return self.problem.motion
-
-    @property
     def motion(self) -> Mapping[str, str]:
         """Kind of the ground motion and its name, {"pulse": NAME} or {"record": NAME}."""
         motion = self.problem.motion
-        return {"record" if isinstance(motion, Record) else "pulse": motion.name}
-
-    @cached_property
-    def _known(self) -> dict[str, Any]:
-        """What was solved, by name: arrays."""
-        found = self.dimensionless
-        known = {one: value for one, value in vars(found).items() if isinstance(value, np.ndarray)}
-        known[OVERTURNED.name] = found.overturned
-        if self.edges is not None:
-            known |= dict(zip(("over_right", "over_left", "side", "last_edge"), self._sides, strict=True))
-        return known
-
-    @property
-    def _sides(self) -> Any:
-        return np.moveaxis(np.asarray(self.edges).reshape(*self.problem.shape, -1), -1, 0)
-
-    @cached_property
-    def _given(self) -> dict[str, Any]:
-        """Strength of the motion and groups of one block, by name."""
-        problem = self.problem
-        given = {name: getattr(problem, name) for name in ("peak_acceleration", "period", "scale")}
-        return (problem.groups if problem.is_block else {}) | given
+        return {motion.kind: motion.name}
 
     @cached_property
     def thresholds(self) -> BodyThresholds | None:
         """Peak accelerations [m/s2], or factors of the record, at which the outcome changes, for each body.
 
-        Of one block None if they are not searched, or not found in time.
+        Of one body None if they are not searched, or not found in time.
         """
         problem = self.problem
-        if not problem.is_block:
+        if problem.shape:
             return thresholds_of(problem, stop=self.stop)
-        return self._searched(lambda part: block_thresholds(problem, stop=part)) if self.searches_thresholds else None
+        return self._searched(lambda part: thresholds_of(problem, stop=part)) if self.searches_thresholds else None
 
     @property
     def changes(self) -> list[dict[str, Any]] | None:
@@ -187,28 +294,25 @@ class BodyResponse(ResponseFields, EqualByValue):
     @cached_property
     def contact(self) -> ContactExtremes:
         """Extremes of the contact forces during the motion of one body."""
-        return self._contact("contact")
+        self._need_one("contact")
+        return self._contact(self.problem)
 
     @cached_property
     def contact_below(self) -> ContactExtremes | None:
         """`contact` just below the lowest of `thresholds`, for a block under a pulse; None if there is none."""
-        if not self._has_margins or not self.thresholds:
+        if not self.has_margins or not self.thresholds:
             return None
-        lowest = self.block.uplift_acceleration / self.thresholds[0].value
-        return self._contact("contact_below", slenderness=lowest * (1.0 + RELATIVE_OFFSET))
+        below = np.asarray(self.thresholds[0].value / (1.0 + RELATIVE_OFFSET))
+        return self._contact(replace(self.problem, strength=below))
 
-    def _contact(self, name: str, **changed: float) -> ContactExtremes:
-        self._need_one(name)
-        found = contact_extremes(self.problem.body_motion(None, self.stop, 0, **changed))
-        return found if self.problem.body.contact_is_known else found.without_forces()
-
-    @property
-    def _of_record(self) -> bool:
-        return isinstance(self.problem.motion, Record)
+    def _contact(self, problem: Problem) -> ContactExtremes:
+        found = contact_extremes(problem.body_motion(None, self.stop))
+        return found if problem.body.contact_is_known else found.without_forces()
 
     @property
-    def _has_margins(self) -> bool:
-        return self.problem.is_block and not self._of_record
+    def has_margins(self) -> bool:
+        """True for a block under a pulse."""
+        return self.problem.kinds == {"pulse", "block"}
 
     @property
     def sentence(self) -> str:
@@ -229,9 +333,9 @@ class BodyResponse(ResponseFields, EqualByValue):
         self._need_one("margin")
         found = self.thresholds if self.searches_thresholds else None
         if found is None:
-            name = WORDS["scale" if self._of_record else "peak_acceleration"][0]
+            name = WORDS[self.problem.motion.strength.name][0]
             return f"from which {name} it overturns was not found in time" if self.searches_thresholds else None
-        if not self._has_margins:
+        if not self.has_margins:
             return found.sentence
         if not found:
             return "no peak acceleration was found that overturns it at this period"
@@ -247,7 +351,7 @@ class BodyResponse(ResponseFields, EqualByValue):
     def margins(self) -> Margins | None:
         """Distances of a block to another outcome under a pulse; None otherwise, if not searched or found in time."""
         self._need_one("margins")
-        if not (self._has_margins and self.searches_thresholds):
+        if not (self.has_margins and self.searches_thresholds):
             return None
         found = self.thresholds or ()
         return self._searched(lambda part: margins_of(self.problem, found, part, self.served))
@@ -273,30 +377,28 @@ class BodyResponse(ResponseFields, EqualByValue):
     def overturning_scale(self) -> float | None:
         """Lowest factor of a record found at which one body overturns [-]; None if none was found or searched."""
         self._need_one("overturning_scale")
-        found = self.thresholds if self._of_record and self.searches_thresholds else None
-        return found[0].value if found else None
+        found = self.thresholds if self.searches_thresholds else None
+        return found[0].value if found and found.strength == SCALE.name else None
 
     @cached_property
-    def resampled(self) -> Response | BoundedResponse | None:
-        """The response of a block to the record interpolated band-limited at an eighth of its step.
+    def resampled(self) -> BodyResponse | None:
+        """The response of one body to the record interpolated band-limited at an eighth of its step.
 
         None for a pulse, and for a record that would be too long, or its step too small, or its vertical acceleration
         reach -g.
         """
         self._need_one("resampled")
-        return resampled_response(self.problem, self.stop) if self._of_record and self.problem.is_block else None
+        finer = resampled_problem(self.problem)
+        return None if finer is None else respond(finer, stop=self.stop)
 
     @cached_property
     def amplification(self) -> float:
-        """Relative change of the peak rotation of a block per relative change of the amplitude of a record [-].
+        """Relative change of the peak rotation of one body per relative change of the horizontal amplitude [-].
 
-        Infinite if the outcome changes within 1e-9 of the amplitude, nan if the block overturns or does not uplift.
+        Infinite if the outcome changes within 1e-9 of the amplitude, nan if the body overturns or does not uplift.
         """
         self._need_one("amplification")
-        motion = self.problem.motion
-        if not isinstance(motion, Record) or not self.problem.is_block:
-            return math.nan
-        return float(record_amplification(motion, **self.problem.groups, stop=self.stop))
+        return float(amplification_of(self.problem.motion, self.problem.cells, self.stop)[0])
 
     @property
     def peak_is_determined(self) -> bool:
@@ -317,7 +419,10 @@ class BodyResponse(ResponseFields, EqualByValue):
     def to_dict(self) -> dict[str, Any]:
         """The fields by name: numbers and the name of the outcome for one body, arrays for several."""
         values = {one.name: getattr(self, one.name) for one in self.fields}
-        return values if self.problem.shape else values | {OUTCOME.name: self.outcome.name}
+        if self.problem.shape:
+            return values
+        numbers = {name: np.asarray(value).item() for name, value in values.items()}
+        return numbers | {OUTCOME.name: self.outcome.name}
 
     def summary(self) -> dict[str, Any]:
         """The fields of one body and what is judged of it, `SHOWN`, as the command line and the service show them.
@@ -326,7 +431,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         """
         self._need_one("summary")
         kinds = self.problem.kinds
-        fields = [one for one in SHOWN if kinds <= one.kinds]
+        fields = [one for one in (*self.fields, *JUDGED) if kinds <= one.kinds and one.name not in STRENGTHS]
         return shown(fields, [JUDGED[one](self) if one in JUDGED else getattr(self, one.name) for one in fields])
 
     def to_xarray(self) -> xr.Dataset:
@@ -376,11 +481,7 @@ class BodyResponse(ResponseFields, EqualByValue):
         outcome = self.outcome
         happened, impacts = outcome.sentence, f"{self.impacts} impact{'' if self.impacts == 1 else 's'}"
         strength = f"{self.peak_acceleration:.4g} m/s2"
-        if not problem.is_block:
-            under += f" of {strength}"
-            if outcome >= Outcome.OVERTURNED_DIRECTLY:
-                happened += f" about the {EDGE_NAMES[self.edge]} edge"
-        elif self._of_record:
+        if motion.strength is SCALE:
             happened, margin = self.sentence, f"; {self.margin}" if self.margin else ""
             if not self.peak_is_determined:
                 doubt = f" (not determined: amplification {self.amplification:.1e})"
@@ -388,6 +489,8 @@ class BodyResponse(ResponseFields, EqualByValue):
         else:
             impacts += " during the pulse"
             under += f" of {strength} and {self.period:.4g} s"
+        if outcome >= Outcome.OVERTURNED_DIRECTLY and problem.body.left is not problem.body.right:
+            happened += f" about the {EDGE_NAMES[int(self.edge)]} edge"
         if outcome == Outcome.RECOVERS:
             peak = f"peak rotation {math.degrees(self.rotation):.4g} deg{doubt}"
             happened += f": {peak}, top displacement {self.displacement:.4g} m, {impacts}"
@@ -411,17 +514,50 @@ _UNITS = {
 
 
 def respond(
-    problem: Problem, threads: int | None = None, stop: StopFlag | None = None, *, thresholds: bool = True,
+    problem: Problem,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+    *,
+    error_bound: bool = False,
+    thresholds: bool = True,
     seconds: float = SEARCH_SECONDS,
-) -> BodyResponse:  # fmt: skip
+) -> BodyResponse:
     """The responses of bodies by the solver; `thresholds`, `seconds`: see `BodyResponse`."""
-    found, edges = problem.solve(threads, stop)
-    return BodyResponse(found, problem, edges, thresholds, seconds, stop=stop)
+    solved = problem.solve(threads, stop, error_bound=error_bound)
+    return BodyResponse(problem, *solved, thresholds, seconds, stop=stop)
 
 
-def changes_of(found: BodyThresholds, motion: AbstractPulse | Record) -> list[dict[str, Any]]:
+def respond_each(problems: Sequence[Problem], stop: StopFlag | None = None) -> list[BodyResponse]:
+    """The responses of single bodies to one pulse, which are solved together, with the bounds of their errors."""
+    if not problems:
+        return []
+    cells = np.concatenate([problem.cells for problem in problems])
+    records, edges, bound = solve_with_bound(problems[0].motion, cells, None, stop)
+    return [
+        BodyResponse(problem, records[k : k + 1], edges[k : k + 1], bound[k : k + 1], stop=stop)
+        for k, problem in enumerate(problems)
+    ]
+
+
+def interpolated_response(problem: Problem, found: Any, stop: StopFlag | None = None) -> BodyResponse:
+    """The response of one block from fields that a data set gives: peak, outcome, impacts, exceeded_alpha, bound.
+
+    What a data set does not hold is nan.
+    """
+    records = np.zeros(1, RESPONSE_RECORD)
+    for one in SOLVED_FIELDS:
+        if one.dtype == "f8":
+            records[one.name] = math.nan
+    for one in (PEAK_ROTATION, OUTCOME, IMPACTS, EXCEEDED_ALPHA):
+        records[one.name] = np.ravel(getattr(found, one.name))
+    edges = np.full((1, EDGE_COLUMNS), math.nan)
+    edges[:, 3] = 0.0
+    return BodyResponse(problem, records, edges, np.ravel(found.error_bound), stop=stop)
+
+
+def changes_of(found: BodyThresholds, motion: AbstractMotion) -> list[dict[str, Any]]:
     """The thresholds of one body, of a record with the peak accelerations too, and whether it overturns above."""
-    peak = motion.peak_acceleration if isinstance(motion, Record) else 1.0
+    peak = motion.unit_acceleration
     return [
         {found.strength: one.value, "peak_acceleration": one.value * peak, "overturns_above": one.overturns_above}
         for one in found
@@ -436,10 +572,12 @@ def shown(fields: Iterable[ResponseField], values: Iterable[Any]) -> dict[str, A
         if one is OUTCOME:
             text = value.name
         elif one.name == "edge":
-            text = EDGE_NAMES[value]
+            text = EDGE_NAMES[int(value)]
         elif isinstance(value, float):
-            number = math.degrees(value) if one.unit == "rad" else value
+            number = float(math.degrees(value) if one.unit == "rad" else value)
             text = number if math.isfinite(number) else None
+        elif isinstance(value, np.generic):
+            text = value.item()
         found[one.label] = text
     return found
 

@@ -4,40 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import compress
 from os import PathLike
 from typing import Any
 
-import numpy as np
-
+from rocking._base.cells import text_of_cell
 from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
-from rocking._base.quantities import HEIGHT, NAME, NUMBER, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
+from rocking._base.quantities import HEIGHT, NAME, PEAK_ACCELERATION, PERIOD, RESTITUTION, WIDTH
 from rocking._base.quantity import Quantity
-from rocking._dimensional.block import Block
 from rocking._dimensional.body_kinds import columns_beside, described
 from rocking._dimensional.fields import FIELDS
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.response import respond, shown
+from rocking._dimensional.response import respond_each, shown
 from rocking._dimensional.rigid_body import RigidBody
-from rocking._dimensional.table_header import Schema
-from rocking._dimensional.table_reader import Table, read_csv, read_file
+from rocking._dimensional.table_reader import Row, Schema, Table, TableLayout, open_text, read_rows, read_table_file
 from rocking._excitation.pulses import AbstractPulse
-from rocking._model.fields import OUTCOME
-from rocking._model.outcome import Outcome
+from rocking._model.block import RectangularBlock
 from rocking._numba.cancellation import StopFlag, check_stop
-from rocking._solver.bounded_response import solve_with_bound
 
 COLUMNS = (NAME, WIDTH, HEIGHT, PEAK_ACCELERATION, PERIOD, RESTITUTION)
 """Columns of a table of blocks. Those of other bodies follow; further columns are passed through."""
 
 RESPONSES = tuple(
-    one
-    for one in FIELDS
-    if one.kinds >= {"pulse", "block"} and one.name not in ("half_diagonal", "frequency_parameter")
+    field
+    for field in FIELDS
+    if field.kinds >= {"pulse", "block"} and field.name not in ("half_diagonal", "frequency_parameter")
 )
 """What the columns of responses hold."""
 
-_SIZES = (("width", "diameter", "left", "vertices", "body"), ("height", "mass_height", "vertices", "body"))
+SHAPES = columns_beside(COLUMNS)
+"""The kind of a body, and parameters of other bodies than blocks."""
+
+SIZES = (("width", "diameter", "left", "vertices", "body"), ("height", "mass_height", "vertices", "body"))
+"""Quantities of which a table of bodies needs one from each group."""
 
 
 @dataclass(frozen=True)
@@ -47,16 +45,19 @@ class BlockTable:
     problems: list[Problem]  # one for each row that could be read
     names: list[str]  # labels, empty without a column `name`
     # the table that they were read from, with the rows that could not be read
-    read: Table[Problem] = field(default_factory=lambda: Table([]))
+    read: Table[Problem] = field(default_factory=Table)
 
     def check(self) -> None:
         """Refuse a table with a row that could not be read."""
-        errors = [
-            InvalidArgumentError(f"blocks, row {row}, {one.parameter}".removesuffix(", row"), one.value, one.allowed)
-            for row, one in self.read.errors
-        ]
+        errors = []
+        for row in self.read.bad_rows:
+            for error in row.errors:
+                place = f"blocks, row {row.row}, {error.parameter}".removesuffix(", row")
+                errors.append(InvalidArgumentError(place, error.value, error.allowed))
+        if len(errors) == 1:
+            raise errors[0]
         if errors:
-            raise SeveralArgumentsError(errors) if len(errors) > 1 else errors[0]
+            raise SeveralArgumentsError(errors)
 
 
 def read_table(
@@ -66,13 +67,16 @@ def read_table(
     *,
     most: int | None = None,
     stop: StopFlag | None = None,
-    limited: Callable[[Quantity], Quantity] = lambda one: one,
+    limited: Callable[[Quantity], Quantity] = lambda quantity: quantity,
+    layout: TableLayout | None = None,
 ) -> BlockTable:
-    """Read a table of at most `most` blocks from text, as `read_blocks` from a file. `stop` cancels the work.
+    """Read a table of at most `most` blocks from CSV text, as `read_blocks` from a file. `stop` cancels the work.
 
     `limited` gives each quantity the range that is allowed.
     """
-    return _blocks(read_csv(text, _schema(pulse, {"restitution": restitution}, limited), most, stop))
+    schema = _schema(pulse, {"restitution": restitution}, limited)
+    file = open_text(text, "blocks", schema, layout or TableLayout(), stop)
+    return _blocks(read_rows(file, schema, most))
 
 
 def read_blocks(
@@ -82,86 +86,63 @@ def read_blocks(
     *,
     peak_acceleration: float | None = None,
     period: float | None = None,
+    layout: TableLayout | None = None,
 ) -> BlockTable:
-    """Read a table of blocks from a file, CSV or a sheet; `-` is standard input.
+    """Read a table of blocks from a file, CSV or a sheet, in a stated layout; `-` is standard input.
 
     Restitution, a_g [m/s2] and T_p [s] are for rows that state none; the table needs these columns without them.
     """
-    given = {"restitution": restitution, "peak_acceleration": peak_acceleration, "period": period}
-    return _blocks(read_file(source, _schema(pulse, {name: one for name, one in given.items() if one is not None})))
+    shared = {"restitution": restitution, "peak_acceleration": peak_acceleration, "period": period}
+    stated = {name: value for name, value in shared.items() if value is not None}
+    return _blocks(read_table_file(source, _schema(pulse, stated), layout or TableLayout()))
 
 
 def _schema(
-    pulse: str | AbstractPulse, given: dict[str, float | str], limited: Callable[[Quantity], Quantity] = lambda one: one
+    pulse: str | AbstractPulse,
+    shared: dict[str, float | str],
+    limited: Callable[[Quantity], Quantity] = lambda quantity: quantity,
 ) -> Schema[Problem]:
-    """A table of bodies under a pulse; `given` fills empty cells."""
-    shapes = columns_beside(COLUMNS)
-    parameters = {one.name for one in shapes[1:]} | {"width", "height"}
+    """A table of bodies under a pulse; `shared` are values of rows that state none."""
+    parameters = {quantity.name for quantity in SHAPES[1:]} | {"width", "height"}
+    motion = [quantity for quantity in (PEAK_ACCELERATION, PERIOD) if quantity.name not in shared]
 
-    def problem(_: int, values: dict[str, Any], __: dict[str, str]) -> Problem:
-        one = given | values
+    def problem(row: Row) -> Problem:
+        values = shared | row.values
         for quantity in (PEAK_ACCELERATION, PERIOD):
-            if one.get(quantity.name) is None:
-                raise InvalidArgumentError(quantity.name, None, "a value in each row")
-            limited(quantity).number(one[quantity.name])
-        shape = {name: one[name] for name in one if name in parameters}
+            limited(quantity).number(values[quantity.name])
+        shape = {name: value for name, value in values.items() if name in parameters}
         depth = shape.pop("depth", None)  # of other kinds than a hollow box it says nothing in this plane
-        kind, stated = described(one.get("body"), shape)
+        kind, stated = described(values.get("body"), shape)
         if depth is not None and "depth" in kind.fields:
             stated["depth"] = depth
         for name, value in kind.read(stated).items():
             if kind.fields[name].unit:
                 limited(kind.fields[name]).number(value)
-        return Problem.of(kind(**stated), pulse, one["peak_acceleration"], one["period"], one["restitution"])
+        return Problem.of(kind(**stated), pulse, values["peak_acceleration"], values["period"], values["restitution"])
 
-    needed = (*_SIZES, *((one.name,) for one in (PEAK_ACCELERATION, PERIOD) if one.name not in given))
-    return Schema("blocks", (*COLUMNS, NUMBER, *shapes), needed, problem)
+    required = (*SIZES, *((quantity.name,) for quantity in motion))
+    return Schema("blocks", (*COLUMNS, *SHAPES), required, problem)
 
 
-def _blocks(read: Table[Problem]) -> BlockTable:
-    names = next((read.cells[label] for label, name in read.columns.items() if name == "name"), [])
-    return BlockTable(read.items, names, read)
+def _blocks(table: Table[Problem]) -> BlockTable:
+    labels = [label for label, header in table.columns.items() if header == "name"]
+    names = [text_of_cell(cell) for label in labels for cell in table.cells[label]]
+    return BlockTable(table.items, names, table)
 
 
 def respond_table(table: BlockTable, stop: StopFlag | None = None) -> dict[str, list[Any]]:
     """The responses as columns in SI units, degrees and groups, in the order of the rows; missing numbers are None.
 
-    `stop` cancels the work, which then raises `StoppedError`. Blocks are solved together, other bodies one by one:
-    `body` then says what each is, and what only a block has is None.
+    `stop` cancels the work, which then raises `StoppedError`. Of other bodies than blocks `body` says what each is, and
+    what only a block has is None.
     """
-    together = [type(one.body) is Block and one.is_block for one in table.problems]
-    solved = iter(_respond_blocks([*compress(table.problems, together)], stop))
-    pairs = zip(table.problems, together, strict=True)
-    rows = [next(solved) if known else _respond_other(one, stop) for one, known in pairs]
     columns: dict[str, list[Any]] = {"name": table.names} if table.names else {}
-    if not all(together):
-        columns["body"] = [one.body.description for one in table.problems]
-    return columns | {one.label: [row.get(one.label) for row in rows] for one in RESPONSES}
-
-
-def _respond_other(problem: Problem, stop: StopFlag | None) -> dict[str, Any]:
-    check_stop(stop)
-    found, body = respond(problem, stop=stop), problem.body
-    size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
-    return size | shown(found.fields, [getattr(found, one.name) for one in found.fields])
-
-
-def _respond_blocks(problems: list[Problem], stop: StopFlag | None) -> list[dict[str, Any]]:
-    """The rows of blocks."""
-    if not problems:
-        return []
-    columns: dict[str, Any] = {name: np.array([one.groups[name] for one in problems]) for name in problems[0].groups}
-    sizes = (np.array([getattr(one.block, name) for one in problems]) for name in ("width", "height"))
-    found = solve_with_bound(problems[0].pulse, **columns, stop=stop, body=Block(*sizes))
-    solved = {one.name: getattr(found, one.name).tolist() for one in RESPONSES if hasattr(found, one.name)}
+    if not all(isinstance(problem.body, RectangularBlock) for problem in table.problems):
+        columns["body"] = [problem.body.description for problem in table.problems]
     rows = []
-    for problem, *values in zip(problems, *solved.values(), strict=True):
-        known = dict(zip(solved, values, strict=True))
-        known[OUTCOME.name] = Outcome(known[OUTCOME.name])
-        given = problem.groups | {name: getattr(problem, name) for name in ("peak_acceleration", "period")}
-        derived = (
-            known[one.name] if one.name in known else one.derive(known, given, problem.motion, problem.body)  # type: ignore[misc]
-            for one in RESPONSES
-        )
-        rows.append(shown(RESPONSES, derived))
-    return rows
+    for response in respond_each(table.problems, stop):
+        check_stop(stop)
+        body = response.body
+        size = {"width": float(body.width), "height": float(body.top_height)} if isinstance(body, RigidBody) else {}
+        rows.append(size | shown(response.fields, [getattr(response, one.name) for one in response.fields]))
+    return columns | {one.label: [row.get(one.label) for row in rows] for one in RESPONSES}

@@ -1,112 +1,148 @@
-"""Tables as people keep them: CSV with any separator and decimal sign, and sheets as an extra.
+"""Tables of objects and of blocks in a stated layout: CSV text, or a sheet of a workbook through pandas.
 
-Units stand in the header ("width [cm]", "Breite (cm)", "height, m"), in a line of their own above or below it, in a
-column of their own, or in the cells ("40 cm"). What is not certain is not read: a number whose decimal sign other
-numbers of the table do not settle ("1,234") refuses its row, and so does a length in a column that is not read.
+The first line is the header: canonical names of quantities, whose case, blanks and underscores do not matter, each with
+its unit in brackets or in its cells. `TableLayout` states another layout. What is not stated is not read: a row is
+refused with all its reasons, and columns of other names are kept as they stand.
 """
 
 from __future__ import annotations
 
 import csv
 import io
-import re
+import math
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
-from itertools import chain, islice, zip_longest
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
-from rocking._base.cells import decimal_sign, half_width, name_and_unit, plain_name, read_cell, split_number
-from rocking._base.errors import InvalidArgumentError, UnreadableFileError
+from rocking._base.cells import Cell, is_empty, name_and_unit, plain_name, read_cell, text_of_cell
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, TableFileError, UnreadableFileError
 from rocking._base.quantity import Quantity
-from rocking._base.units import MAX_LENGTH, UNITS, unit_name
-from rocking._dimensional.table_header import (
-    AMOUNT,
-    EMPTY,
-    HEADER_ROWS,
-    MAX_NAME,
-    Header,
-    HeaderLine,
-    Schema,
-    find_header,
-    header_lines,
-    is_sizes,
-    is_unit,
-    is_used,
-)
-from rocking._dimensional.table_sizes import BETWEEN, with_sizes
+from rocking._base.units import UNITS, unit_name
+from rocking._excitation.records.readers.layout import SEPARATORS
 
 if TYPE_CHECKING:
     from rocking._numba.cancellation import StopFlag  # numba takes longer to load than a table
 
 Item = TypeVar("Item")
 
-DELIMITERS = ",;\t|"
-
 SHEETS = (".xlsx", ".ods")  # endings of files that are not text
 MAX_CHARACTERS = 20_000_000  # longest table that is read
-
-EMPTY_ROWS, SHEET_COLUMNS, SHEET_CELLS = 20_000, 16_384, 1_000_000
-"""Limits: rows without an item, where rows are limited; columns and cells of a sheet (one far out makes all)."""
-
-_TOTAL = re.compile(
-    r"(?:sub|grand |zwischen)?(?:totals?|sum|mean|average|summe|gesamt(?:summe)?|insgesamt|mittel(?:wert)?|totale|"
-    r"totaux|somma|somme|suma|soma|count|media|moyenne|promedio|avg|median|m[e\u00e9]diane|std|sd|std\.?\s*dev|"
-    r"standard deviation|minimum|maximum|min|max|durchschnitt|overall|all objects|totaal|summa|razem|toplam|ortalama|"
-    r"\u0438\u0442\u043e\u0433\u043e|\u03c3\u03cd\u03bd\u03bf\u03bb\u03bf|\u03bc\u03ad\u03c3\u03bf\u03c2 "
-    r"\u03cc\u03c1\u03bf\u03c2|\u03a3|[\u5408\u5c0f\u7dcf\u603b][\u8a08\u8ba1]|\u5e73\u5747)"
-    r"\.?\s*(?:[:(\d\u00b1].*|(?:of|all|objects?|items?|pieces|weight|number|objekte|oggetti|objets|objetos|hall|room|general|"
-    r"g\u00e9n\u00e9ral|geral)\b.*)?",
-    re.IGNORECASE | re.DOTALL,
-)
-"""First cells of rows that are no objects: "Total", "Sum (12 objects)", not "Total Eclipse"."""
-
-_EXACT = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:e[-+][0-9]+)?")
-
-_PLAIN = re.compile(r"-?(?:0|[1-9][0-9]{0,14})(?:[.,][0-9]{1,15})?")
-
-MARK = "\ufeff"  # what some programs put before a text of UTF-8
-EXACT = "\u2060"  # before a number of a sheet in its text
+MAX_COLUMNS = 1000  # most columns of a table
+SHEET_CELLS = 1_000_000  # most cells of a sheet: one far out makes all
+SHOWN_LINES, SHOWN_SIGNS = 6, 120  # first lines of a file that a message shows, and signs of each
+LINES_ABOVE = 12  # lines above a header that a message proposes to skip
+EXTENTS = ("width", "depth", "diameter", "height")
+SIZE_RANGE = 0.01, 50.0  # sizes of an object that are read without a question [m]
+UNUSED = "unused"  # what `columns` maps a column to that is not read
 
 
 class TooManyRowsError(InvalidArgumentError):
     """A table has more rows than the caller allows; no item was made."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class TableLayout:
+    """What the user states about a table.
+
+    Attributes
+    ----------
+    columns : mapping of str to str
+        The header that stands for another one: {"Breite (cm)": "width [cm]"}; "unused" for a column that is not read.
+    decimal : {".", ","}
+        Decimal sign of texts.
+    delimiter : str, optional
+        Sign between the cells; it is needed where the header has several of comma, semicolon and tab.
+    skip : int
+        Lines above the header.
+    sheet : str, optional
+        Name of the sheet of a workbook; it is needed where several hold cells.
+    allow_unusual : bool
+        True to read objects below 1 cm or above 50 m.
+    """
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    decimal: str = "."
+    delimiter: str | None = None
+    skip: int = 0
+    sheet: str | None = None
+    allow_unusual: bool = False
+
+    def __post_init__(self) -> None:
+        if self.decimal not in (".", ","):
+            raise InvalidArgumentError("decimal", self.decimal, "'.' or ','")
+        if self.delimiter is not None and self.delimiter not in SEPARATORS:
+            raise InvalidArgumentError("delimiter", self.delimiter, f"one of {', '.join(map(repr, SEPARATORS))}")
+
+
+def stated_columns(texts: Iterable[str]) -> dict[str, str]:
+    """The argument `columns` from texts such as "Breite (cm)=width [cm]"."""
+    columns: dict[str, str] = {}
+    for text in texts:
+        label, _, header = (part.strip() for part in text.rpartition("="))
+        if not label or label in columns:
+            raise InvalidArgumentError("columns", text, 'HEADER=NAME, each header once: "Breite (cm)=width [cm]"')
+        columns[label] = header
+    return columns
+
+
+class Row(NamedTuple):
+    """A row of a table whose cells could be read."""
+
+    number: int  # in the table, from 1
+    values: dict[str, Any]  # by quantity: numbers in SI units, texts
+    cells: dict[str, Cell]  # all of them as they stand, by header
+    unread: dict[str, Cell]  # those of the columns that are not read
+
+
+@dataclass(frozen=True)
+class Schema(Generic[Item]):
+    """What a table holds."""
+
+    argument: str  # what errors call the table
+    quantities: tuple[Quantity, ...]  # what is read; other columns are kept as they stand
+    required: tuple[tuple[str, ...], ...]  # each row has a value of one of each group
+    make: Callable[[Row], Item]  # raises `InvalidArgumentError` with the name of a quantity
+    needs_depth: bool = False  # True to ask what a length is that is not read where no column is the depth
+
+
 @dataclass(frozen=True)
 class BadRow:
-    """A row that was not read."""
+    """A row that was not read, with all reasons."""
 
     row: int  # its number in the table, from 1
-    column: str  # name of the column, "" for the whole row
-    reason: str  # what was found and what is allowed
-    cells: dict[str, str] = field(default_factory=dict)  # the row as it stands, by the headers of the table
+    errors: list[InvalidArgumentError]  # the parameter is the quantity, "row" for the whole row
+    cells: dict[str, Cell] = field(default_factory=dict)  # as they stand, by header
+
+    @property
+    def columns(self) -> list[str]:
+        """The quantities that could not be read."""
+        return [error.parameter for error in self.errors]
+
+    @property
+    def reasons(self) -> list[str]:
+        """Each value that was not read, and what is allowed."""
+        return [
+            f"{error.parameter}: {'missing' if error.value is None else repr(error.value)}; allowed: {error.allowed}"
+            for error in self.errors
+        ]
 
     def __str__(self) -> str:
-        return f"row {self.row}{f', {self.column}' if self.column else ''}: {self.reason}"
+        return f"row {self.row}, {', '.join(self.reasons)}"
 
 
 @dataclass(frozen=True)
 class Table(Generic[Item]):
     """The rows of a table."""
 
-    items: list[Item]  # one for each row that was read
-    # every column of the table as it stands, by the text of its header, with its number where that is empty or
-    # not the first; for the rows that were read
-    cells: dict[str, list[str]] = field(default_factory=dict)
-    # the name of the quantity in each of these columns that is read
-    columns: dict[str, str] = field(default_factory=dict)
-    # the unit of each quantity that is read: of the header, or of the first cell with one, otherwise ""
-    units: dict[str, str] = field(default_factory=dict)
-    # number of each row that was not read, and why; the parameter is the column, "row" the whole row
-    errors: list[tuple[int, InvalidArgumentError]] = field(default_factory=list)
-    # the cells of each of these rows
-    unread: list[dict[str, str]] = field(default_factory=list)
-    # rows of totals, which are no items: "row 9: Total"
-    totals: list[str] = field(default_factory=list)
+    items: list[Item] = field(default_factory=list)  # one for each row that was read
+    cells: dict[str, list[Cell]] = field(default_factory=dict)  # of these rows as they stand, by header
+    columns: dict[str, str] = field(default_factory=dict)  # canonical header of each column that is read, by header
+    bad_rows: list[BadRow] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)  # where `columns` and the header differ
 
     @property
     def skipped(self) -> list[str]:
@@ -114,16 +150,52 @@ class Table(Generic[Item]):
         return [label for label in self.cells if label not in self.columns]
 
     @property
-    def bad_rows(self) -> list[BadRow]:
-        """The rows that were not read, in words."""
-        return [
-            BadRow(
-                row,
-                *("", f"{one.value}; {one.allowed}") if one.parameter == "row" else (one.parameter, str(one)),
-                cells,
-            )
-            for (row, one), cells in zip(self.errors, self.unread, strict=True)
-        ]
+    def reading(self) -> str:
+        """How each column was read, and which columns were not, in words."""
+        if not self.columns:
+            return ""
+        read = ", ".join(f"{label} as {header}" for label, header in self.columns.items())
+        unread = f"; not read: {', '.join(self.skipped)}" if self.skipped else ""
+        return "; ".join([f"columns read: {read}{unread}", *self.remarks])
+
+
+class Column(NamedTuple):
+    """A column: its header as it stands, with its number where that is empty or not the first; what is read of it."""
+
+    label: str
+    quantity: Quantity | None
+    unit: str  # "" where the cells state it
+
+    @property
+    def name(self) -> str:
+        """The name of the quantity, "" of a column that is not read."""
+        return "" if self.quantity is None else self.quantity.name
+
+    @property
+    def header(self) -> str:
+        """The canonical header."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """The rows of a file from its header on, in a stated layout."""
+
+    schema: Schema[Any]
+    name: str  # of the file
+    layout: TableLayout
+    first: int  # number of the row of the header, from 1
+    rows: Iterable[Sequence[Cell]]  # the header, and what is below
+    head: Sequence[str]  # first lines of the file
+    lines: Sequence[str] = ()  # of CSV text from the header on, with their ends
+    delimiter: str = ""  # sign between the cells of CSV
+
+    def error(
+        self, line: int | None, found: str, expected: str, call: Mapping[str, Any] | None = None
+    ) -> TableFileError:
+        """An error with the first lines of the file, and arguments that would read it where they can be said."""
+        lines = [f"line {k}: {text[:SHOWN_SIGNS]}" for k, text in enumerate(self.head[:SHOWN_LINES], start=1)]
+        return TableFileError(self.schema.argument, self.name, line, found, expected, lines, call)
 
 
 def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
@@ -132,14 +204,6 @@ def read_bytes(source: str | PathLike[str], argument: str) -> bytes:
         return sys.stdin.buffer.read() if source == "-" else Path(source).read_bytes()
     except OSError as error:
         raise UnreadableFileError(argument, str(source), error) from None
-
-
-def read_file(source: str | PathLike[str], schema: Schema[Item]) -> Table[Item]:
-    """A table from a file: a sheet (.xlsx, .ods), or CSV with any other ending; `-` is standard input."""
-    raw = read_bytes(source, schema.argument)
-    if Path(source).suffix.lower() in SHEETS:
-        return read_rows(rows_of_sheet(raw, schema.argument), schema)
-    return read_csv(text_of(raw, schema.argument), schema)
 
 
 def text_of(raw: bytes, argument: str) -> str:
@@ -153,340 +217,265 @@ def text_of(raw: bytes, argument: str) -> str:
         return raw.decode("cp1252", "replace")
 
 
-def read_csv(text: str, schema: Schema[Item], most: int | None = None, stop: StopFlag | None = None) -> Table[Item]:
-    """A table from text; errors of `read_file`, of a line that is not CSV, of `most`. `stop` cancels the work."""
-    delimiter = delimiter_of(text, schema)
-    # where commas separate the columns, a single point is the decimal sign
-    usual = "." if delimiter == "," else ""
-    rows = _rows(_open(text), delimiter, schema, stop)
-    return read_rows(map(_typed, rows) if EXACT in text else rows, schema, usual, most)
+def read_table_file(source: str | PathLike[str], schema: Schema[Item], layout: TableLayout) -> Table[Item]:
+    """A table from a file: a workbook (.xlsx, .ods), or CSV with any other ending; `-` is standard input."""
+    raw = read_bytes(source, schema.argument)
+    path = Path(source)
+    if path.suffix.lower() not in SHEETS:
+        return read_rows(open_text(text_of(raw, schema.argument), path.name, schema, layout), schema)
+    rows = rows_of_sheet(raw, schema.argument, layout.sheet)
+    texts = ["; ".join(map(text_of_cell, row)) for row in rows]
+    first = _header_line(texts, layout)
+    return read_rows(TableFile(schema, path.name, layout, first + 1, rows[first:], texts), schema)
 
 
-def rows_of_csv(text: str, schema: Schema[Any], stop: StopFlag | None = None) -> Iterator[str]:
-    """The text of each row that `read_csv` counts, with its end; the errors of `read_csv`."""
-    text = text.removeprefix(MARK)
-    source, start = _open(text), 0
-    for _ in _rows(source, delimiter_of(text, schema), schema, stop):
-        yield text[start : source.tell()]
-        start = source.tell()
-
-
-def delimiter_of(text: str, schema: Schema[Any]) -> str:
-    """The sign between the columns of a text; the errors of `read_csv`."""
+def open_text(
+    text: str, name: str, schema: Schema[Any], layout: TableLayout, stop: StopFlag | None = None
+) -> TableFile:
+    """The rows of CSV text. `stop` cancels the work."""
     if len(text) > MAX_CHARACTERS:
         raise InvalidArgumentError(schema.argument, f"{len(text)} characters", f"at most {MAX_CHARACTERS}")
-    sizes = {
-        one: max(map(_fit, _header_lines(_start(text, one, schema), schema)), default=(0, 0)) for one in DELIMITERS
-    }
-    delimiter = max(DELIMITERS, key=sizes.__getitem__)
-    if not sizes[delimiter][0]:
-        list(islice(_rows(_open(text), delimiter, schema), HEADER_ROWS))  # says which line is not CSV
-    return delimiter
+    lines = io.StringIO(text.removeprefix("\ufeff"), newline="").readlines()
+    first = _header_line(lines, layout)
+    file = TableFile(schema, name, layout, first + 1, (), [line.rstrip("\r\n") for line in lines[:LINES_ABOVE]])
+    header = "".join(lines[first : first + 1])
+    signs = [sign for sign in ",;\t" if sign in "".join(header.split('"')[::2])]
+    if len(signs) > 1 and layout.delimiter is None:
+        raise file.error(first + 1, header.strip(), "the argument `delimiter`: the header has several signs")
+    delimiter = SEPARATORS[layout.delimiter] if layout.delimiter else [*signs, ","][0]
+    rows = _csv_rows(file, lines[first:], delimiter, stop)
+    return replace(file, rows=rows, lines=lines[first:], delimiter=delimiter)
 
 
-def _header_lines(rows: list[list[str]], schema: Schema[Any]) -> Iterator[HeaderLine]:
-    several, schema = with_sizes(rows, schema)
-    return header_lines([*several.spread(rows)] if several else rows, schema)
+def _header_line(lines: Sequence[str], layout: TableLayout) -> int:
+    """The place of the first line below `skip` that is neither blank nor a comment."""
+    for place, line in enumerate(lines):
+        text = line.lstrip('"')
+        if place >= layout.skip and any(map(str.isalnum, text)) and not text.startswith("# "):
+            return place
+    return len(lines)
 
 
-def _fit(line: HeaderLine) -> tuple[bool, int]:
-    """Whether a line has all columns that a header needs, and how many of its columns are read."""
-    return line.complete, len(line.columns)
+def _csv_rows(file: TableFile, lines: Sequence[str], delimiter: str, stop: StopFlag | None) -> Iterator[list[str]]:
+    """The rows by the standard library, which refuses quotes that are not closed, as pandas does not."""
+    reader = csv.reader(lines, delimiter=delimiter, strict=True)
+    line = file.first
+    try:
+        for row in reader:
+            if stop is not None:
+                stop.check()
+            yield row
+            line = file.first + reader.line_num
+    except csv.Error as error:
+        expected = "cells that are in quotes as a whole or not at all, with each inner quote doubled"
+        raise file.error(line, str(error), expected) from None
 
 
-def _open(text: str) -> io.StringIO:
-    return io.StringIO(text.removeprefix(MARK), newline="")
-
-
-def _rows(
-    source: Iterable[str], delimiter: str, schema: Schema[Any], stop: StopFlag | None = None
-) -> Iterator[list[str]]:
-    rows = csv.reader(source, delimiter=delimiter, strict=True)
-    while True:
-        if stop is not None:
-            stop.check()
-        line = rows.line_num + 1
-        try:
-            row = next(rows)
-        except StopIteration:
-            return
-        except csv.Error as error:
-            allowed = f"values of at most {csv.field_size_limit()} characters; in quotes, with each inner quote doubled"
-            raise InvalidArgumentError(f"{schema.argument}, line {line}", str(error), allowed) from None
-        yield row
-
-
-def _start(text: str, delimiter: str, schema: Schema[Any]) -> list[list[str]]:
-    """The rows that may be a header; none from a line on that is not CSV."""
-    rows: list[list[str]] = []
-    with suppress(InvalidArgumentError):
-        for row in islice(_rows(_open(text), delimiter, schema), HEADER_ROWS):
-            rows.append(row)  # noqa: PERF402  (the rows before an error are kept)
-    return rows
-
-
-def rows_of_sheet(raw: bytes, argument: str) -> list[list[str]]:
-    """The first sheet of a file as text; numbers have decimal points. The errors of `read_file`."""
+def rows_of_sheet(raw: bytes, argument: str, sheet: str | None = None) -> list[list[Cell]]:
+    """The cells of a sheet; numbers are numbers."""
     import pandas as pd  # noqa: PLC0415  (takes long to load, and only sheets need it)
 
     try:
         with pd.ExcelFile(io.BytesIO(raw), engine="calamine") as file:
-            sheet = file.book.get_sheet_by_index(0)
-            rows, columns = sheet.total_height, sheet.total_width
-            if columns > SHEET_COLUMNS or rows * columns > SHEET_CELLS:
-                allowed = f"at most {SHEET_COLUMNS} columns and {SHEET_CELLS} cells"
+            book = file.book
+            areas = {name: book.get_sheet_by_name(name) for name in file.sheet_names}
+            names = [sheet] if sheet is not None else [name for name in areas if areas[name].total_height]
+            if len(names) != 1 or names[0] not in areas:
+                raise InvalidArgumentError(
+                    "sheet", sheet, f"the argument `sheet`, one of: {', '.join(map(str, areas))}"
+                )
+            rows, columns = areas[names[0]].total_height, areas[names[0]].total_width
+            if columns > MAX_COLUMNS or rows * columns > SHEET_CELLS:
+                allowed = f"at most {MAX_COLUMNS} columns and {SHEET_CELLS} cells"
                 raise InvalidArgumentError(argument, f"a sheet of {rows} rows and {columns} columns", allowed)
-            frame = pd.read_excel(file, header=None, dtype=object, na_filter=False)
+            frame = pd.read_excel(file, sheet_name=names[0], header=None, dtype=object, na_filter=False)
     except ImportError as error:
         raise ImportError("sheets need the extra `sheets`: pip install 'rocking[sheets]'", name=error.name) from None
     except (InvalidArgumentError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  (the reader of sheets has its own errors)
         raise InvalidArgumentError(argument, str(error), "a sheet of a spreadsheet, .xlsx or .ods") from None
-    return [list(map(_cell_text, row)) for row in frame.to_numpy().tolist()]
+    return [list(map(_sheet_cell, row)) for row in frame.to_numpy().tolist()]
 
 
-def csv_of_sheet(raw: bytes, argument: str) -> str:
-    """The first sheet of a file as text with semicolons, which `read_csv` reads as `read_file` does the sheet.
+def _sheet_cell(value: object) -> Cell:
+    if value is None or value != value:
+        return ""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return value
+    return str(value).removesuffix(" 00:00:00")  # a date
 
-    Numbers keep their type: the sign `EXACT`, which has no width, stands before them.
-    """
+
+def csv_of_sheet(raw: bytes, argument: str, sheet: str | None = None, decimal: str = ".") -> str:
+    """The cells of a sheet as CSV text; its numbers have this decimal sign, its texts are as they stand."""
     text = io.StringIO()
-    written = csv.writer(text, delimiter=";", lineterminator="\n")
-    for row in rows_of_sheet(raw, argument):
-        written.writerow([f"{EXACT}{cell}" if isinstance(cell, _Exact) else cell for cell in row])
+    writer = csv.writer(text, lineterminator="\n")
+    for row in rows_of_sheet(raw, argument, sheet):
+        writer.writerow(cell if isinstance(cell, str) else text_of_cell(cell).replace(".", decimal) for cell in row)
     return text.getvalue()
 
 
-class _Exact(str):
-    """A number of a sheet, whose decimal sign is a point whatever the texts of the table have."""
-
-    __slots__ = ()
-
-
-def _typed(row: Sequence[str]) -> list[str]:
-    """A row of the text of a sheet with its numbers."""
-    return [_Exact(cell[1:]) if cell.startswith(EXACT) and _EXACT.fullmatch(cell[1:]) else cell for cell in row]
+def labels_of(cells: Sequence[Cell]) -> list[str]:
+    """The texts of a header, with the number of the column where one is empty or not the first."""
+    labels: list[str] = []
+    for number, cell in enumerate(cells, start=1):
+        text = text_of_cell(cell).strip()
+        labels.append(text if text and text not in labels else f"{text}#{number}")
+    return labels
 
 
-def numbers_of(cells: Sequence[str]) -> Sequence[str | float | None]:
-    """A column of a table with its numbers as numbers, where all of its cells are plain ones or all are of a sheet.
-
-    Digits that begin with 0, such as 0012, and numbers whose decimal sign is in doubt remain texts.
-    """
-    texts = [cell for cell in cells if cell.strip()]
-    if not any(isinstance(cell, _Exact) for cell in texts):
-        signs = {decimal_sign(cell.strip().lstrip("-")) for cell in texts}
-        if len(signs - {""}) > 1 or not all(_PLAIN.fullmatch(cell.strip()) for cell in texts) or signs & {"?.", "?,"}:
-            return cells
-        return [float(cell.strip().replace(",", ".")) if cell.strip() else None for cell in cells]
-    return [float(cell) if isinstance(cell, _Exact) else cell for cell in cells]
-
-
-def _cell_text(value: object) -> str:
-    """A cell of a sheet as text."""
-    if value is None or value != value:
-        return ""
-    if not isinstance(value, float):
-        return str(value).removesuffix(" 00:00:00")  # a date
-    return _Exact(int(value) if value.is_integer() and abs(value) < 1e15 else f"{value:.15g}")
-
-
-def read_rows(
-    rows: Iterable[Sequence[str]], schema: Schema[Item], usual: str = "", most: int | None = None
-) -> Table[Item]:
-    """A table from its cells, its header among the first rows; the errors of `read_file`.
-
-    `usual` is the decimal sign where no number settles it; "": rows with a number that needs it are not read. Beyond
-    `most` rows, without those that are empty or totals, the table is refused by `TooManyRowsError`.
-    """
-    rest = iter(rows)
-    top = list(islice(rest, HEADER_ROWS + 1))  # with a line of units
-    several, schema = with_sizes(top, schema)
-    if several is not None:
-        rest = several.spread(chain(top, rest))
-        top = list(islice(rest, HEADER_ROWS + 1))
-    header = find_header(top, schema)
-    body: list[tuple[int, Sequence[str]]] = []
-    totals: list[str] = []
-    for number, row in enumerate(chain(top[header.last + 1 :], rest), start=header.last + 2):
-        if _is_item(row):
-            if len(body) == most:
-                raise TooManyRowsError(schema.argument, f"more than {most} rows", f"at most {most}")
-            body.append((number, row))
+def columns_of(file: TableFile, cells: Sequence[Cell]) -> tuple[list[Column], list[str]]:
+    """The columns of a header, each quantity at most once, and remarks where `columns` and the header differ."""
+    if len(cells) > MAX_COLUMNS:
+        raise file.error(file.first, f"{len(cells)} columns", f"at most {MAX_COLUMNS}")
+    quantities = {plain_name(quantity.name): quantity for quantity in file.schema.quantities}
+    stated = {" ".join(label.split()): text for label, text in file.layout.columns.items()}
+    labels = labels_of(cells)
+    for label in stated.keys() - {" ".join(label.split()) for label in labels}:
+        raise InvalidArgumentError("columns", label, f"a header of the table: {'; '.join(labels)[:300]}")
+    columns: list[Column] = []
+    remarks: list[str] = []
+    for label in labels:
+        text = stated.get(" ".join(label.split()))
+        name, bracket = name_and_unit(label if text is None else text)
+        quantity = quantities.get(plain_name(name))
+        if text is not None and quantity is None and plain_name(text) != UNUSED:
+            allowed = f"{', '.join(q.name for q in file.schema.quantities)}, with a unit in brackets; or {UNUSED}"
+            raise InvalidArgumentError("columns", f"{label}={text}", allowed)
+        if quantity is None or not quantity.unit:
+            columns.append(Column(label, quantity if bracket is None else None, ""))
             continue
-        if any(map(str.isalnum, "".join(row))):
-            totals.append(f"row {number}: {next(filter(None, map(str.strip, row)))[:MAX_NAME]}")
-        if most is not None and number - len(body) > EMPTY_ROWS:
-            allowed = f"at most {EMPTY_ROWS} rows that are empty or totals"
-            raise TooManyRowsError(schema.argument, f"{number} rows", allowed)
-    numeric = [place for place, (one, _) in header.columns.items() if one.unit]
-    decimal = _decimal_sign((row[place] for _, row in body for place in numeric if place < len(row)), usual)
-    labels = header.labels
-    used = {place for place, (one, _) in header.columns.items() if one.unit or one.name == "name"}
-    used |= set(header.units.values())
-    items: list[Item] = []
-    kept: list[Sequence[str]] = []
-    errors: list[tuple[int, InvalidArgumentError]] = []
-    unread: list[dict[str, str]] = []
-    for number, row in body:
-        try:
-            values = _values(row, header, decimal, schema)
-            others = {
-                label: cell
-                for place, (label, text, cell) in enumerate(zip(labels, header.texts, row, strict=False))
-                if place not in used and (text.strip() or cell.strip())
-            }
-            items.append(schema.make(number, values, others))
-            kept.append(row)
-        except InvalidArgumentError as error:
-            _check_no_header(number, row, header, schema)
-            errors.append((number, _of_cell(error, row, header)))
-            unread.append(dict(zip_longest(labels, row[: len(labels)], fillvalue="")))
-    size = len(header.texts)
-    padded = [[*row[:size], *[""] * (size - len(row))] for row in kept]
-    columns = {label: [row[place] for row in padded] for place, label in enumerate(labels)}
-    columns = {label: column for label, column in columns.items() if not label.startswith("#") or any(column)}
-    read = {
-        labels[place]: one.name if one.times == 1.0 else f"half_{one.name}"
-        for place, (one, _) in header.columns.items()
-    }
-    read |= {labels[place]: "units" for place in header.units.values()}
-    units = {
-        one.name: unit or next((written for row in padded if (written := _written_unit(row[place], one))), "")
-        for place, (one, unit) in header.columns.items()
-    }
-    return Table(items, columns, read, units, errors, unread, totals)
+        in_header = name_and_unit(label)[1]
+        written = in_header if bracket is None else bracket
+        unit = unit_name(written, quantity.unit) if written else ""
+        if unit is None:
+            units = ", ".join(f"[{key}]" for key in UNITS[quantity.unit])
+            raise file.error(file.first, label, f"one of {units}; or `columns`, which states what the column is")
+        if quantity.name in (column.name for column in columns):
+            raise file.error(
+                file.first, label, f"one column {quantity.name}; state `columns` for another one: {UNUSED}"
+            )
+        if text is not None and in_header and unit_name(in_header, quantity.unit) not in (unit, None):
+            remarks.append(f"the header says {label}; {text} is read, as `columns` says")
+        columns.append(Column(label, quantity, unit))
+    return columns, remarks
 
 
-def _check_no_header(number: int, row: Sequence[str], header: Header, schema: Schema[Any]) -> None:
-    """Refuse a table in which a second header names other columns or units for the rows below it."""
-    if any(split_number(row[place]) for place, (one, _) in header.columns.items() if one.unit and place < len(row)):
+def missing_groups(columns: Sequence[Column], schema: Schema[Any]) -> list[str]:
+    """The quantities that the header lacks, one of each group."""
+    names = {column.name for column in columns}
+    return [" or ".join(group[:2]) for group in schema.required if names.isdisjoint(group)]
+
+
+def _check_header(file: TableFile, columns: Sequence[Column]) -> None:
+    """Refuse a header that lacks a quantity, or leaves open which column is the depth."""
+    missing = missing_groups(columns, file.schema)
+    if missing:
+        expected = f"a column {' and a column '.join(missing)}, each with its unit in brackets; where a column has"
+        expected += " another header, state it by `columns`, such as HEADER=width [cm]"
+        labels = "; ".join(column.label for column in columns)
+        raise file.error(file.first, labels or "nothing", expected, _lines_above(file))
+    names = {column.name for column in columns}
+    if not file.schema.needs_depth or not names.isdisjoint(("depth", "diameter", "left", "body", "vertices")):
         return
-    for line in header_lines([row], schema):
-        for place, (one, unit) in line.columns.items() if line.complete else ():
-            above = header.columns.get(place)
-            if one.unit and (above is None or above[0] != one or unit not in ("", above[1])):
-                allowed = "one header; a table with other columns or units in a file of its own"
-                raise InvalidArgumentError(f"{schema.argument}, row {number}", "; ".join(row)[:MAX_NAME], allowed)
+    for column in columns:
+        bracket = name_and_unit(column.label)[1]
+        if not column.name and column.label not in file.layout.columns and bracket and unit_name(bracket, "m"):
+            expected = "a column depth or diameter; state by `columns` what this one is: depth, diameter, another"
+            raise file.error(file.first, column.label, f"{expected} quantity, or {UNUSED}")
 
 
-def _is_item(row: Sequence[str]) -> bool:
-    """Whether a row has values and is not a row of totals."""
-    first = next(filter(None, map(str.strip, row)), "")
-    return bool(first) and not _TOTAL.fullmatch(first[:MAX_NAME]) and any(map(str.isalnum, "".join(row)))
+def _lines_above(file: TableFile) -> dict[str, Any] | None:
+    """The argument `skip` for a line below that is a complete header."""
+    for skip in range(file.first, min(len(file.head), LINES_ABOVE)):
+        with suppress(InvalidArgumentError):
+            below = open_text(file.head[skip], file.name, file.schema, TableLayout(columns=file.layout.columns))
+            columns, _ = columns_of(below, next(iter(below.rows), []))
+            if not missing_groups(columns, file.schema):
+                return {"skip": skip}
+    return None
 
 
-def _written_unit(cell: str, one: Quantity) -> str:
-    """The unit in a cell, "" for none."""
-    found = split_number(cell) if one.unit in UNITS else None
-    return (unit_name(found[1], one.unit) or "") if found else ""
+def read_rows(file: TableFile, schema: Schema[Item], most: int | None = None) -> Table[Item]:
+    """The items of a table, and the rows that cannot be read.
+
+    Raises `TableFileError` for a header that does not state what is needed, `TooManyRowsError` beyond `most` rows.
+    """
+    rows = iter(file.rows)
+    header = next(rows, [])
+    columns, remarks = columns_of(file, header)
+    _check_header(file, columns)
+    labels = [column.label for column in columns]
+    body: list[tuple[int, Sequence[Cell]]] = []
+    for number, row in enumerate(rows, start=file.first + 1):
+        if not any(map(str.strip, map(text_of_cell, row))):
+            continue
+        if len(body) == most:
+            raise TooManyRowsError(schema.argument, f"more than {most} rows", f"at most {most}")
+        body.append((number, row))
+    table: Table[Item] = Table(columns={column.label: column.header for column in columns if column.quantity})
+    kept: list[dict[str, Cell]] = []
+    for number, cells in body:
+        by_label: dict[str, Cell] = dict.fromkeys(labels, "")
+        by_label.update(zip(labels, cells, strict=False))
+        values, errors = _read_row(file, columns, cells)
+        if not errors:
+            try:
+                unread = {label: by_label[label] for label in labels if label not in table.columns}
+                table.items.append(schema.make(Row(number, values, by_label, unread)))
+                kept.append(by_label)
+            except InvalidArgumentError as error:
+                several = error.errors if isinstance(error, SeveralArgumentsError) else [error]
+                errors = [_of_cell(error, columns, cells) for error in several]
+        if errors:
+            table.bad_rows.append(BadRow(number, errors, by_label))
+    table.cells.update({label: [cells[label] for cells in kept] for label in labels})
+    table.remarks.extend(remarks)
+    return table
 
 
-def _values(row: Sequence[str], header: Header, decimal: str, schema: Schema[Any]) -> dict[str, Any]:
-    """The values of a row by the name of their columns."""
-    if any(cell.strip() for cell in row[len(header.texts) :]):
-        raise InvalidArgumentError("row", f"{len(row)} cells", f"{len(header.texts)}, as in the header")
-    if schema.every_length:
-        _check_lengths(row, header)
+def _read_row(
+    file: TableFile, columns: Sequence[Column], cells: Sequence[Cell]
+) -> tuple[dict[str, Any], list[InvalidArgumentError]]:
+    """The values of a row by quantity, and all that is wrong with it."""
     values: dict[str, Any] = {}
-    for place, (one, unit) in header.columns.items():
-        cell = row[place] if place < len(row) else ""
-        if (cell.strip().lower() in EMPTY) if one.unit else not any(map(str.isalnum, cell)):
+    errors: list[InvalidArgumentError] = []
+    if any(text_of_cell(cell).strip() for cell in cells[len(columns) :]):
+        errors.append(InvalidArgumentError("row", f"{len(cells)} cells", f"{len(columns)}, as in the header"))
+    for column, cell in zip(columns, cells, strict=False):
+        quantity = column.quantity
+        if quantity is None or is_empty(cell):
             continue
-        stated = _row_unit(row, header, place) if one.unit in UNITS and not _written_unit(cell, one) else unit
-        value = read_cell(one, cell, stated, "." if isinstance(cell, _Exact) else decimal)
-        values[one.name] = f"{values[one.name]}; {value}" if one.name in values else value
-    for one, _ in header.columns.values():
-        if values.get(one.name) == 0.0 and any(values.get(other) for other in one.absent_beside):
-            del values[one.name]
-    if schema.every_length and "name" not in values and not _has_text(row, header):
-        raise InvalidArgumentError("row", "numbers only", "a name or another text, which totals lack")
-    dimensions = (one for one, _ in header.columns.values() if one.unit not in ("", "-", "kg") or one.name == "body")
-    if not any(one.name in values for one in dimensions):
-        raise InvalidArgumentError("row", "no dimension", "one or more in each row")
-    return values
-
-
-def _has_text(row: Sequence[str], header: Header) -> bool:
-    """Whether a row of a table with names has a text."""
-    if not any(one.name == "name" for one, _ in header.columns.values()):
-        return True
-    numeric = {place for place, (one, _) in header.columns.items() if one.unit}
-    texts = (cell for place, cell in enumerate(row) if place not in numeric and not is_unit(cell))
-    return any(map(str.isalnum, "".join(texts)))
-
-
-def _row_unit(row: Sequence[str], header: Header, place: int) -> str:
-    """The unit of a cell without one: that of its header, or of the column of units."""
-    one, unit = header.columns[place]
-    where = header.units.get(place)
-    stated = row[where].strip() if where is not None and where < len(row) else ""
-    if stated.lower() in EMPTY:
-        return unit
-    found = unit_name(stated, one.unit)
-    quantities = {header.columns[k][0].unit for k, of in header.units.items() if of == where}
-    if not found and not any(unit_name(stated, other) for other in quantities):
-        raise InvalidArgumentError(
-            one.name, f"{row[place].strip()} {stated}", f"a unit such as {', '.join(UNITS[one.unit])}"
-        )
-    if found and unit and found != unit:
-        raise InvalidArgumentError(one.name, f"{row[place].strip()} {stated}", f"the unit of its header, {unit}")
-    return found or unit
-
-
-def _check_lengths(row: Sequence[str], header: Header) -> None:
-    """Refuse a row with a length in a column that is not read.
-
-    A text such as "394 x 419 x 120 mm" is left alone if the row has all three dimensions, or as many as the text.
-    """
-    given = {
-        one.name
-        for place, (one, _) in header.columns.items()
-        if place < len(row) and row[place].strip().lower() not in EMPTY
-    }
-    # a diameter is width and depth
-    dimensions = len(given & {"width", "depth", "length", "height", "diameter"}) + ("diameter" in given)
-    for place, text in enumerate(header.texts[: len(row)]):
-        cell = row[place].strip()
-        if place in header.columns or place in header.units.values() or cell.lower() in EMPTY:
+        if not quantity.unit:
+            values[quantity.name] = text_of_cell(cell)
             continue
-        if text.strip() and not is_used(text):
-            continue
-        number = split_number(cell, "in")
-        is_length = bool(number and unit_name(number[1], "m"))  # in its cell
-        if place in header.lengths:
-            bare = number and not any(map(str.isalpha, number[1]))  # such as 12, 12-15
-            is_length |= bool(AMOUNT.match(cell) if header.lengths[place] else bare)
-            several = is_sizes(name_and_unit(text)[0]) and re.search(r"\d", cell) is not None
-            is_length |= several and dimensions < 3 and len(BETWEEN.split(cell[:MAX_LENGTH])) != dimensions
-        if is_length and not (number and not number[0].strip("+-0.,")):
-            known = '"width", "depth", "diameter", "height" or "friction"'
-            allowed = f'a column named as what it is, such as {known}, or whose name begins with "unused"'
-            raise InvalidArgumentError(header.labels[place].strip(), cell, allowed)
+        if plain_name(name_and_unit(text_of_cell(cell))[0]) == plain_name(quantity.name):
+            raise file.error(
+                None, "; ".join(map(text_of_cell, cells)), "one header: a second table in a file of its own"
+            )
+        try:
+            values[quantity.name] = read_cell(quantity, cell, column.unit, file.layout.decimal)
+        except InvalidArgumentError as error:
+            errors.append(error)
+    stated = values.keys() | {error.parameter for error in errors}
+    absent = [group for group in file.schema.required if stated.isdisjoint(group)]
+    errors += [InvalidArgumentError(group[0], None, f"{' or '.join(group[:2])} in each row") for group in absent]
+    errors += unusual_sizes(values, file.layout)
+    return values, errors
 
 
-def _of_cell(error: InvalidArgumentError, row: Sequence[str], header: Header) -> InvalidArgumentError:
-    """The error with the text of the cell in place of its value in SI units, and the header where it is another."""
-    for place, (one, _) in header.columns.items():
-        if one.name == error.parameter and place < len(row) and row[place].strip().lower() not in EMPTY:
-            text = header.labels[place].strip()
-            of = "" if plain_name(name_and_unit(text)[0]) == plain_name(one.name) else f" (column {text!r})"
-            cell = row[place].strip().removeprefix("'") if one.unit else row[place].strip()
-            return InvalidArgumentError(one.name, cell, error.allowed + of)
+def unusual_sizes(values: Mapping[str, Any], layout: TableLayout) -> list[InvalidArgumentError]:
+    """A question for each size [m] of an object, by quantity, that is below 1 cm or above 50 m."""
+    low, high = (-math.inf, math.inf) if layout.allow_unusual else SIZE_RANGE
+    allowed = f"{SIZE_RANGE[0]:g} to {SIZE_RANGE[1]:g} m; check unit and decimal sign, or state `allow_unusual`"
+    sizes = ((name, values.get(name)) for name in EXTENTS)
+    wrong = [(name, size) for name, size in sizes if isinstance(size, float) and not low <= size <= high]
+    return [InvalidArgumentError(name, f"{size:g} m", allowed) for name, size in wrong]
+
+
+def _of_cell(error: InvalidArgumentError, columns: Sequence[Column], cells: Sequence[Cell]) -> InvalidArgumentError:
+    """The error with the text of the cell in place of its value in SI units."""
+    for column, cell in zip(columns, cells, strict=False):
+        if column.name == error.parameter and not is_empty(cell):
+            return InvalidArgumentError(error.parameter, text_of_cell(cell).strip(), error.allowed)
     return error
-
-
-def _decimal_sign(cells: Iterable[str], usual: str) -> str:
-    """The decimal sign that the numbers of a table settle; "" if none or both do.
-
-    A single `usual` sign counts as one, as where commas separate the columns. Numbers of a sheet say nothing of texts.
-    """
-    signs: set[str] = set()
-    for cell in cells:
-        found = None if isinstance(cell, _Exact) else split_number(cell)
-        own = decimal_sign(found[0]) if found and found[0].strip("+-0.,") else ""  # 0.0 is written by machines
-        written = own[-1:] in half_width(cell)  # which a fraction such as 1 1/2 has not
-        if own and written and (not own.startswith("?") or own[1] == usual):
-            signs.add(own[-1])
-    return signs.pop() if len(signs) == 1 else ""

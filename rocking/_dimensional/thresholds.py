@@ -16,10 +16,10 @@ from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, number
 from rocking._base.quantities import HIGHEST_SCALE
 from rocking._base.units import Scalar
-from rocking._boundary.amplitude import amplitude_changes, thresholds
+from rocking._boundary.amplitude import amplitude_changes
 from rocking._boundary.scan import RESOLUTION, Lines, checked_resolution, lowest_overturning, outcome_changes
 from rocking._dimensional.lowest_thresholds import record_lines, record_range
-from rocking._dimensional.problem import Problem, record_groups, restitution_of, search_range, uplift_scale
+from rocking._dimensional.problem import Problem, record_groups, restitution_of, search_range
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.vertical import highest_vertical_scale
 from rocking._model.block import AbstractBlock
@@ -80,8 +80,7 @@ def warnings_of_changes(given: float, changes: Iterable[Threshold], name: str, u
     return [f"the outcome changes within {100 * MARGIN:g} % of this {name}: {places}{unit}"]
 
 
-HIGHEST = 100.0, 10.0  # largest strength searched over that of uplift [-]: of pulses, and of records
-BEYOND = 10.0, 2.0  # that for a block over its own strength [-], where it is larger
+BEYOND = 10.0, 2.0  # the same over the strength of the problem, where that is larger: under pulses, and records
 
 WORDS = {
     "peak_acceleration": ("peak acceleration", " m/s2", "a peak acceleration of {} m/s2", " m/s2"),
@@ -192,32 +191,36 @@ class BodyThresholds(EqualByValue):
 def thresholds_of(
     problem: Problem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
 ) -> BodyThresholds:
-    """Every strength at which the outcome changes, for each body of a problem, whose own strength is not read.
+    """Every strength of its motion at which the outcome changes, for each body of a problem.
 
     Under a pulse as `rocking.thresholds`. Under a record the lowest is that of `lowest_overturning` from uplift on, at
     this resolution; above it factors 0.2 % apart are solved, and each change is bisected: a range of one outcome that
     is narrower can be missed. The search ends below the factor at which the vertical acceleration reaches -g.
-    `highest`: in the unit of the strength; by default `HIGHEST` times that of uplift.
+    `highest`: in the unit of the strength; by default `highest_amplitude` of the motion times that of uplift, and at
+    least `BEYOND` times the strength of the problem.
     """
     motion, shape = problem.motion, problem.shape
-    by_record = isinstance(motion, Record)
-    unit = motion.peak_acceleration if isinstance(motion, Record) else 1.0
-    problem = replace(problem, peak_acceleration=np.full(shape, unit))  # of the strength 1
-    uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / unit
+    by_record = motion.is_scanned
+    at_one = replace(problem, strength=np.ones(shape))
+    uplift = np.broadcast_to(problem.body.uplift_acceleration, shape).ravel() / motion.unit_acceleration
     limit = np.full(uplift.size, math.inf)
-    if isinstance(motion, Record):
-        found_uplift, limit = record_range(problem)
+    if by_record:
+        found_uplift, limit = record_range(at_one)
         uplift = uplift if motion.vertical is None else found_uplift
-    top = uplift * HIGHEST[by_record] if highest is None else np.full(uplift.size, highest)
-    top = np.minimum(top, HIGHEST_SCALE) if by_record else top
+    if highest is None:
+        own = np.broadcast_to(problem.strength, shape).ravel()
+        top = np.maximum(motion.highest_amplitude * uplift, BEYOND[by_record] * own)
+    else:
+        top = np.full(uplift.size, highest)
+    top = np.minimum(top, motion.strength.upper)
     flies, searched = limit < top, np.minimum(top, limit)
-    lines = record_lines(problem, stop) if by_record else None
+    lines = record_lines(at_one, stop) if by_record else None
 
     def changes(k: int) -> tuple[Array, Flags]:
         if searched[k] <= uplift[k]:
             return np.empty(0), np.empty(0, dtype=np.bool_)
         if lines is None:
-            return _pulse_changes(problem, k, uplift[k], searched[k], stop)
+            return _pulse_changes(at_one, k, uplift[k], searched[k], stop)
         return outcome_changes(lines.from_line(k), uplift[k], top[k], limit[k], resolution=resolution)
 
     found = [changes(k) for k in range(uplift.size)]
@@ -229,7 +232,7 @@ def thresholds_of(
         value.reshape(*shape, most),
         above.reshape(*shape, most),
         np.stack([uplift, np.maximum(uplift, searched)], axis=-1).reshape(*shape, 2),
-        "scale" if by_record else "peak_acceleration",
+        motion.strength.name,
         ends_in_flight=bool(flies.all()) and shape == (),
         index=problem.index,
         resolution=resolution if by_record else 0.0,
@@ -238,11 +241,9 @@ def thresholds_of(
 
 def scale_window(problem: Problem) -> tuple[float, float]:
     """Factors of a record from that at which one body uplifts to ten times it, or where it would lose its weight."""
-    record: Any = problem.motion
-    if problem.is_block:
-        return search_range(record, problem.block, None)[:2]
-    uplift, limit = record_range(replace(problem, peak_acceleration=np.asarray(record.peak_acceleration)))
-    return float(uplift[0]), min(HIGHEST[1] * float(uplift[0]), float(limit[0]))
+    uplift, limit = record_range(replace(problem, strength=np.ones(())))
+    lowest = float(uplift[0])
+    return lowest, min(problem.motion.highest_amplitude * lowest, float(limit[0]))
 
 
 def _pulse_changes(
@@ -253,32 +254,6 @@ def _pulse_changes(
         problem.solver(k, stop), float(cell["rate"]), float(cell["eta"][0]), min(highest / uplift, 1e6)
     )
     return found.amplitude * uplift, found.overturns_above
-
-
-def block_thresholds(
-    problem: Problem, highest: float | None = None, stop: StopFlag | None = None, resolution: float = RESOLUTION
-) -> BodyThresholds:
-    """As `thresholds_of`, for one block; by default up to `BEYOND` times the strength of the problem at least."""
-    block, motion, groups = problem.block, problem.motion, dict(problem.groups)
-    if isinstance(motion, Record):
-        if highest is None:
-            highest = max(HIGHEST[1] * uplift_scale(motion, block), BEYOND[1] * problem.scale)
-        uplift, top, flies = search_range(motion, block, min(highest, HIGHEST_SCALE))
-        lines = block_lines(motion, block, groups["restitution"], stop=stop)
-        limit = min(highest_vertical_scale(motion, block.gravity), HIGHEST_SCALE)
-        changes = np.empty(0), np.empty(0, np.bool_)
-        if top > uplift:
-            changes = outcome_changes(lines, uplift, top, limit, resolution=resolution)
-        searched = np.array([uplift, max(uplift, top)])
-        return BodyThresholds(*changes, searched, "scale", flies, resolution=resolution)
-    uplift, slenderness = block.uplift_acceleration, groups.pop("slenderness")
-    above_uplift = max(HIGHEST[0], BEYOND[0] / slenderness) if highest is None else highest / uplift
-    if above_uplift <= 1.0:
-        return BodyThresholds(np.empty(0), np.empty(0, np.bool_), np.array([uplift, uplift]), "peak_acceleration")
-    top = min(above_uplift, 1e6)
-    found = thresholds(motion, **groups, highest=top, stop=stop)
-    searched = np.array([uplift, top * uplift])
-    return BodyThresholds(found.amplitude * uplift, found.overturns_above, searched, "peak_acceleration")
 
 
 def overturning_scale(
@@ -292,7 +267,7 @@ def overturning_scale(
 ) -> float:
     """Lowest scale of a record at which it overturns a block [-]; nan if there is none.
 
-    The first of `block_thresholds`, in less time; the arguments are those of `rocking.Block.thresholds`.
+    The first of `thresholds_of`, in less time; the arguments are those of `rocking.Block.thresholds`.
     """
     given = None if highest is None else number("highest", highest, 0.0, HIGHEST_SCALE, closed="right")
     share = checked_resolution(resolution)

@@ -18,17 +18,25 @@ from typing import Annotated
 from rocking._base.errors import InvalidArgumentError, one_of
 from rocking._base.quantity import Kind, Quantity, split_kind
 from rocking._base.units import Scalar
+from rocking._excitation.motion import AbstractMotion
+from rocking._excitation.records.record import Record
 from rocking._excitation.shapes import AbstractPulse
 from rocking._excitation.sinusoids import SinusoidalPulse
 from rocking._excitation.smooth import SmoothPulse
 from rocking._excitation.wavelets import WaveletPulse
 
+GroundMotion = AbstractPulse | Record
+Motion = str | GroundMotion  # the name of a pulse, or a motion
+
 __all__ = [
     "PULSE_NAMES",
     "AbstractPulse",
+    "GroundMotion",
+    "Motion",
     "SinusoidalPulse",
     "SmoothPulse",
     "WaveletPulse",
+    "as_motion",
     "as_pulse",
     "pulse",
     "pulse_names",
@@ -41,6 +49,8 @@ CYCLES = Quantity(
     "cycles", "-", "number of cycles within the envelope", symbol="gamma", lower=1.0, upper=20.0, closed="right"
 )
 
+SINE_CYCLES = Quantity("cycles", "-", "number of full cycles", lower=1.0, upper=40.0, closed="both")
+
 PHASE = Quantity(
     "phase", "rad", "phase within the envelope", symbol="nu", lower=-2 * math.pi, upper=2 * math.pi, closed="both"
 )
@@ -51,10 +61,19 @@ def _sinusoid(name: str, start: float, end: float, stationary: tuple[float, ...]
     return SinusoidalPulse(name, start, end, stationary, ((1.0, 1.0, 0.0),))
 
 
-def sine() -> SinusoidalPulse:
-    """One full sine, sin(phi), 0 to 2 pi, (3.2)."""
-    term = ((1.0, 1.0, -math.pi / 2),)
-    return SinusoidalPulse("sine", 0.0, 2 * math.pi, (math.pi / 2, 3 * math.pi / 2), term)
+def sine(cycles: Annotated[float, SINE_CYCLES] = 1.0) -> SinusoidalPulse:
+    """Full cycles of a sine, sin(phi), 0 to 2 pi for one cycle, (3.2).
+
+    Parameters
+    ----------
+    cycles : float
+        Number of cycles, a whole one [-], [1, 40].
+    """
+    number = SINE_CYCLES.number(cycles)
+    if not number.is_integer():
+        raise InvalidArgumentError("cycles", cycles, "a whole number from 1 to 40")
+    stationary = tuple((k + 0.5) * math.pi for k in range(2 * int(number)))
+    return SinusoidalPulse("sine", 0.0, 2 * math.pi * number, stationary, ((1.0, 1.0, -math.pi / 2),))
 
 
 def cosine() -> SinusoidalPulse:
@@ -181,6 +200,11 @@ def pulse_number(name: str) -> int:
     return PULSE_NAMES.index(name) if name in PULSE_NAMES else -1
 
 
+def as_motion(motion: Motion) -> GroundMotion:
+    """The motion itself, or the pulse of that name; anything else is refused."""
+    return motion if isinstance(motion, AbstractMotion) else pulse(motion)
+
+
 def as_pulse(motion: str | AbstractPulse) -> AbstractPulse:
     """The pulse itself, or the one of that name; anything else is refused."""
     return motion if isinstance(motion, AbstractPulse) else pulse(motion)
@@ -200,7 +224,7 @@ def pulse(name: str, **parameters: Scalar) -> AbstractPulse:
         One of `PULSE_NAMES` or of a registered pulse, with an optional leading minus, and its parameters in brackets,
         with their units: "mavroeidis_papageorgiou(cycles=3, phase=90 deg)".
     **parameters : float
-        The same as arguments: `cycles` and `phase` [rad], for mavroeidis_papageorgiou only.
+        The same as arguments: `cycles` for sine, `cycles` and `phase` [rad] for mavroeidis_papageorgiou.
 
     Returns
     -------

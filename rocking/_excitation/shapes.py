@@ -6,17 +6,21 @@ the solver expands f (`rocking._excitation.series`). Arguments are checked at co
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+import math
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, float_array, in_range, number
+from rocking._base.quantities import FREQUENCY_RATIO, PEAK_ACCELERATION, PERIOD
+from rocking._excitation.motion import AbstractMotion
 from rocking._excitation.series import ExcitationSeries
 
 MAX_PIECES = 84  # most monotone pieces of a pulse: Mavroeidis & Papageorgiou with 20 cycles
@@ -28,7 +32,7 @@ PEAK_TOLERANCE = 1e-12  # largest difference of max |f| from 1 [-]
 
 
 @dataclass(frozen=True)
-class AbstractPulse(ABC):
+class AbstractPulse(AbstractMotion):
     """A pulse shape f(phi), max |f| = 1, zero outside `start` <= phi <= `end` [rad].
 
     Attributes
@@ -52,6 +56,13 @@ class AbstractPulse(ABC):
     end: float
     stationary: tuple[float, ...]
 
+    kind = "pulse"
+    strength = PEAK_ACCELERATION
+    arguments = (PEAK_ACCELERATION, PERIOD)
+    rate = FREQUENCY_RATIO
+    highest_amplitude = 100.0
+    is_scanned = False
+
     def __post_init__(self) -> None:
         self._check_window()
         start, end = self.start, self.end
@@ -73,6 +84,19 @@ class AbstractPulse(ABC):
         if not (self.name and isinstance(self.name, str)):
             raise InvalidArgumentError("name", self.name, "a string that is not empty")
         vars(self).update(zip(("start", "end"), checked_window(self.start, self.end), strict=True))
+
+    @property
+    def unit_acceleration(self) -> float:
+        """1 [m/s2]: the strength is the peak acceleration."""
+        return 1.0
+
+    def duration_at(self, period: Any) -> Any:
+        """Duration [s]: of the half sine and the rectangular pulse half a period, of the sine a whole one."""
+        return (self.end - self.start) / (2.0 * math.pi) * period
+
+    def rate_at(self, frequency_parameter: Array, period: Array) -> Array:
+        """Frequency ratio omega_g/p [-], checked."""
+        return FREQUENCY_RATIO.convert(2.0 * math.pi / (period * frequency_parameter))
 
     @abstractmethod
     def shape(self, phi: ArrayLike) -> Array:

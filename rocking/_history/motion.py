@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rocking._base.errors import number, positive
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
-from rocking._excitation.pulses import AbstractPulse, as_pulse
-from rocking._excitation.records.record import Record as GroundMotion
+from rocking._excitation.pulses import AbstractPulse, GroundMotion, as_pulse
+from rocking._excitation.records.record import Record as RecordedMotion
 from rocking._excitation.records.vertical import check_one_vertical_scale
 from rocking._excitation.shapes import MAX_PIECES
 from rocking._history.sampling import ROTATION, TAU, VELOCITY, sample_flights, sample_free_rocking, sample_record
@@ -28,7 +28,7 @@ from rocking._solver.bodies import outcome_margin_of
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import NO_EDGES, peak_response
 from rocking._solver.records import state as samples_state
-from rocking._solver.records.record_response import NO_RESTRAINT, frequency_parameter_range, pulse_rows
+from rocking._solver.records.record_response import NO_RESTRAINT, pulse_rows
 from rocking._solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
 from rocking._solver.restrained import is_restrained, restrain
 from rocking._solver.rules import IMPACT_LIMIT
@@ -383,6 +383,25 @@ class FreeMotion(BodyMotion):
         return state, 0
 
 
+def motion_of_body(
+    motion: GroundMotion,
+    cell: Record,
+    horizon: float,
+    stop: StopFlag | None = None,
+    inertia_ratio: tuple[float, float] = (INERTIA_RATIO, INERTIA_RATIO),
+    tilt: float = 0.0,
+) -> BodyMotion:
+    """The motion of a body `BODY_CELL` under a ground motion; `rate` of the cell as `rocking._solver.bodies.solve`."""
+    if isinstance(motion, RecordedMotion):
+        rows = motion_samples(motion)
+    elif motion.samples is None:
+        return PulseMotion(cell, horizon, stop, motion, inertia_ratio=inertia_ratio, tilt=tilt)
+    else:
+        rows = pulse_rows(motion, float(cell["rate"]))
+        cell["rate"] = 1.0 / cell["rate"]
+    return SamplesMotion(cell, horizon, stop, rows, inertia_ratio=inertia_ratio, tilt=tilt)
+
+
 def build_motion(
     pulse: str | AbstractPulse,
     *,
@@ -402,17 +421,13 @@ def build_motion(
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
         horizon = positive("duration", duration, "-")
-    if made.samples is not None:
-        cell = block_cell(1.0 / omega, s, eta, angle)
-        restrain(cell, restraint)
-        return SamplesMotion(cell, horizon, stop, pulse_rows(made, omega))
     cell = block_cell(omega, s, eta, angle)
     restrain(cell, restraint)
-    return PulseMotion(cell, horizon, stop, made)
+    return motion_of_body(made, cell, horizon, stop)
 
 
 def build_record_motion(
-    motion: GroundMotion,
+    motion: RecordedMotion,
     *,
     frequency_parameter: Scalar,
     slenderness: Scalar,
@@ -422,13 +437,13 @@ def build_record_motion(
     restraint: Mapping[str, Floats] = NO_RESTRAINT,
     duration: Scalar | None = None,
     stop: StopFlag | None = None,
-) -> SamplesMotion:
+) -> BodyMotion:
     """The motion for given parameters; arguments and errors as for `rocking.time_history`."""
-    p = number("frequency_parameter", frequency_parameter, *frequency_parameter_range(motion), unit="rad/s")
+    p = number("frequency_parameter", frequency_parameter, *motion.frequency_parameters, unit="rad/s")
     s, eta = SLENDERNESS.number(slenderness), RESTITUTION.number(restitution)
     angle = check_one_alpha(alpha)
     vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")
     cell = block_cell(p * motion.time_step, s, eta, angle, vertical)
     restrain(cell, restraint)
-    return SamplesMotion(cell, horizon, stop, motion_samples(motion))
+    return motion_of_body(motion, cell, horizon, stop)

@@ -12,12 +12,11 @@ from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import add_contact
-from rocking._history.motion import BodyMotion, Floats, SamplesMotion, build_motion, build_record_motion, overturned
+from rocking._history.motion import BodyMotion, Floats, build_motion, build_record_motion, overturned
 from rocking._model.checks import check_restraint, known_restitution
 from rocking._model.labelled import variable
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import frequency_parameter_range
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -124,7 +123,7 @@ def _under_record(
     moving = build_record_motion(record, **groups, duration=duration, stop=stop)
     grid = default_times(moving) if samples is None else np.linspace(0.0, moving.horizon, samples)
     history, tau, impact_times = _sampled(moving, grid)
-    p = number("frequency_parameter", groups["frequency_parameter"], *frequency_parameter_range(record), unit="rad/s")
+    p = number("frequency_parameter", groups["frequency_parameter"], *record.frequency_parameters, unit="rad/s")
     history["impact_time"] = variable("impact", impact_times / p, "s", "time of impact")
     history = history.assign_coords(
         tau=variable("tau", tau, "1", "p t from the first sample"),
@@ -145,14 +144,14 @@ def _under_record(
     return history.swap_dims(tau="time")
 
 
-def default_times(block: SamplesMotion) -> Floats:
+def default_times(block: BodyMotion) -> Floats:
     """Times of the samples of the motion [tau], continued to the horizon at their step or a larger one."""
-    count, interval = block.times.size, float(block.cell["rate"])
+    count, interval = block.kink_times.size, float(block.cell["rate"])
     most = max(count, MIN_CONTINUED)
     wanted = min(block.horizon / interval * (1.0 + 1e-12), count + most)
     if wanted < count + most:
         return interval * np.arange(int(wanted) + 1, dtype=np.float64)
-    return np.concatenate([block.times, np.linspace(block.pulse_end, block.horizon, most + 1)[1:]])
+    return np.concatenate([block.kink_times, np.linspace(block.pulse_end, block.horizon, most + 1)[1:]])
 
 
 def _sampled(

@@ -34,7 +34,8 @@ from rocking._model.checks import check_groups
 from rocking._model.fields import DERIVED_FIELDS
 from rocking._numba.cancellation import StopFlag
 from rocking._numba.compilation import contiguous_array
-from rocking._solver.bounded_response import SOLVER_ERROR, BoundedResponse, solve_checked
+from rocking._solver.bodies import SOLVER_ERROR
+from rocking._solver.bounded_response import BoundedResponse, solve_checked
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 
 Array = NDArray[np.float64]

@@ -60,15 +60,12 @@ class AbstractBlock(AbstractBody):
         """Shape of an array of blocks, () for one."""
         return np.broadcast_shapes(*map(np.shape, self._values))
 
-    @cached_property
-    def is_block(self) -> bool:
-        """Whether it is one block."""
-        return not self.shape
+    moves_as_block = True
 
     @property
     def parameters(self) -> dict[str, Array]:
-        """Sizes and gravity of an array of blocks."""
-        return {name: np.asarray(getattr(self, name)) for name in ("width", "height", "gravity") if self.shape}
+        """Sizes and gravity."""
+        return {name: np.asarray(getattr(self, name)) for name in ("width", "height", "gravity")}
 
     @property
     def half_width(self) -> Number:
@@ -110,6 +107,12 @@ class AbstractBlock(AbstractBody):
         """Smallest ground acceleration that starts rocking, g tan(alpha) [m/s2], below (2.1)."""
         return self.gravity * self.half_width / self.half_height
 
+    @property
+    def uplift_accelerations(self) -> tuple[Array, Array]:
+        """Those of both edges, which are alike."""
+        uplift = np.asarray(self.uplift_acceleration)
+        return uplift, uplift
+
     @cached_property
     def momentum_restitution(self) -> Number:
         """Coefficient of restitution eta = 1 - (3/2) sin^2(alpha) [-], (2.4) (Housner 1963).
@@ -148,11 +151,11 @@ class AbstractBlock(AbstractBody):
         """Height of a top corner above the pivot below it [m], 2 h."""
         return 2.0 * self.half_height
 
-    def top_displacement(self, rotation: Number) -> Number:
+    def displacement(self, rotation: Number) -> Number:
         """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
         angle = float_array("rotation", rotation, unit="rad")
         if angle.ndim or self.shape:
-            return super().top_displacement(angle)
+            return super().displacement(angle)
         return self.top_height * math.sin(angle) if math.isfinite(angle) else math.nan
 
 

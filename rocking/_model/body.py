@@ -13,7 +13,7 @@ A body against a wall (one-sided) rotates about one edge only and rebounds at th
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -112,16 +112,11 @@ class AbstractBody(ABC):
         return False
 
     @property
-    def is_block(self) -> bool:
-        """Whether it is one block, with equal edges and numbers: what is solved in groups with an error bound."""
-        return False
-
-    @property
     def contact_is_known(self) -> bool:
         """Whether the contact forces follow from the motion."""
         return not math.isnan(float(self.right.inertia_ratio))
 
-    def top_displacement(self, rotation: Array) -> Array:
+    def displacement(self, rotation: Array) -> Array:
         """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
         return np.asarray(self.top_height * np.sin(rotation))
 
@@ -129,6 +124,9 @@ class AbstractBody(ABC):
     def restraint(self) -> dict[str, Array]:
         """Groups of a tendon and a damper [-], by the names of cells of the solver; nothing unless a body says so."""
         return {}
+
+    moves_as_block: ClassVar[bool] = False
+    """Whether it moves as a rectangular block, whose width and height it then has."""
 
     labels: dict[str, Any] = {}  # noqa: RUF012  # not changed
     """The arguments that were given as labelled arrays (xarray), with their labels."""
@@ -140,6 +138,11 @@ class AbstractBody(ABC):
     def parameters(self) -> dict[str, Array]:
         """What the body was made from, for exports: arrays by name; nothing unless a body says so."""
         return {}
+
+    @property
+    def uplift_accelerations(self) -> tuple[Array, Array]:
+        """Horizontal ground accelerations at which it starts to rotate about the right and the left edge [m/s2]."""
+        return self.gravity * self.right.resistance, self.gravity * self.left.resistance
 
     @property
     def uplift_acceleration(self) -> Array:

@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 from rocking._model.energy import residual_energy
 from rocking._model.outcome import Outcome
 
-KINDS = frozenset({"pulse", "record", "block", "edges", "many"})
-"""Kinds of responses in SI units: by the motion; by the way of solution (one block in groups, bodies by their two
-edges); of many bodies or motions at once."""
+KINDS = frozenset({"pulse", "record", "block", "edges"})
+"""Kinds of responses in SI units: by the motion; by whether the body moves as a rectangular block."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +165,6 @@ RESIDUAL_ENERGY = ResponseField(
     "it is interpolated in a data set, or the angle alpha is not known",
     "both from the energy at rest; where overturning is certain earlier, the energy then",
     derive=residual_energy,
-    kinds=KINDS - {"edges"},
 )
 
 OVERTURNED = ResponseField("overturned", "?", "1", "3.8", "whether the block overturns")

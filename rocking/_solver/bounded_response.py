@@ -26,16 +26,13 @@ from rocking._model.fields import (
 )
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
+from rocking._solver.bodies import SOLVER_ERROR, error_bound
 from rocking._solver.peak_response import solve_cells
-from rocking._solver.rules import IMPACT_LIMIT
 from rocking._solver.state import FULL_PRECISION
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-
-SOLVER_ERROR = 1e-12
-"""Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -130,9 +127,7 @@ def solve_with_bound(
 ) -> BoundedResponse:
     """Solve twice, with the groups as given and slightly smaller, and bound the error of the peak by the difference.
 
-    The bound is `SOLVER_ERROR` times the peak, plus three times the change of the peak when slenderness, frequency
-    ratio and restitution decrease together by the fraction `SOLVER_ERROR`. Rounding errors act like such a change and
-    are amplified near an outcome boundary. The bound is infinite where a block reached `IMPACT_LIMIT` impacts.
+    See `rocking._solver.bodies.error_bound`.
 
     Arguments and errors are those of `rocking.peak_response` under a pulse; `body` as of `rocking.Response`.
     """
@@ -163,14 +158,7 @@ def solve_checked(
     groups[3] = alpha
     cells = [np.array(one.ravel()) for one in groups[: 4 if groups[3].any() else 3]]  # each of its own memory
     records = solve_cells(pulse, cells, FULL_PRECISION, threads, stop).reshape(2, *shape)
-    peaks, outcomes, first = records["peak_rotation"], records["outcome"], records[0]
-    with np.errstate(invalid="ignore"):
-        change = np.abs(peaks[1] - peaks[0])
-    bound = np.asarray(SOLVER_ERROR * peaks[0] + 3.0 * change)
-    overturned = outcomes >= Outcome.OVERTURNED_DIRECTLY
-    bound[overturned.any(axis=0) | (records["impacts"].max(axis=0) >= IMPACT_LIMIT)] = np.inf
-    bound[overturned[0]] = np.nan
-    bound[outcomes[0] == Outcome.NO_UPLIFT] = 0.0  # |a f| < 1 throughout: exact
+    first, bound = records[0], error_bound(*records)
     known = {
         "slenderness": groups[0, 0],
         "frequency_ratio": groups[1, 0],

@@ -64,7 +64,7 @@ def body_outcomes(
         )
         scale = np.broadcast_to(levels / own, shape[:2])
         check_levels(levels, motion, scale, np.broadcast_to(body.gravity, body.shape).tolist())
-        problem = Problem(column, motion, scale * motion.peak_acceleration, np.ones(()), eta)
+        problem = Problem(column, motion, scale, np.ones(()), eta)
         found = respond(problem, threads=threads, stop=stop)
         for name, values in fields.items():
             values[:, :, k] = scale if name == "scale" else getattr(found, name)

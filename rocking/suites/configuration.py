@@ -7,7 +7,6 @@ out: `DEFAULTS`, and `LAYOUT`, that of the files of the records.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,6 @@ from rocking._base.arrays import Array
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError, in_range, number, one_of, positive
 from rocking._base.quantities import RESTITUTION
-from rocking._excitation.records.processing import MAX_BASELINE_ORDER
 from rocking._excitation.records.readers.layout import stated_layout
 from rocking._excitation.records.readers.read_record import FORMATS, parse_record, read_content
 from rocking._excitation.records.record import Record
@@ -141,7 +139,7 @@ def suite_configuration(given: Mapping[str, Any], folder: Path) -> SuiteConfigur
     if given["sensitivity"] is not None and not isinstance(blocks, tuple):
         raise InvalidArgumentError("sensitivity", given["sensitivity"], "null beside a body with two different edges")
     return SuiteConfiguration(
-        name=_name(given["name"]),
+        name=str(given["name"]),
         records=_record_files(given["records"], folder),
         blocks=blocks,
         restitution="momentum" if given["restitution"] == "momentum" else RESTITUTION.number(given["restitution"]),
@@ -169,35 +167,15 @@ def _keys(section: str, given: Any, keys: Iterable[str]) -> None:
         raise InvalidArgumentError(section, ", ".join(wrong), "exactly the keys " + ", ".join(expected))
 
 
-def _name(value: Any) -> str:
-    if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", value):
-        raise InvalidArgumentError("name", value, "letters, digits, - _ and .")
-    return value
-
-
 def _record_files(given: Any, folder: Path) -> RecordFiles:
     given = _with_defaults(given, LAYOUT | {"baseline_order": None})
     _keys("records", given, ("folder", "pattern", *LAYOUT, "baseline_order"))
-    for key in ("folder", "pattern"):
-        if not isinstance(given[key], str) or not given[key]:
-            raise InvalidArgumentError(f"records.{key}", given[key], "a text")
-    if "/" in given["pattern"]:
-        raise InvalidArgumentError("records.pattern", given["pattern"], "a pattern of file names, such as *.csv")
-    order = given["baseline_order"]
-    if order is not None and (type(order) is not int or not 0 <= order <= MAX_BASELINE_ORDER):
-        raise InvalidArgumentError(
-            "records.baseline_order", order, f"null, or an integer from 0 to {MAX_BASELINE_ORDER}"
-        )
     layout = {name: given[name] for name in LAYOUT}
     try:
         stated_layout(FORMATS, **{name: layout[name] for name in LAYOUT if name not in ("vertical", "allow_unusual")})
     except InvalidArgumentError as error:
         raise InvalidArgumentError(f"records.{error.parameter}", error.value, error.allowed) from None
-    if layout["vertical"] is not None and not isinstance(layout["vertical"], str | int):
-        raise InvalidArgumentError("records.vertical", layout["vertical"], "the name or the number of a column")
-    if not isinstance(layout["allow_unusual"], bool):
-        raise InvalidArgumentError("records.allow_unusual", layout["allow_unusual"], "true or false")
-    return RecordFiles(folder / given["folder"], given["pattern"], layout, order)
+    return RecordFiles(folder / str(given["folder"]), str(given["pattern"]), layout, given["baseline_order"])
 
 
 def _blocks(given: Any) -> tuple[AbstractBlock, ...] | RigidBody:

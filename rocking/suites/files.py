@@ -9,7 +9,7 @@ import xarray as xr
 from rocking._base.errors import one_of
 from rocking._base.output_file import write_output
 from rocking._datasets.csv_text import csv_text
-from rocking.suites.table import curve_table, finite, fragility_table
+from rocking.suites.table import curve_table, finite_columns, fragility_table
 
 ENDINGS = (".csv", ".json")
 
@@ -38,5 +38,5 @@ def write_fragility(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
         write_output(file, csv_text(levels))
         return
     about = {"measure": fragility.attrs["measure"], "unit": fragility["intensity"].attrs["units"]}
-    tables = {"levels": finite(levels), "curves": finite(curve_table(fragility))}
+    tables = {"levels": finite_columns(levels), "curves": finite_columns(curve_table(fragility))}
     write_output(file, json.dumps({**about, **tables}, allow_nan=False))

@@ -27,7 +27,7 @@ from rocking.suites.checks import check_demands, label
 from rocking.suites.curve import LINKS, curve_probability
 from rocking.suites.fits import CurveFit, FitStatus, counted, fit_curve
 from rocking.suites.intensity import MEASURES
-from rocking.suites.outcomes import check_suite, suite_outcomes
+from rocking.suites.outcomes import check_suite, checked_records, suite_outcomes
 
 COMPARISON = "for comparison: a record counts at and above the lowest level at which it reaches the limit state"
 
@@ -116,11 +116,7 @@ def fragility(
             outcomes = suite_outcomes(suite, threads=threads, stop=stop)
         found = outcomes.merge(fragility_of_outcomes(outcomes, limits, confidence, signs))
         found.attrs |= {"confidence": confidence}
-        doubts = (
-            offset_doubts([records] if isinstance(records, Record) else [*records])
-            if MEASURES[measure].scales_amplitude
-            else []
-        )
+        doubts = offset_doubts(checked_records(records)) if MEASURES[measure].scales_amplitude else []
         if doubts:
             found.attrs["warnings"] = "; ".join(doubts)
         return found.isel(demand=0) if isinstance(demand, str) or np.ndim(demand) == 0 else found

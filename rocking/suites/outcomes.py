@@ -80,7 +80,7 @@ def check_suite(
     bodies: tuple[Any, ...] = (
         (blocks,) if isinstance(blocks, AbstractBody) or not isinstance(blocks, Iterable) else (*blocks,)
     )
-    if not bodies or not all(getattr(body, "is_block", False) for body in bodies):
+    if not bodies or not all(isinstance(body, AbstractBlock) and body.shape == () for body in bodies):
         raise InvalidArgumentError(
             "blocks",
             blocks,
@@ -100,7 +100,7 @@ def check_suite(
 
 def checked_records(records: Any) -> tuple[Record, ...]:
     """One or more records, or `InvalidArgumentError`."""
-    found = (records,) if isinstance(records, Record) or not isinstance(records, Iterable) else tuple(records)
+    found = tuple(records) if isinstance(records, Iterable) else (records,)
     if not found or not all(isinstance(motion, Record) for motion in found):
         raise InvalidArgumentError("records", records, "one or more objects of rocking.Record")
     return found

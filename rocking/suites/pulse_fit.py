@@ -167,12 +167,12 @@ def fit_pulse(
         raise InvalidArgumentError("record", record, "a rocking.Record, such as rocking.read_record returns")
     families = FAMILIES if family is None else (one_of("family", family, FAMILIES),)
     if blocks is None:
-        compared: tuple[AbstractBlock, ...] = tuple(
+        compared: tuple[Any, ...] = tuple(
             Block.from_slenderness_angle(COMPARED_ALPHA, size) for size in COMPARED_HALF_DIAGONALS
         )
     else:
         compared = (blocks,) if isinstance(blocks, AbstractBlock) else tuple(blocks)
-        if not all(getattr(block, "is_block", False) for block in compared):
+        if not all(isinstance(block, AbstractBlock) and block.shape == () for block in compared):
             raise InvalidArgumentError("blocks", blocks, "objects of rocking.Block")
     fits = [fit_velocity(record.velocity, record.time_step, name) for name in families]
     best = max(fits, key=lambda fit: fit.explained)

@@ -83,7 +83,7 @@ def distribution_table(fragility: xr.Dataset) -> dict[str, list[Any]]:
     return {name: np.broadcast_to(values, shape).ravel().tolist() for name, values in everything.items()}
 
 
-def finite(columns: Mapping[str, list[Any]]) -> dict[str, list[Any]]:
+def finite_columns(columns: Mapping[str, list[Any]]) -> dict[str, list[Any]]:
     """Columns with None for numbers that are not finite, which JSON does not have."""
     return {
         name: [None if isinstance(value, float) and not math.isfinite(value) else value for value in values]

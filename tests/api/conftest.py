@@ -16,7 +16,7 @@ from rocking_api.settings import EXAMPLE, Settings
 
 import rocking
 from rocking._boundary.tracing import overturning_boundary
-from rocking._datasets.cube import describe, scalar_coordinates, write_dataset
+from rocking._datasets.cube import AXES, describe, scalar_coordinates, write_dataset
 from rocking._datasets.zarr_store import write_pulse_store
 from rocking._spectra.cubes import spectrum
 from rocking.suites.fragility import fragility_of_outcomes
@@ -32,6 +32,8 @@ NAMES = {f"spectra/{pulse}/eta-{eta:.2f}" for pulse, eta in CUBES} | {
 }  # fmt: skip
 """Names of the data sets in the results."""
 
+
+HISTORY = "python -m tests.api.conftest"  # the attribute of the files
 
 JSON, CSV, NC = "application/json", "text/csv", "application/x-netcdf"
 
@@ -79,17 +81,19 @@ def make_results(folder, cubes=CUBES, nodes=91, suite_name="demonstration", titl
     for pulse in {pulse for pulse, _ in cubes} - {"cosine"}:
         write_pulse_store(sorted((folder / "spectra" / pulse).glob("eta-*.nc")), folder / "zarr" / f"{pulse}.zarr")
     curves = overturning_boundary("sine", restitution=0.85, nodes=101)
-    curves["alpha"] = "curve", np.zeros(curves.sizes["curve"])
+    curves["alpha"] = "curve", np.zeros(curves.sizes["curve"]), AXES["alpha"]
     curves = curves.drop_attrs(deep=False).assign_coords(scalar_coordinates("sine", 0.85))
-    write_dataset(describe(curves), folder / "overturning" / "sine" / "eta-0.85.nc")
+    about = {"title": "Boundary curves of overturning under the sine", "history": HISTORY}
+    write_dataset(describe(curves, **about), folder / "overturning" / "sine" / "eta-0.85.nc")
     motions, blocks = [noise(seed) for seed in range(4)], [rocking.Block(0.5, 2.0), rocking.Block(0.8, 4.0)]
     suite = check_suite(motions, blocks, np.geomspace(1.0, 40.0, 12), "pga", "momentum")
     outcomes = with_margins(suite_outcomes(suite), suite)
     fragility = fragility_of_outcomes(outcomes, ["overturning", 0.5])
-    fragility = fragility.assign_attrs(title=title, confidence=0.95)
+    fragility = fragility.assign_attrs(confidence=0.95)
     sensitivity = suite_sensitivity(motions, blocks, intensity=[4.0, 9.0])
     for name, dataset in (("outcomes", outcomes), ("fragility", fragility), ("sensitivity", sensitivity)):
-        write_dataset(describe(dataset), folder / "suites" / suite_name / f"{name}.nc")
+        about = {"title": title, "history": HISTORY}
+        write_dataset(describe(dataset, **about), folder / "suites" / suite_name / f"{name}.nc")
 
 
 @pytest.fixture(scope="session")

@@ -97,7 +97,7 @@ def test_many_blocks_as_json_and_csv(client):
     for k, row in enumerate(ROWS):
         query = {name: value for name, value in row.items() if name != "name"} | {"pulse": "sine", "method": "solver"}
         single = client.get("/v1/blocks/response", params=query).json()
-        for name in ("peak_rotation_deg", "top_displacement", "overturned", "restitution", "alpha_deg"):
+        for name in ("peak_rotation_deg", "displacement", "overturned", "restitution", "alpha_deg"):
             assert found[name][k] == (None if single[name] is None else pytest.approx(single[name], rel=1e-9)), name
     assert found["name"] == ["vase", "", ""]
     assert found["overturned"] == [True, False, True]
@@ -107,11 +107,14 @@ def test_many_blocks_as_json_and_csv(client):
     columns = dict(zip(text[0].split(","), zip(*(line.split(",") for line in text[1:]), strict=True), strict=True))
     assert columns["overturned"] == ("true", "false", "true")
     assert float(columns["peak_rotation"][1]) == pytest.approx(found["peak_rotation"][1], rel=1e-9)
-    both = post(client, url, TABLE + "Total,1,1,1,1\n", CSV, format="json").json()
-    assert (both["outcome"], both["totals"]) == (found["outcome"], ["row 5: Total"])
-    wide = "w [cm],h [cm],thickness [cm],pga [g],t [s]\n60,160,12,0.4,0.5\n"
-    unused = post(client, url, wide, CSV, format="json").json()
-    assert (unused["skipped"], unused["columns"]["w [cm]"]) == (["thickness [cm]"], "width")
+    assert post(client, url, TABLE, CSV, format="json").json()["outcome"] == found["outcome"]
+    wide = "Breite (cm);height [cm];thickness [cm];peak_acceleration [g];period [s]\n60,5;160;12;0,4;0,5\n"
+    refused = assert_problem(post(client, url, wide, CSV), 422, "blocks")
+    assert "columns" in refused["detail"]
+    assert "line 2: 60,5;160" in refused["detail"]
+    stated = post(client, f"{url}&columns=Breite (cm)=width&decimal=,", wide, CSV, format="json").json()
+    assert (stated["skipped"], stated["columns"]["Breite (cm)"]) == (["thickness [cm]"], "width [cm]")
+    assert stated["width"] == [pytest.approx(0.605)]
 
 
 def test_a_text_may_state_another_unit(client):

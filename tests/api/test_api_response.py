@@ -13,6 +13,7 @@ from rocking._model.response import Outcome
 from rocking._solver.peak_response import peak_response
 from rocking._spectra.cubes import spectra
 from tests.api.conftest import CSV, NC, POINT, assert_problem, client_of, post
+from tests.cf_compliance import complaints
 
 
 def get_response(client, **changes):
@@ -119,10 +120,12 @@ def test_batches_in_chunks_are_equal(client, monkeypatch):
     assert client.post("/v1/response", json=many).json() == whole
 
 
-def test_netcdf_batch_in_and_out(client):
+def test_netcdf_batch_in_and_out(client, tmp_path):
     grid = xr.Dataset(coords={"slenderness": [0.5, 0.6, 1.5], "frequency_ratio": [5.0, 6.0]})
     result = post(client, "/v1/response?pulse=sine&restitution=0.85", bytes(grid.to_netcdf(engine="scipy")), NC)
     assert result.headers["content-type"] == NC
+    (tmp_path / "answer.nc").write_bytes(result.content)
+    assert complaints(tmp_path / "answer.nc") == []
     found = xr.open_dataset(io.BytesIO(result.content), engine="scipy").load()
     groups = {name: found[name] for name in ("slenderness", "frequency_ratio")}
     expected = peak_response("sine", **groups, restitution=0.85)

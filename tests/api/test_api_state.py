@@ -3,7 +3,6 @@
 import asyncio
 import errno
 import logging
-import os
 import re
 from pathlib import Path
 from threading import Semaphore
@@ -15,17 +14,11 @@ from fastapi.testclient import TestClient
 from rocking_api.app import create_app
 from rocking_api.command import serve
 from rocking_api.dataset_checker import DatasetChecker
-from rocking_api.settings import EXAMPLE, OTHERS, Settings, unknown_variables, variables
+from rocking_api.settings import EXAMPLE, Settings
 
 from tests.api.conftest import NAMES, POINT, assert_problem, client_of, health_of, metrics_of, until
 
 ROOT = Path(__file__).parents[2]
-
-READERS = [
-    ROOT / "Makefile",
-    *(path for folder in ("rocking", "workflow", "docs", "tests") for path in (ROOT / folder).rglob("*.py")),
-]
-"""Files in which variables of the project are read."""
 
 SINE, CURVES = "spectra/sine/eta-0.85", "overturning/sine/eta-0.85"
 
@@ -231,14 +224,6 @@ def test_a_misspelt_variable_is_refused_at_the_start(monkeypatch, capsys, name):
         serve("127.0.0.1", 0, None)
     assert caught.value.exit_code == 2
     assert capsys.readouterr().err.startswith(f"Error: {name} is not allowed; allowed: ROCKING_ACCESS_LOG, ROCKING_")
-
-
-def test_variables_of_others_are_no_settings(monkeypatch):
-    for name in OTHERS:
-        monkeypatch.setenv(f"ROCKING_{name}", "1")
-    assert not unknown_variables(os.environ)
-    named = set(re.findall(r"\bROCKING_([A-Z_]+)\b", " ".join(path.read_text() for path in READERS)))
-    assert named <= {one.removeprefix("ROCKING_") for one in variables()} | OTHERS
 
 
 def test_the_type_of_an_error_is_explained(client):

@@ -29,7 +29,7 @@ def assert_same(python, http, result, lines):
     assert http["warnings"] == result["warnings"] == python.warnings
     assert http["margin"] == result["margin"] == python.margin
     assert http["meaning"] == lines[0] == python.sentence
-    sentences = 2 if "record" in result else 1
+    sentences = 1 if python.margin is None else 2
     printed = lines[sentences : sentences + len(python.warnings)]
     assert printed == [f"warning: {text}" for text in python.warnings]
     assert not any(line.startswith("warning: ") for line in lines[sentences + len(printed) :])

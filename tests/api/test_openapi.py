@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from tests.api.conftest import JSON, POINT, assert_problem, examples_of, health_of, parts_of, texts
-from tests.sampling import ALL, sample
+from tests.api.conftest import JSON, POINT, examples_of, health_of, parts_of, texts
+from tests.sampling import sample
 
 VARIABLE = re.compile(r"^(coordinates|variables|dimensions)\.[^.]+")
 """What the description of a data set holds by the name of a variable or dimension."""
@@ -130,48 +130,3 @@ def test_every_json_answer_holds_question_units_warnings_version_and_address(cli
         for path, method, operation in operations(description)
         if operation["responses"]["200"].get("content", {}).get(JSON, {}).get("schema")
     }
-
-
-def wrong_values(schema, schemas):
-    """Texts that a parameter of that schema does not take."""
-    parts = [*parts_of(schema, schemas)]
-    if any("enum" in one for one in parts):
-        yield "none"
-    if any(one.get("type") in ("number", "integer") for one in parts):
-        yield from ("x", "nan", "1e400")
-        limits = {key for one in parts for key in one}
-        yield from ["-1e300"] * bool(limits & {"minimum", "exclusiveMinimum"})
-        yield from ["1e300"] * bool(limits & {"maximum", "exclusiveMaximum"})
-
-
-def test_every_parameter_of_a_query_is_refused_by_its_name(client, description):
-    """Wrong values, and one that is not known."""
-    schemas, seen = description["components"]["schemas"], set()
-    for one in examples_of(description):
-        if one.media_type == JSON or ((one.method, one.path) in seen and not ALL):
-            continue
-        seen.add((one.method, one.path))
-        given = texts(one.query)
-        more = [("colour", "1")] if any(part["in"] == "query" for part in one.operation.get("parameters", ())) else []
-        for parameter in one.operation.get("parameters", ()):
-            # a width excludes vertices, and there is a part of a cube without an upper end
-            if parameter["in"] == "query" and parameter["name"] != "vertices":
-                wrong = wrong_values(parameter["schema"], schemas)
-                more += [
-                    (parameter["name"], value) for value in wrong if (value, one.path[-7:]) != ("1e400", "/subset")
-                ]
-        for name, value in more:
-            found = client.request(one.method, one.url, params=given | {name: value}, **sent(one))
-            assert_problem(found, 422, name)
-
-
-def test_units_are_stated_beside_the_schema_and_not_in_words_alone(description):
-    """The unit of a property is a key of its schema, which its description repeats for people."""
-    for name, model in description["components"]["schemas"].items():
-        for key, part in model.get("properties", {}).items():
-            stated = (
-                [one["unit"] for one in parts_of(part, {}) if isinstance(one.get("unit"), str)]
-                if "$ref" not in str(part)
-                else []
-            )
-            assert all(f"[{unit}]" in part.get("description", "") for unit in stated[:1]), f"{name}.{key}"

@@ -2,14 +2,12 @@
 
 import os
 import runpy
-import subprocess
 import sys
 
 import httpx2
-import pytest
 
 from rocking._solver import chunks
-from tests.api.servers import ROOT, serving
+from tests.api.servers import serving
 
 LIMITED = """
 import os, runpy, sys
@@ -37,19 +35,3 @@ def test_cores_are_those_of_the_machine_where_a_process_has_none_of_its_own(monk
     assert runpy.run_path(chunks.__file__)["AVAILABLE_CORES"] == 7
     monkeypatch.setattr(os, "cpu_count", lambda: None)
     assert runpy.run_path(chunks.__file__)["AVAILABLE_CORES"] == 1
-
-
-@pytest.mark.long
-def test_the_library_is_imported_without_modules_of_posix():
-    code = """
-import os, sys
-import netCDF4, numba, pandas, scipy, typer, xarray  # as they are for the system where this test runs
-sys.platform = "win32"
-for name in ("fcntl", "pwd", "grp", "resource", "termios"):
-    sys.modules[name] = None
-del os.fork, os.sysconf, os.sched_getaffinity
-import rocking
-print([getattr(rocking, name) is not None for name in rocking.__all__].count(False))
-"""
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.stdout == "0\n", done.stderr

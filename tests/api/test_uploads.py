@@ -32,7 +32,7 @@ OBJECTS = {"objects": [{"width": 0.3, "height": 1.2}], "sensitivity": False, "sh
 SITE = OBJECTS | {"pga": 3.0, "pgv": 0.3}
 SHORT = {"acceleration": [0.0, 1.0, -1.0, 0.0] * 50, "time_step": 0.02}
 RECORDS = "/v1/records/response?width=0.5&height=2.0&unit=g"
-ROUTE = RECORDS + number("&thresholds=false", "")
+ROUTE = f"{RECORDS}&thresholds=false"
 """The search for thresholds takes most of the processor time of an upload, and lets others run."""
 
 ORDINARY = {
@@ -47,7 +47,8 @@ SECONDS = 2.0
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
     folder = tmp_path_factory.mktemp("serve")
-    with serving(folder, folder / "log", ROCKING_ACCESS_LOG="0") as server:
+    patient = {"ROCKING_MAX_QUEUE": "100", "ROCKING_ARRIVAL_SECONDS": "100"}  # all uploads are answered
+    with serving(folder, folder / "log", ROCKING_ACCESS_LOG="0", **patient) as server:
         for asked in ORDINARY.values():
             while (found := ask(server.port, *asked))[0] == 503:
                 pass  # the solver is compiled
@@ -74,11 +75,11 @@ def json_of(values):
 
 
 UPLOADS = {
-    "record": (ROUTE, CSV, lambda: column_file(number(2_000_000, 5_000_000))),
+    "record": (ROUTE, CSV, lambda: column_file(2_000_000)),
     "blocks in JSON": ("/v1/response", JSON, lambda: json_of("groups")),
     "records of a site in JSON": ("/v1/assess", JSON, lambda: json_of("records")),
 }
-CLIENTS = number(24, 64)
+CLIENTS = number(16, 40)
 
 CLIENT = """
 import json, sys
@@ -106,8 +107,7 @@ def test_many_large_uploads_do_not_delay_health_nor_fill_the_memory(server, tmp_
                 delays.append(delay_of_health(server))
                 time.sleep(0.02)
             statuses = json.loads(clients.stdout.read())
-        # beyond the queue and the time clients have to repeat
-        assert {200} <= set(statuses) <= {200, 503, 504}
+        assert set(statuses) == {200}
         return delays
 
     assert_short(delays_meanwhile)
@@ -144,7 +144,7 @@ HOSTILE = {
     "4 million rows of one digit": lambda: b"unit: g\ndt: 0.01\n" + b"1\n0\n" * 2_000_000,
     "a name of 8 MB": lambda: b"a" * 8_000_000 + b"\n0,1\n1,2\n",
     "long lines": lambda: (b"a " * 4000 + b"\n") * number(20, 190) + b"1\n2\n",
-    "openings of brackets": lambda: b"time," + b"(" * 8000 + b"\n" + b"0,1\n1,2\n2,1\n" * number(60_000, 600_000),
+    "openings of brackets": lambda: b"time," + b"(" * 8000 + b"\n" + b"0,1\n1,2\n2,1\n" * number(20_000, 600_000),
     "fields that are no numbers": lambda: b"time [s],acc [g]\n" + b"0.01,1\n" * 1_000_000 + b"x" * 8000,
 }
 

@@ -1,5 +1,7 @@
 """Arguments that numpy would convert silently, and objects that are no pulse, are rejected by name."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 import pint
@@ -149,3 +151,46 @@ def test_objects_that_are_no_pulse_are_rejected(ask, pulse):
     with pytest.raises(InvalidArgumentError, match=r"^`pulse` = .*mavroeidis_papageorgiou") as error:
         ask(pulse)
     assert error.value.value is pulse or error.value.value == pulse
+
+
+BLOCK = rocking.Block(0.4, 1.6)
+PULSE = {"peak_acceleration": 4.0, "period": 0.5}
+NUMBERS = {
+    "Block": (rocking.Block, {"width": 0.4, "height": 1.6}),
+    "RigidBody": (rocking.RigidBody, {"left": 0.1, "right": 0.2, "height": 0.6, "gyration": 0.3}),
+    "response": (partial(BLOCK.response, "sine"), PULSE | {"restitution": 0.9}),
+    "history": (partial(BLOCK.history, "sine"), PULSE | {"restitution": 0.9, "duration": 3.0}),
+    "thresholds": (partial(BLOCK.thresholds, "sine"), {"period": 0.5, "restitution": 0.9}),
+    "peak_response": (partial(rocking.peak_response, "sine"), GROUPS),
+    "time_history": (partial(rocking.time_history, "sine"), GROUPS | {"duration": 3.0}),
+    "overturning_boundary": (partial(rocking.overturning_boundary, "sine"), {"restitution": 0.9, "alpha": 0.2}),
+}
+"""Functions, and numbers that they accept."""
+
+
+@pytest.mark.parametrize(
+    ("function", "numbers", "name"), [(*call, name) for call in NUMBERS.values() for name in call[1]]
+)
+def test_what_is_no_number_or_out_of_its_range_is_refused_by_its_name(function, numbers, name):
+    for wrong in (np.nan, np.inf, -1.0, "wide", True, object(), 0.4 + 0.1j):
+        with pytest.raises(InvalidArgumentError, match=rf"^`{name}`") as caught:
+            function(**numbers | {name: wrong})
+        assert caught.value.parameter == name
+
+
+def test_the_place_of_a_wrong_number_is_named():
+    with pytest.raises(InvalidArgumentError, match=r"`slenderness` = -1.0 at index 2 is not allowed") as caught:
+        rocking.peak_response("sine", **GROUPS | {"slenderness": [0.4, 0.5, -1.0, -2.0]})
+    assert (caught.value.parameter, caught.value.value, caught.value.index) == ("slenderness", -1.0, (2,))
+    with pytest.raises(InvalidArgumentError, match=r"`restitution` = nan at index \(1, 0\) is"):
+        rocking.peak_response("sine", **GROUPS | {"restitution": np.array([[0.1, 0.2], [np.nan, 2.0]])})
+
+
+def test_angles_in_degrees_are_asked_about():
+    with pytest.raises(InvalidArgumentError, match=r"\[rad\]; write '20 deg' if degrees were meant$"):
+        rocking.peak_response("sine", **GROUPS | {"alpha": 20})
+    with pytest.raises(InvalidArgumentError, match=r"at index 1 .*; numpy.radians converts degrees$"):
+        rocking.peak_response("sine", **GROUPS | {"alpha": [0.1, 20.0]})
+    for wrong in (1000.0, -20.0, np.inf, "95 deg"):
+        with pytest.raises(InvalidArgumentError, match=r"\[rad\]$"):
+            rocking.peak_response("sine", **GROUPS | {"alpha": wrong})

@@ -1,4 +1,4 @@
-"""`rocking record`, `rocking floor` and `rocking fragility`: formats, errors that name the option or the file."""
+"""`rocking record` and `rocking fragility`: formats, errors that name the option or the file."""
 
 import json
 import math
@@ -21,6 +21,7 @@ MOTION = str(ROOT / "workflow/motions/synthetic_31.csv")
 
 UP = str(ROOT / "workflow/motions/synthetic_32.csv")
 SIZES = ["--width", "0.5m", "--height", "200 cm"]
+OFFSET = ["--body", "offset_mass(width=0.5m, height=2m, offset=3cm)"]
 
 
 @pytest.fixture(scope="module")
@@ -47,12 +48,9 @@ def test_record_in_three_formats():
     block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
     expected = block.response(motion, scale=0.9)
     result = json.loads(run("record", MOTION, *SIZES, "--scale", "0.9", "--format=json"))
-    assert result["peak_rotation"] == float(expected.dimensionless.peak_rotation)
-    assert result["peak_rotation_deg"] == pytest.approx(math.degrees(expected.rotation))
-    assert result["top_displacement"] == pytest.approx(2.0 * math.sin(expected.rotation))
-    assert result["peak_rotation_resampled"] == float(expected.resampled.peak_rotation)
+    assert {name: result[name] for name in expected.summary()} == expected.summary()
+    assert (result["scale"], result["thresholds"]) == (0.9, expected.changes)
     assert result["peak_acceleration"] == motion.peak_acceleration
-    assert result["warnings"] == list(expected.warnings)
     (row,) = read_csv(run("record", MOTION, *SIZES, "--scale", "0.9", "--format=csv"))
     assert float(row["peak_rotation"]) == result["peak_rotation"]
     assert row["overturned"] == "false"
@@ -61,20 +59,21 @@ def test_record_in_three_formats():
 
 def test_a_body_whose_mass_is_not_in_the_middle():
     expected = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03).response(rocking.read_record(MOTION), scale=0.9)
-    result = json.loads(run("record", MOTION, *SIZES, "--scale=0.9", "--offset=3cm", "--format=json"))
+    result = json.loads(run("record", MOTION, *OFFSET, "--scale=0.9", "--format=json"))
     assert {name: result[name] for name in expected.summary()} == expected.summary()
-    assert result["threshold_scale"] == expected.thresholds.value.tolist()
-    assert result["overturning_scale"] == expected.thresholds[0].value
-    faster = json.loads(run("record", MOTION, *SIZES, "--offset=3cm", "--no-thresholds", "--format=json"))
-    assert faster["margin"] is None
-    assert "threshold_scale" not in faster
+    assert result["body"] == expected.body.description
+    assert [change["scale"] for change in result["thresholds"]] == expected.thresholds.value.tolist()
+    faster = json.loads(run("record", MOTION, *OFFSET, "--no-thresholds", "--format=json"))
+    assert (faster["margin"], faster["thresholds"]) == (None, None)
 
 
 def test_thresholds_and_pulse():
     result = json.loads(run("record", MOTION, *SIZES, "--thresholds", "--fit", "--restitution", "0.8", "--format=json"))
     expected = rocking.Block(0.5, 2.0).thresholds(rocking.read_record(MOTION), restitution=0.8)
-    assert result["threshold_scale"] == expected.value.tolist()
-    assert result["overturns_above"] == [one.overturns_above for one in expected.changes]
+    assert [change["scale"] for change in result["thresholds"]] == expected.value.tolist()
+    assert [change["overturns_above"] for change in result["thresholds"]] == [
+        change.overturns_above for change in expected.changes
+    ]
     assert result["pulse"] == "mavroeidis_papageorgiou"
     assert 0.0 < result["pulse_explained"] < 1.0
 
@@ -103,7 +102,7 @@ def test_baseline_is_removed_on_request_only():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["nowhere.csv", *SIZES], "nowhere.csv: no such file"),
+        (["nowhere.csv", *SIZES], "'nowhere.csv': no such file"),
         ([MOTION, "--width", "0.5", "--height", "2m"], "--width"),
         ([MOTION, *SIZES, "--scale", "0"], "--scale"),
         ([MOTION, *SIZES, "--restitution", "plastic"], "--restitution"),
@@ -127,14 +126,11 @@ def test_fragility_in_three_formats(small):
     rows = list(read_csv(run("fragility", str(small), "--format=csv")))
     assert len(rows) == 3 * 4
     assert {row["demand"] for row in rows} == {"overturning", "alpha", "0.5 alpha"}
-    text = run("fragility", str(small))
-    assert "measure  pga" in text
-    curve = expected.sel(model="lognormal")
-    ends = [float(curve[f"median_intensity{end}"]) for end in ("", "_lower", "_upper")]
-    value, low, high = ("-" if not math.isfinite(end) else f"{end:.4g}" for end in ends)
-    (line,) = (line for line in text.splitlines() if "overturning" in line and "lognormal" in line)
-    assert f"{value} ({low} to {high})" in line
-    assert len(line) < 180
+    assert run("fragility", str(small)).splitlines()[2].split() == ["measure", "pga"]
+    lines = run("fragility", str(small), "--table=curves").splitlines()
+    median = float(expected.sel(model="lognormal").median_intensity)
+    (line,) = (line for line in lines if line.startswith("overturning") and "lognormal" in line)
+    assert f"{median:.9g}" in line
 
 
 def test_friction_restitution_and_sampling_in_three_formats(small):
@@ -144,13 +140,9 @@ def test_friction_restitution_and_sampling_in_three_formats(small):
     rows = list(read_csv(run("fragility", str(small), "--format=csv", "--table", "sensitivity")))
     for name in ("intensity", "fraction_low_restitution", "changed_resampled", "friction_demand_largest"):
         assert result[name] == [float(row[name]) for row in rows] == expected[name].values.tolist()
-    line = run("fragility", str(small)).splitlines()[-1].split("  ")
-    assert f"{float(expected.friction_demand_largest[-1]):.9g}" in [cell.strip() for cell in line]
-    assert f"2 of 2 (eta {float(expected.restitution_low):.3g})" in [cell.strip() for cell in line]
 
 
-def test_table_is_for_csv_and_for_what_the_configuration_asks_for(small, tmp_path):
-    assert "with --format csv" in refused("fragility", str(small), "--format=json", "--table", "curves")
+def test_table_is_what_the_configuration_asks_for(small, tmp_path):
     rows = read_csv(run("fragility", str(small), "--format=csv", "--table", "curves"))
     assert len(rows) == 3 * 2
     given = json.loads(small.read_text())
@@ -170,7 +162,6 @@ def test_a_file_in_place_of_printing(small, tmp_path):
     run("fragility", str(small), "-o", str(path.with_suffix(".csv")))
     assert path.with_suffix(".csv").read_text().startswith("demand,width")
     assert "--output" in refused("fragility", str(small), "--output", "curves.txt")
-    assert "--output" in refused("fragility", str(small), "--format=json", "--output", str(path))
     assert "--output" in refused("fragility", str(small), "--output", str(tmp_path / "none" / "curves.csv"))
 
 
@@ -196,9 +187,6 @@ def test_invalid_configuration_names_the_key(small, tmp_path, change, message):
         ("a.yaml", "a: [1", "a.yaml"),
         ("b.json", "[1]", "b.json"),
         ("a.json", "[" * 10_000, "a readable configuration"),
-        ("a.yaml", "[" * 2000, "a readable configuration"),
-        ("a.toml", "a=" + "[" * 4000, "a readable configuration"),
-        ("a.toml", "a" + ".a" * 4000 + " = 1\n", "at most 4096 characters"),
     ],
 )
 def test_unreadable_configurations_are_refused(name, text, message, tmp_path):
@@ -225,7 +213,7 @@ def test_a_vertical_component_of_a_file_or_a_column(tmp_path):
     expected = rocking.Block(0.5, 2.0).response(motion, scale=0.9)
     options = [*SIZES, "--scale=0.9", "--format=json"]
     found = json.loads(run("record", MOTION, *options, "--vertical", UP))
-    assert found["peak_rotation"] == float(expected.dimensionless.peak_rotation)
+    assert found["peak_rotation"] == float(expected.peak_rotation)
     assert found["peak_vertical_acceleration"] == motion.peak_vertical_acceleration
     path = tmp_path / "both.csv"
     rows = np.stack([motion.times, motion.acceleration, motion.vertical], axis=1).tolist()
@@ -257,7 +245,8 @@ def test_the_worst_direction_of_two_components(tmp_path):
     turned = rocking.Block(0.5, 2.0).response(along(found["direction_deg"]))
     assert found["overturning_scale"] == pytest.approx(turned.overturning_scale)
     body = rocking.RigidBody.from_size(0.5, 2.0, offset=0.05)
-    quick = json.loads(run("record", east, *options, "--offset", "5cm", "--no-thresholds", "--scale=0.7"))
+    wide = ["--body", "offset_mass(width=0.5m, height=2m, offset=5cm)"]
+    quick = json.loads(run("record", east, *options[len(SIZES) :], *wide, "--no-thresholds", "--scale=0.7"))
     every = [body.response(along(15 * k), scale=0.7, thresholds=False) for k in range(24)]
     assert quick["overturned"] == any(one.overturned for one in every)
     if not quick["overturned"]:
@@ -265,46 +254,18 @@ def test_the_worst_direction_of_two_components(tmp_path):
     assert "--second" in refused("record", east, *SIZES, "--second", str(motions / "napa_HNN.csv"))
 
 
-def test_the_motion_of_a_floor_is_read_again(tmp_path):
-    path = tmp_path / "floor.csv"
-    modes = ["--period", "0.5s", "--period", "100 ms", "--participation", "1.3", "--participation", "-0.3"]
-    path.write_text(run("floor", MOTION, *modes, "--damping", "0.03"))
-    expected = rocking.floor_motion(
-        rocking.read_record(MOTION), periods=[0.5, 0.1], damping=0.03, participation=[1.3, -0.3]
-    )
-    found = rocking.read_record(path)
-    np.testing.assert_array_equal(found.acceleration, expected.acceleration)
-    assert found.time_step == pytest.approx(expected.time_step, rel=1e-9)
-    header = run("floor", MOTION, "--period", "0.5s", "--vertical", MOTION).splitlines()[0]
-    assert header == "time [s],acceleration [m/s2],vertical [m/s2]"
-
-
-@pytest.mark.parametrize(
-    ("said", "options"),
-    [
-        ("--period", [MOTION]),
-        ("--period", [MOTION, "--period", "0.5"]),
-        ("--period", [MOTION, "--period", "1000s"]),
-        ("--damping", [MOTION, "--period", "0.5s", "--damping", "1.5"]),
-        ("none.csv", ["none.csv", "--period", "0.5s"]),
-    ],
-)
-def test_errors_name_the_option(said, options):
-    assert said in refused("floor", *options)
-
-
 def test_the_motion_under_a_record_as_numbers_with_forces_of_a_known_mass():
     block, motion = rocking.Block(0.5, 2.0), rocking.read_record(MOTION)
-    given = ("record", MOTION, *SIZES, "--history", "--samples=50")
+    options = ("--history", "--samples=50")
     expected = block.history(motion, scale=1.0, samples=50, contact=True)
-    found = json.loads(run(*given, "--mass=200kg", "--format=json"))
+    found = json.loads(run("record", MOTION, *SIZES, *options, "--mass=200kg", "--format=json"))
     np.testing.assert_array_equal(found["time"], expected["time"])
-    np.testing.assert_allclose(found["rotation_deg"], np.degrees(expected["rotation"]))
+    np.testing.assert_array_equal(found["rotation"], expected["rotation"])
     np.testing.assert_allclose(found["normal_force"], 200.0 * block.gravity * expected["normal_reaction"])
-    mirrored = json.loads(run(*given, "--mirrored", "--format=json"))
-    np.testing.assert_allclose(mirrored["rotation_deg"], np.negative(found["rotation_deg"]), atol=1e-12)
+    mirrored = json.loads(run("record", MOTION, *SIZES, *options, "--mirrored", "--format=json"))
+    np.testing.assert_allclose(mirrored["rotation"], np.negative(found["rotation"]), atol=1e-12)
     assert "normal_force" not in mirrored
-    (first, *_) = read_csv(run(*given, "--mass=200kg", "--offset=3cm", "--format=csv"))
+    (first, *_) = read_csv(run("record", MOTION, *OFFSET, *options, "--mass=200kg", "--format=csv"))
     assert {"edge", "normal_reaction", "horizontal_force", "vertical_acceleration"} <= first.keys()
 
 
@@ -317,6 +278,7 @@ def test_options_of_the_motion_belong_to_it(options, option):
 
 def test_the_mirrored_record_has_thresholds_of_its_own():
     body, motion = rocking.RigidBody.from_size(0.5, 2.0, offset=0.03), rocking.read_record(MOTION)
-    found = json.loads(run("record", MOTION, *SIZES, "--offset=3cm", "--mirrored", "--format=json"))
-    assert found["threshold_scale"] == body.thresholds(motion.mirrored()).value.tolist()
+    found = json.loads(run("record", MOTION, *OFFSET, "--mirrored", "--format=json"))
+    expected = body.thresholds(motion.mirrored()).value.tolist()
+    assert [change["scale"] for change in found["thresholds"]] == expected
     assert found["record"].endswith(", mirrored")

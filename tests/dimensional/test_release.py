@@ -104,7 +104,7 @@ def test_command() -> None:
     size = ["history", "--width", "40cm", "--height", "1.6m"]
     out = CliRunner().invoke(app, [*size, "--start", "3deg", "--duration", "2s", "--format", "json"])
     found = rocking.Block(0.4, 1.6).history(start="3 deg", duration="2 s")
-    np.testing.assert_array_equal(json.loads(out.stdout)["rotation_deg"], np.degrees(found["rotation"].values))
+    np.testing.assert_array_equal(json.loads(out.stdout)["rotation"], found["rotation"].values)
     for more, text in ((["--start", "3deg", "--pulse", "sine"], "--pulse"), ([], "--start")):
         out = CliRunner().invoke(app, [*size, *more])
         assert out.exit_code == 2

@@ -84,7 +84,7 @@ BLOCK = rocking.Block(0.5, 2.0)
 
 
 def test_nothing_is_searched_before_it_is_asked_for(monkeypatch):
-    monkeypatch.setattr(response, "block_thresholds", None)  # a search fails
+    monkeypatch.setattr(response, "thresholds_of", None)  # a search fails
     found = BLOCK.response(noise(0))
     assert found.to_dict()["outcome"] == found.outcome.name
     assert BLOCK.response(noise(0), thresholds=False).margin is None

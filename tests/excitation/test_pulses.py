@@ -152,8 +152,9 @@ def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(tex
     ("text", "given", "message"),
     [
         *((name, {}, "`pulse`") for name in ("square", "", "--sine", "Sine", "sine ")),
-        ("sine(cycles=2)", {}, "`cycles` = '2' .* for sine: no parameters"),
-        ("sine", {"cycles": 2.0}, r"`cycles` = 2\.0 .* for sine: no parameters"),
+        ("cosine(cycles=2)", {}, "`cycles` = '2' .* for cosine: no parameters"),
+        ("cosine", {"cycles": 2.0}, r"`cycles` = 2\.0 .* for cosine: no parameters"),
+        *(("sine", {"cycles": value}, "`cycles`") for value in (0, 1.5, 41)),
         ("mavroeidis_papageorgiou", {"colour": 2.0}, r"`colour`.*mavroeidis_papageorgiou: cycles and phase"),
         *(("mavroeidis_papageorgiou", {"cycles": value}, "`cycles`") for value in (1.0, 21.0)),
         *(("mavroeidis_papageorgiou", {"phase": value}, "`phase`") for value in (7.0, math.nan)),
@@ -168,6 +169,16 @@ def test_a_text_states_the_parameters_of_a_pulse_and_its_name_makes_it_again(tex
 def test_what_is_no_pulse_or_no_parameter_of_it_is_refused(text, given, message):
     with pytest.raises(InvalidArgumentError, match=message):
         rocking.pulse(text, **given)
+
+
+@pytest.mark.parametrize("cycles", [1, 3, 40])
+def test_a_harmonic_of_several_cycles_repeats_the_sine(cycles):
+    pulse = rocking.pulse("sine", cycles=cycles)
+    phase = np.linspace(0.1, 2 * np.pi - 0.1, 50)
+    assert pulse.end == pytest.approx(2 * np.pi * cycles)
+    np.testing.assert_allclose(pulse.shape(phase + pulse.end - 2 * np.pi), np.sin(phase), atol=1e-12)
+    assert len(pulse.stationary) == 2 * cycles
+    assert rocking.pulse(pulse.name) == pulse == rocking.pulse(f"sine(cycles={cycles})")
 
 
 def test_commas_separate_pulses_except_within_brackets():

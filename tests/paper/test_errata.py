@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from scipy.integrate import solve_ivp
 
 import rocking
 from rocking import paper as cf
@@ -193,6 +194,17 @@ def test_section_7_small_rotations_are_not_exactly_self_similar():
     assert slender < 0.15  # small rotations
     assert tiny == pytest.approx(slender, rel=1e-6)  # exact in the slender limit
     assert 1e-4 < abs(large / slender - 1) < 0.05  # practically, not exactly, for other blocks
+
+
+def test_below_3_8_manifold_without_the_growing_exponential():
+    omega = 3.0
+    a = float(cf.case_2_amplitude(omega))
+    y, v = (float(state) for state in cf.state_at_pulse_end(a, omega))
+    assert y + v + 1 == pytest.approx(0.0, abs=1e-12)  # B = 0: theta/alpha = -1 is the unstable equilibrium
+    duration = 3.0
+    free = solve_ivp(lambda _, state: [state[1], state[0] + 1.0], (0.0, duration), [y, v], rtol=1e-12, atol=1e-14)
+    # the motion comes closer to the equilibrium: its stable manifold; on the unstable one it would move away as e^tau
+    assert abs(free.y[0, -1] + 1) == pytest.approx(abs(y + 1) * math.exp(-duration), rel=1e-6)
 
 
 def test_symbol_alpha_is_not_accepted_as_amplitude():

@@ -218,7 +218,7 @@ PICTURES = {
     "spectrum": lambda: grid(frequency_ratio=np.linspace(1.0, 9.0, 20)),
     "angles": lambda: grid(alpha=np.linspace(0.1, 0.4, 20)),
     "map": lambda: grid(slenderness=np.linspace(0.1, 0.9, 9)[:, None], frequency_ratio=np.linspace(1.0, 9.0, 20)),
-    "block spectrum": lambda: BLOCK.spectrum("sine", peak_acceleration=4.0, period=PERIODS).top_displacement,
+    "block spectrum": lambda: BLOCK.spectrum("sine", peak_acceleration=4.0, period=PERIODS).displacement,
     "fraction": lambda: rocking.fragility([noise(1), noise(2)], BLOCK, intensity=np.geomspace(1, 20, 6)).fraction,
     "boundary": lambda: BLOCK.boundary("sine", period=(0.5, 0.8)).peak_acceleration,
 }

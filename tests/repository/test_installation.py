@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.cost.first_call import README_COMMAND
 from benchmarks.installation import PACKAGES
-from tests.sampling import ALL, but_long, number
+from tests.sampling import ALL, number
 from tests.wheel_fixtures import Installation
 
 ROOT = Path(__file__).parents[2]
@@ -69,7 +69,8 @@ def assert_few_files(environment: dict[str, str], packages: Path) -> None:
         assert all(found[name] <= limit for name, limit in LIMITS.items()), found
 
 
-@pytest.mark.parametrize("first", but_long([PYTHON, COMMAND], COMMAND), ids=["python", "command"])
+@pytest.mark.long
+@pytest.mark.parametrize("first", [PYTHON, COMMAND], ids=["python", "command"])
 def test_a_first_answer_reads_few_files(
     installed: Installation, counted: dict[str, str], tmp_path: Path, first: list[str]
 ) -> None:

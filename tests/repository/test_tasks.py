@@ -13,7 +13,6 @@ import pytest
 from rocking import precompile
 from rocking._base.source_tree import SourceTree
 from rocking._numba import kernel_cache
-from tests.sampling import but_long
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "tasks.md").read_text()
@@ -25,7 +24,7 @@ STEP = re.compile(
 )
 COPIED = ("api", "assessment", "profiles", "rocking", "workflow")
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +62,7 @@ def perform(path: Path, step: re.Match[str]) -> None:
     path.write_text(f"{before}\n{parts[step['where']]}{after}")
 
 
-@pytest.mark.parametrize("task", but_long(TASKS, "motion", "route", "figure", "field", "package"))
+@pytest.mark.parametrize("task", TASKS)
 def test_task(copy: Path, task: str) -> None:
     folders = [copy, copy / "api", copy / "assessment", *([copy / "build/packages"] if task == "package" else [])]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, folders)), "PYTHONWARNINGS": "error"}

@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 
 from tests.api.servers import serving
-from tests.sampling import but_long
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted((ROOT / "docs/tutorials").glob("*.md"))
@@ -26,7 +25,7 @@ COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
 NOT_RUN = ("python3 -m venv", "pip install", ". ", "make ", "snakemake", "cp ", "git ")
 """Starts of commands that are not run; of `snakemake`, `snakemake -n` is."""
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.long
 
 
 def printed(shown: str) -> re.Pattern[str]:
@@ -47,9 +46,7 @@ def run(command: str, folder: Path, port: int | None) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize(
-    "page", but_long(PAGES, *(path for path in PAGES if path.stem in ("service", "table"))), ids=lambda path: path.stem
-)
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
 def test_tutorial(page, tmp_path):
     steps = [step for step in STEP.finditer(page.read_text()) if step["path"] or step["language"] == "console"]
     for step in steps:

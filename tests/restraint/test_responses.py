@@ -10,7 +10,7 @@ import rocking
 from reference.exact_response import working_precision
 from reference.multiprecision import integrate
 from rocking import restraint
-from rocking._solver.bodies import outcome_margin_of, solve_motion
+from rocking._solver.bodies import outcome_margin_of, solve
 from rocking._solver.restrained import restrain
 from rocking._solver.state import block_cells
 
@@ -85,7 +85,7 @@ def test_a_tendon_alone_is_a_free_block_in_other_units(motion: str | rocking.Rec
     rate = groups["frequency_ratio"] * (motion.time_step if by_record else 1.0)
     cells = block_cells(rate, groups["slenderness"], groups["restitution"], np.zeros(50))
     restrain(cells, {"stiffness": kappa, "prestress": sigma})
-    records, edges = solve_motion(motion if by_record else rocking.pulse(motion), cells, None, None)
+    records, edges = solve(motion if by_record else rocking.pulse(motion), cells, None, None)
     time = {"frequency_parameter" if by_record else "frequency_ratio": groups["frequency_ratio"]}
     response = rocking.peak_response(
         motion,

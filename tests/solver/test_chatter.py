@@ -48,7 +48,7 @@ def ends_in_rest(flight, w, eta, phase, end, peak) -> bool:
 
 
 @given(WANTED)
-@settings(max_examples=number(20, 500))
+@settings(max_examples=number(6, 500))
 def test_chatter_bound_holds_for_the_followed_impacts(wanted):
     pulse, slenderness, omega, eta, alpha, where, within, w, sign = wanted
     flight = cell(pulse, slenderness, omega, alpha)

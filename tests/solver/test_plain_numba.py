@@ -29,7 +29,7 @@ WITHOUT_COLLECTION = "import gc, sys, pytest; gc.disable(); sys.exit(pytest.main
 """A seventh of the time of the compiler is a search for garbage among what it keeps."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_solver_agrees_with_its_references_without_private_names_of_numba(tmp_path):
     variables = {"ROCKING_PLAIN_NUMBA": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
     command = [sys.executable, "-c", WITHOUT_COLLECTION, "-q", "-p", "no:cacheprovider", *ESSENTIAL]

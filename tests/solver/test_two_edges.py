@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rocking
-from rocking._solver.bodies import solve_motion
+from rocking._solver.bodies import solve
 from rocking._solver.records.record_response import solve_bodies
 from rocking._solver.records.samples import pulse_samples, sample_rows
 from rocking._solver.state import BODY_CELL, block_cells
@@ -21,7 +21,7 @@ ACROSS, UP = samples("napa_HNE")[700:3000], samples("napa_HNN")[700:3000]
 
 def solved(kind: str, cells: NDArray[np.void], sign: float = 1.0) -> tuple[NDArray[np.void], NDArray[np.float64]]:
     if kind == "pulse":
-        return solve_motion(rocking.pulse("sine" if sign > 0.0 else "-sine"), cells, None, None)
+        return solve(rocking.pulse("sine" if sign > 0.0 else "-sine"), cells, None, None)
     return solve_bodies(sample_rows(sign * ACROSS / np.abs(ACROSS).max(), None, UP), cells, None, None, each_side=True)
 
 
@@ -51,7 +51,7 @@ def behind(kind: str, given: NDArray[np.void]) -> NDArray[np.void]:
 def test_bodies_under_a_pulse_are_those_under_its_samples(name: str) -> None:
     """Errors fall with the square of the sample step; the outcomes of most bodies are those of coarse samples."""
     cells, pulse = bodies("pulse", 150, 7), rocking.pulse(name)
-    exact, edges = solve_motion(pulse, cells, None, None)
+    exact, edges = solve(pulse, cells, None, None)
     sides = edges[:, :2]
     errors = []
     for count in (2000, 4000):
@@ -95,11 +95,11 @@ def test_equal_edges_are_the_block_bit_by_bit(kind: str) -> None:
     rate = rng.uniform(1.0, 8.0, 300)
     if kind == "pulse":
         block = rocking.peak_response("sine", frequency_ratio=rate, **groups)
-        body, edges = solve_motion(rocking.pulse("sine"), block_cells(rate, s, eta, alpha), None, None)
+        body, edges = solve(rocking.pulse("sine"), block_cells(rate, s, eta, alpha), None, None)
     else:
         motion = record("synthetic_31", 0.01)
         block = rocking.peak_response(motion, frequency_parameter=rate, **groups)
-        body, edges = solve_motion(motion, block_cells(rate * motion.time_step, s, eta, alpha), None, None)
+        body, edges = solve(motion, block_cells(rate * motion.time_step, s, eta, alpha), None, None)
     np.testing.assert_array_equal(body["outcome"], block.outcome)
     np.testing.assert_array_equal(body["peak_rotation"], block.peak_rotation)
     np.testing.assert_array_equal(edges[:, :2].max(axis=1), block.peak_rotation)

@@ -23,8 +23,9 @@ KILLED = ("group", "make", "run")
 def project(folder: Path) -> Path:
     """Copy what the commands of this checkout read to a folder that has its own results."""
     folder.mkdir()
-    for name in ("Makefile", "Snakefile", "environment.lock", "pyproject.toml"):
-        shutil.copy2(PROJECT / name, folder)
+    (folder / "docs").mkdir()
+    for name in ("Makefile", "Snakefile", "environment.lock", "pyproject.toml", "CITATION.cff", "docs/equations.md"):
+        shutil.copy2(PROJECT / name, folder / name)
     for name in ("rocking", "workflow", "profiles", "benchmarks"):  # with the compiled kernels
         shutil.copytree(PROJECT / name, folder / name)
     (folder / ".venv").symlink_to(PROJECT / ".venv")

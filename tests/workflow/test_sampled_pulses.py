@@ -16,7 +16,7 @@ import rocking
 from rocking._datasets.cube import read_dataset, read_spectrum, stored_pulse
 from rocking._lookup.collection import CubeCollection
 from tests.sampling import ALL, number
-from tests.workflow_fixtures import SMOKE, rules_to_run, snakemake
+from tests.workflow_fixtures import AFTERWARDS, SMOKE, rules_to_run, snakemake
 from workflow.configuration import ConfigurationError, check
 from workflow.pulses import configured_pulse, relative_entry
 
@@ -77,7 +77,7 @@ def test_samples_of_a_file_are_those_of_a_list(tmp_path: Path) -> None:
     assert configured_pulse(relative_entry(entry, str(tmp_path))) == found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) -> None:
     (tmp_path / "ramp.csv").write_text("time,acceleration\n0,0\n0.1,3\n0.3,-1\n0.7,0\n")
     triangle = {"name": "triangle", "acceleration": [0, 2, 0], "time": [0, 0.5, 1]}
@@ -93,7 +93,7 @@ def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) 
     kinds = "spectra", "overturning"
     files = {f"{kind}/{pulse.name}/eta-0.85.nc" for kind in kinds for pulse in pulses}
     files |= {f"spectra/{pulse.name}/restitution-errors.nc" for pulse in pulses}
-    assert set(listed) == files | {f"zarr/{pulse.name}.zarr" for pulse in pulses}
+    assert set(listed) == files | {"stac"} | {f"zarr/{pulse.name}.zarr" for pulse in pulses}
     verdicts = (run / "results/checks.txt").read_text()
     assert "failed" not in verdicts
     assert [name for name in listed if f"[{name}]" not in verdicts] == []
@@ -107,7 +107,7 @@ def test_data_sets_of_sampled_pulses_without_figures_and_claims(tmp_path: Path) 
     written.write_text(yaml.safe_dump(configuration(entries)))
     planned = snakemake(run, "--dry-run", configuration=written)
     again = {"overturning", "spectra", "restitution_errors", "zarr_store", "check_data_sets"}
-    assert rules_to_run(planned.stdout) == again | {"manifest", "check_results", "all"}, planned.stdout
+    assert rules_to_run(planned.stdout) == again | {"stac", *AFTERWARDS}, planned.stdout
     assert "of the triangle pulse" in planned.stdout
     assert "of the ramp pulse" not in planned.stdout
 

@@ -64,7 +64,7 @@ def test_every_product_is_made_and_listed(products: Path) -> None:
     for name, entry in listed.items():
         assert hashlib.sha256((products / name).read_bytes()).hexdigest() == entry["sha256"]
     found = {path.relative_to(products).as_posix() for path in products.rglob("*") if path.is_file()}
-    assert found - expected == {"manifest.json"}
+    assert found - expected == {"manifest.json", "ro-crate-metadata.json"}
 
 
 def test_the_shorter_configuration_of_the_guide_is_enough(tmp_path: Path) -> None:
@@ -143,7 +143,7 @@ def test_second_run_does_nothing_and_a_lost_record_is_made_again(
     assert [name for name in problems(copy) if "napa_HNE" in name]
     planned = snakemake(copy, "--dry-run", configuration=configuration)
     jobs = dict(re.findall(r"^(\w+) +(\d+)$", planned.stdout.partition("total")[0], flags=re.MULTILINE))
-    once = ("suite_record", "suite_fragility", "suite_figures", "manifest", "all")
+    once = ("suite_record", "suite_fragility", "suite_figures", "manifest", "ro_crate", "all")
     assert jobs == dict.fromkeys(once, "1"), planned.stdout
     remade = snakemake(copy, place, configuration=configuration)
     assert remade.returncode == 0, remade.stdout

@@ -107,8 +107,6 @@ def test_values_that_do_not_go_together_are_refused_in_one_line(place: str, valu
     ("place", "value", "message"),
     [
         ("grid/frequency_ratio/low", 50.0, "Configuration refused: grid.frequency_ratio: low = 50, high = 12; allowed"),
-        ("grid/spacing", 1, "Additional properties are not allowed ('spacing' was unexpected)"),
-        ("restitution", [0.85], "results/overturning/sine/eta-0.90.nc"),
         ("pulses", ["sine"], "results/overturning/cosine/eta-0.85.nc"),
     ],
 )

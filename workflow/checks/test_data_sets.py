@@ -1,7 +1,6 @@
 """The data sets of a pulse: consistent, and in agreement with the solver. Run by `rule check_data_sets`."""
 
 import itertools
-import json
 import os
 from pathlib import Path
 
@@ -31,7 +30,7 @@ VERTICES = 3000  # vertices that are tested for each angle of a file, about, eve
 TIP = 0.2
 """Frequency ratio below which the surviving region ends, near 1/a = 0.99, in layers that are not all resolved [-]."""
 
-DATA_SETS: list[str] = json.loads(os.environ["ROCKING_DATA_SETS"])
+DATA_SETS = [Path(path).relative_to(RESULTS).as_posix() for path in os.environ["ROCKING_DATA_SETS"].split()]
 """Names of the files of the pulse, relative to `RESULTS`."""
 
 

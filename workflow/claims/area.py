@@ -1,4 +1,4 @@
-"""Areas of the control plane, so that a share does not depend on where a grid has its nodes."""
+"""Areas of the control plane in (1/a, log omega), so that a share does not depend on where a grid has its nodes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,8 +6,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-MEASURE = "area in (1/a, log omega)"
-"""The measure of all shares of the control plane: equal ratios of frequencies count alike."""
+LAW = 0.10  # error of the scale law (4.16) up to which it is said to hold [-]
 
 
 def node_areas(slenderness: Floats, frequency_ratio: Floats, *, logarithmic: bool = True) -> Floats:

@@ -1,7 +1,7 @@
 """An archive of a results folder for a data repository: `python -m workflow.deposit [FOLDER]`, or `make deposit`.
 
 FOLDER contains `results`, which must be as its manifest states. The zip file holds the products but the zarr stores,
-which repeat the cubes, checksums, a
+which repeat the cubes, and the STAC catalogue, which describes them; checksums, a
 description of DataCite, the licence of the data, a page for readers, and a script that verifies the files without this
 package. Equal products give equal bytes of the archive in the same year.
 """

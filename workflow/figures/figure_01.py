@@ -33,9 +33,9 @@ def data(
         {
             "at_rest": plotted(("corner", "axis"), corners, "corners and centre of the block at rest", units="m"),
             "rotated": plotted(("corner", "axis"), rotated, "the same, rotated about the right corner", units="m"),
-            "ground_acceleration": plotted("time", acceleration, "ground acceleration in units of g", equation="3.2"),
+            "ground_acceleration": plotted("sample", acceleration, "ground acceleration in units of g", equation="3.2"),
         },
-        coords={"time": plotted("time", time, "time", units="s")},
+        coords={"time": plotted("sample", time, "time", units="s")},
         attrs={
             "title": "Geometry of the rigid rocking block and the pulse",
             "summary": "Block of the given half width and half height, drawn to scale, and the pulse under it.",
@@ -96,8 +96,20 @@ def _draw_block(ax: Axes, data: xr.Dataset) -> None:
     ax.annotate("$mg$", centre - [0, 0.36 * h], xytext=(-12, 0), textcoords="offset points", ha="center")
     for x, name, side in ((-b - 0.03 * h, "$O$", "right"), (b + 0.04 * h, "$O'$", "left")):
         ax.text(x, 0.02 * h, name, ha=side, va="bottom")
-    ax.set_xlim(-2.7 * b, 3.7 * b)
+    _draw_axes(ax, np.array([2.6 * b, 1.0 * h]), 0.3 * h)
+    ax.set_xlim(-2.7 * b, 3.9 * b)
     ax.set_ylim(-0.5 * h, 2.45 * h)
+
+
+def _draw_axes(ax: Axes, origin: np.ndarray, length: float) -> None:
+    """The axes whose unit orientations table 1 multiplies: x, y in the plane of the page, z out of it."""
+    for name, direction in (("$x$", [1, 0]), ("$y$", [0, 1])):
+        end = origin + length * np.array(direction)
+        ax.annotate("", end, origin, arrowprops={"arrowstyle": "-|>", "color": GREY, "shrinkA": 3, "shrinkB": 0})
+        ax.text(*(end + 0.25 * length * np.array(direction)), name, color=GREY, ha="center", va="center")
+    ax.plot(*origin, "o", markersize=6, markerfacecolor="none", color=GREY, markeredgewidth=0.8)
+    ax.plot(*origin, "o", markersize=1.5, color=GREY)
+    ax.text(*(origin - 0.25 * length), "$z$", color=GREY, ha="center", va="center")
 
 
 def _dimension(ax: Axes, start: np.ndarray, end: np.ndarray) -> None:

@@ -48,13 +48,6 @@ def data(*, restitution: Sequence[float], frequency_ratio: Mapping[str, float]) 
                 equation="3.20, 3.21",
                 **no_event,
             ),
-            "semi_analytical_beyond": plotted(
-                dims,
-                np.where(valid, np.nan, approximate),
-                "smallest solution beyond the pulse",
-                equation="3.30",
-                **no_event,
-            ),
         },
         coords={
             "restitution": plotted("restitution", eta, "coefficient of restitution"),
@@ -86,14 +79,18 @@ def draw(data: xr.Dataset) -> Figure:
     figure = Figure(figsize=(WIDTH, 3.1))
     left, right = figure.subplots(1, 2, width_ratios=[1.35, 1])
     omega = data.frequency_ratio.values
-    exact, approximate = {"color": BLACK, "linewidth": 1.0}, {"color": BLUE, "linewidth": 2.0, "linestyle": (0, (2, 1))}
+    exact, approximate = {"color": BLACK, "linewidth": 1.0}, {"color": BLUE, "linewidth": 2.4}
     for colour, eta in zip(shades(data.restitution.size), data.restitution.values, strict=True):
-        one = data.sel(restitution=eta)
-        left.plot(omega, one.semi_analytical, **approximate)
-        left.plot(omega, one.lower, **exact)
-        left.plot(omega, one.lower_beyond, **(exact | {"linewidth": 0.4}))
-        left.plot(omega, one.semi_analytical_beyond, **(approximate | {"linewidth": 0.8}))
-        right.plot(omega, 100 * one.difference, color=colour, label=rf"$\eta={eta:.2f}$")
+        curve = data.sel(restitution=eta)
+        left.plot(omega, curve.semi_analytical, **approximate)
+        left.plot(omega, curve.lower, **exact)
+        left.plot(omega, curve.lower_beyond, **(exact | {"linewidth": 0.4}))
+        end = int(np.flatnonzero(np.isfinite(curve.lower.values))[-1])
+        left.annotate(
+            f"{eta:.2f}", (omega[end], float(curve.lower[end])), xytext=(-2, 4), textcoords="offset points",
+            rotation=60, rotation_mode="anchor", fontsize=6.5,
+        )  # fmt: skip
+        right.plot(omega, 100 * curve.difference, color=colour, label=rf"$\eta={eta:.2f}$")
     left.plot(omega, data.upper.max("restitution"), color=GREY, linewidth=0.9)
     place = data.upper.max("restitution").sel(frequency_ratio=1.5, method="nearest")
     left.annotate("(3.31)", (float(place.frequency_ratio), float(place)), xytext=(-6, 6),
@@ -102,11 +99,10 @@ def draw(data: xr.Dataset) -> Figure:
         "smallest solution:\noverturning begins", (3.1, 1.44), (3.6, 1.08), fontsize=7,
         arrowprops={"arrowstyle": "-", "linewidth": 0.5},
     )  # fmt: skip
-    first, *_, last = data.restitution.values
-    left.text(5.95, 1.7, f"left to right:\n$\\eta=$ {first:.2f} to {last:.2f}", fontsize=7, ha="right")
     left.plot([], [], label="numerical, (3.20) and (3.21)", **exact)
     left.plot([], [], label="semi-analytical, (3.30)", **approximate)
     left.plot([], [], label="thin: impact beyond the pulse", **(exact | {"linewidth": 0.4}))
+    left.text(3.62, 2.68, r"$\eta=$", fontsize=6.5)
     left.legend(loc="upper left", fontsize=6.5)
     left.set_ylim(1.0, 4.6)
     left.set_xlim(omega[0], omega[-1])

@@ -18,8 +18,8 @@ PULSES = ("sine", "cosine")
 
 EXACT = 1e-9  # relative difference up to which (4.13) and the solver are considered equal [-]
 
-HOLDS = {"color": VERMILION, "linestyle": (0, (4, 4)), "linewidth": 0.9}
-APPROXIMATE = {"color": VERMILION, "linestyle": (0, (1, 2)), "linewidth": 0.9}
+HOLDS = {"color": VERMILION, "linestyle": (0, (4, 4)), "linewidth": 0.9, "zorder": 3}
+APPROXIMATE = {"color": VERMILION, "linestyle": (0, (1, 2)), "linewidth": 0.9, "zorder": 3}
 
 
 def data(

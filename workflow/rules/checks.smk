@@ -1,5 +1,10 @@
-# The tests of the finished products: those of the data sets of a pulse as soon as they are made.
-DATA_CHECKS = ["checks/test_data_sets.py", "checks/report.py"]
+# The tests of the finished products, in the words of pytest: those of the data sets of a pulse as soon as they are made. A
+# report has a line for each test, without times.
+TESTED = (
+    "env ROCKING_RESULTS=results PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 ROCKING_DATA_SETS='{params.data_sets}' "
+    "python -m pytest -q -rA -p no:cacheprovider --pyargs {params.tests} >{log} && "
+    "sed -n 's/^PASSED .*::/passed /p' {log} | cat - {params.reports} | sort >{output}"
+)
 
 
 rule check_data_sets:
@@ -18,11 +23,14 @@ rule check_data_sets:
     resources:
         mem_mb=memory(1200),
     params:
-        code=product_code("scripts/check_data_sets.py", *DATA_CHECKS),
+        code=product_code("checks/test_data_sets.py"),
+        tests="workflow.checks.test_data_sets",
+        data_sets=lambda wildcards, input: " ".join(input),
+        reports="",
     message:
         "Testing the data sets of the {wildcards.pulse} pulse"
-    script:
-        "../scripts/check_data_sets.py"
+    shell:
+        TESTED
 
 
 rule check_results:
@@ -34,16 +42,15 @@ rule check_results:
         report="results/checks.txt",
     log:
         "logs/check_results.log",
-    benchmark:
-        "logs/benchmarks/check_results.tsv"
     conda:
         "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(1200),
     params:
-        code=product_code("scripts/check_results.py", "checks/test_products.py", *DATA_CHECKS),
-    script:
-        "../scripts/check_results.py"
+        code=product_code("checks/test_products.py"),
+        tests="workflow.checks.test_products",
+        data_sets="",
+        reports=lambda wildcards, input: input.reports,
+    shell:
+        TESTED
 
 
 CHECKED += rules.check_results.output

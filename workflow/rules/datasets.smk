@@ -23,6 +23,8 @@ BOUNDARY_PROVENANCE = provenance(["scripts/overturning.py"], BOUNDARY_SETTINGS)
 CUBE_PROVENANCE = provenance(["scripts/spectra.py"], config["grid"])
 ERRORS_PROVENANCE = provenance(["scripts/restitution_errors.py"], {"restitution": config["restitution"]})
 STORE_PROVENANCE = provenance(["scripts/zarr_store.py"], {})
+STAC_PROVENANCE = provenance(["scripts/stac.py"], {})
+list_products("stac", STAC_PROVENANCE, ["results/stac"])
 
 for name, pulse in PULSES.items():
     samples = {} if isinstance(pulse, str) else {"pulse_sha256": pulse.digest}
@@ -98,8 +100,6 @@ rule restitution_errors:
     params:
         pulse=lambda wildcards: ENTRIES[wildcards.pulse],
         provenance=ERRORS_PROVENANCE,
-    message:
-        "Errors between the cubes of the {wildcards.pulse} pulse"
     script:
         "../scripts/restitution_errors.py"
 
@@ -119,7 +119,28 @@ rule zarr_store:
         mem_mb=memory(CUBE_MB),
     params:
         provenance=STORE_PROVENANCE,
-    message:
-        "All cubes of the {wildcards.pulse} pulse as a zarr store"
     script:
         "../scripts/zarr_store.py"
+
+
+# The data sets for catalogues of other data: https://stacspec.org, with the extension for data cubes.
+rule stac:
+    input:
+        cubes=[path for pulse in PULSES for path in spectrum_files(pulse, ETAS.values())],
+        boundaries=[path for pulse in PULSES for path in overturning_files(pulse, ETAS.values())],
+        stores=[f"results/zarr/{pulse}.zarr" for pulse in PULSES],
+    output:
+        folder=directory("results/stac"),
+    log:
+        "logs/stac.log",
+    benchmark:
+        "logs/benchmarks/stac.tsv"
+    localrule: True
+    conda:
+        "../envs/rocking.yaml"
+    params:
+        provenance=STAC_PROVENANCE,
+    message:
+        "Describing the data sets as a STAC catalogue"
+    script:
+        "../scripts/stac.py"

@@ -8,8 +8,6 @@ rule manifest:
         manifest=f"{RESULTS}/manifest.json",
     log:
         f"logs/{RESULTS}/manifest.log",
-    benchmark:
-        f"logs/benchmarks/{RESULTS}/manifest.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"
@@ -21,3 +19,26 @@ rule manifest:
         "Listing all products"
     script:
         "../scripts/manifest.py"
+
+
+# The run as a RO-Crate: https://www.researchobject.org/ro-crate.
+rule ro_crate:
+    input:
+        manifest=rules.manifest.output.manifest,
+    output:
+        crate=f"{RESULTS}/ro-crate-metadata.json",
+    log:
+        f"logs/{RESULTS}/ro_crate.log",
+    benchmark:
+        f"logs/benchmarks/{RESULTS}/ro_crate.tsv"
+    localrule: True
+    conda:
+        "../envs/rocking.yaml"
+    params:
+        configuration=config,
+        code=product_code("scripts/ro_crate.py"),
+        citation=sha256_of_file(PROJECT / "CITATION.cff"),
+    message:
+        "Describing the run as a RO-Crate"
+    script:
+        "../scripts/ro_crate.py"

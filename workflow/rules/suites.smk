@@ -45,8 +45,6 @@ rule suite_record:
     params:
         suite=OUTCOME_SETTINGS,
         provenance=RECORD_PROVENANCE,
-    message:
-        "Responses to {wildcards.file}"
     script:
         "../scripts/suite_record.py"
 
@@ -69,8 +67,6 @@ rule suite_fragility:
     params:
         suite=SUITE,
         provenance=FRAGILITY_PROVENANCE,
-    message:
-        "Fragility under the suite"
     script:
         "../scripts/suite_fragility.py"
 
@@ -92,8 +88,6 @@ rule suite_figures:
         [path for files in SUITE_FIGURE_FILES.values() for path in files.values()],
     log:
         f"{SUITE_LOGS}/figures.log",
-    benchmark:
-        f"{SUITE_LOGS}/benchmarks/figures.tsv"
     localrule: True
     conda:
         "../envs/rocking.yaml"

@@ -18,11 +18,12 @@ from pydantic import BaseModel, Discriminator, Tag
 
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError
+from rocking._base.quantities import GROUPS
 from rocking._datasets.csv_text import csv_header, csv_rows, csv_text
-from rocking._datasets.cube import MODEL_RESULT, VARIABLES
+from rocking._datasets.cube import MODEL_RESULT, VARIABLES, describe
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model.fields import DERIVED_FIELDS, ERROR_BOUND, IMPACTS
-from rocking_api.execution.evaluation import FIELDS, BatchResult
+from rocking_api.execution.evaluation import BatchResult
 from rocking_api.http.errors import UnsupportedBodyError
 
 M = TypeVar("M")
@@ -107,23 +108,41 @@ def csv_stream(columns: Mapping[str, Column], points: int, name: str) -> Respons
     return StreamingResponse(parts(), media_type=MEDIA_TYPES["csv"], headers=_file(f"{name}.csv"))
 
 
-def netcdf_response(dataset: xr.Dataset, name: str) -> Response:
-    """A data set as a netCDF-3 file."""
-    content = dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT")
+def netcdf_response(dataset: xr.Dataset, name: str, title: str, url: str) -> Response:
+    """A data set as a netCDF-3 file that follows CF-1.11; `url` repeats the question."""
+    dataset = describe(dataset.drop_encoding(), title=title, history=f"rocking serve: {url}")
+    if "time" in dataset.dims:  # a dimension of this name is one of dates
+        dataset = dataset.rename_dims(time="sample")
+    for variable in dataset.data_vars.values():
+        others = variable.attrs.pop("ancillary_variables", "").split()
+        if present := [other for other in others if other in dataset]:
+            variable.attrs["ancillary_variables"] = " ".join(present)
+    without_fill = {coordinate: {"_FillValue": None} for coordinate in dataset.coords}
+    content = dataset.to_netcdf(engine="scipy", format="NETCDF3_64BIT", encoding=without_fill)
     return Response(content, media_type=MEDIA_TYPES["nc"], headers=_file(f"{name}.nc"))
 
 
-def solved_variable(name: str, dimensions: Any, values: NDArray[Any]) -> tuple[Any, NDArray[Any], dict[str, Any]]:
-    """A field of responses with the type and the attributes that it has in the data sets."""
-    dtype, attributes = VARIABLES[name]
-    own = {key: value for key, value in attributes.items() if key != "ancillary_variables"}
-    return dimensions, values.astype(dtype, copy=False), MODEL_RESULT | own
+SOLVED = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")
+"""Fields of responses that every file has."""
+
+
+def solved_variables(dimensions: Any, fields: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    """Fields of responses with the types and the attributes that they have in the data sets."""
+    variables = {}
+    for name in SOLVED:
+        dtype, attributes = VARIABLES[name]
+        variables[name] = dimensions, fields[name].astype(dtype, copy=False), MODEL_RESULT | attributes
+    return variables
 
 
 def dataset_of(groups: Mapping[str, Array], result: BatchResult, attributes: Mapping[str, Any]) -> xr.Dataset:
     """Groups and results over one dimension `point`, with the attributes of the data sets."""
-    variables: dict[str, Any] = {name: ("point", values, {"units": "1"}) for name, values in groups.items()}
-    variables |= {name: solved_variable(name, "point", result.fields[name]) for name in FIELDS if name in VARIABLES}
+    variables: dict[str, Any] = {
+        group.name: ("point", groups[group.name], {"units": "1", "long_name": group.label})
+        for group in GROUPS
+        if group.name in groups
+    }
+    variables |= solved_variables("point", result.fields)
     variables[IMPACTS.name][2]["_FillValue"] = np.int32(UNKNOWN_IMPACTS)
     for field in DERIVED_FIELDS:
         variables[field.name] = ("point", result.fields[field.name], MODEL_RESULT | field.attributes)
@@ -131,7 +150,7 @@ def dataset_of(groups: Mapping[str, Array], result: BatchResult, attributes: Map
     source = {"flag_values": np.arange(2, dtype=np.int8), "flag_meanings": "cube solver"}
     variables["error_bound"] = ("point", result.fields["error_bound"], bound)
     variables["source"] = ("point", (~result.from_cube).astype("i1"), {"long_name": "source", **source})
-    return xr.Dataset(variables, attrs={"Conventions": "CF-1.11", **attributes})
+    return xr.Dataset(variables, attrs=dict(attributes))
 
 
 def _file(name: str) -> dict[str, str]:

@@ -7,10 +7,10 @@ from pydantic import BaseModel
 from rocking_api.models import quantity as q
 from rocking_api.models.answer import BY_SOLVER, InUnits
 from rocking_api.models.body_params import BodyParams, BodyShape, JsonBody
-from rocking_api.models.fields import OTHER_EDGES, OfBlock, OfEdges, UnderPulse, of
-from rocking_api.models.params import Params
+from rocking_api.models.fields import OTHER_EDGES, Edge, InUnitsOfOne, OfBlock, UnderPulse, of
 from rocking_api.models.pulses import GivenPulse
 from rocking_api.models.responses import PointResponse
+from rocking_api.models.table import TableParams
 
 MAX_BLOCKS = 10_000  # most blocks of a body [-]: each is an object, unlike the points of /v1/response
 
@@ -25,7 +25,7 @@ class BlockParams(BodyParams):
     absolute_tolerance: q.AbsoluteTolerance = 1e-4
 
 
-class BlocksParams(Params):
+class BlocksParams(TableParams):
     """Values that many blocks of a body share."""
 
     pulse: q.PulseName | None = q.said("required beside CSV; JSON holds it", None, examples=["sine"])
@@ -64,28 +64,31 @@ class BlocksResponse(InUnits[BlocksQuery]):
     name: list[str] | None = q.said("labels; null without any", None)
     body: list[str] | None = q.said("kind of each body; null if all are blocks", None)
     peak_rotation_deg: list[float | None] = of("peak_rotation_deg")
-    top_displacement: list[float | None] = of("top_displacement")
+    rotation_left_deg: list[float | None] = of("rotation_left_deg")
+    rotation_right_deg: list[float | None] = of("rotation_right_deg")
+    displacement: list[float | None] = of("displacement")
     overturned: list[bool] = of("overturned")
     outcome: list[str] = of("outcome")
+    edge: list[Edge] = of("edge")
     impacts: list[int] = of("impacts")
     exceeded_alpha: list[bool] = of("exceeded_alpha")
     peak_rotation: list[float | None] = of("peak_rotation")
-    error_bound: list[float | None] = of("error_bound", missing=OTHER_EDGES)
-    residual_energy: list[float | None] = of("residual_energy", missing=OTHER_EDGES)
+    uplift_time: list[float | None] = of("uplift_time")
+    error_bound: list[float | None] = of("error_bound")
+    residual_energy: list[float | None] = of("residual_energy")
     width: list[float | None] = of("width", missing=OTHER_EDGES)
     height: list[float | None] = of("height", missing=OTHER_EDGES)
     alpha_deg: list[float | None] = of("alpha_deg", missing=OTHER_EDGES)
+    alpha_left_deg: list[float] = of("alpha_left_deg")
+    alpha_right_deg: list[float] = of("alpha_right_deg")
     uplift_acceleration: list[float] = of("uplift_acceleration")
     peak_acceleration: list[float] = of("peak_acceleration")
     period: list[float] = of("period")
     slenderness: list[float | None] = of("slenderness", missing=OTHER_EDGES)
     frequency_ratio: list[float | None] = of("frequency_ratio", missing=OTHER_EDGES)
     restitution: list[float | None] = of("restitution", missing=OTHER_EDGES)
-    columns: dict[str, str] = q.said("meaning of the columns of the table that were read, by header", {})
-    skipped: list[str] = q.said(
-        "columns of the table that were not read, such as a thickness: nothing depends on them", []
-    )
-    totals: list[str] = q.said("rows of totals of the table, which are no blocks, with their first cells", [])
+    columns: dict[str, str] = q.said("canonical header of each column of the table that was read, by header", {})
+    skipped: list[str] = q.said("columns of the table that were not read: nothing depends on them", [])
     source: str = BY_SOLVER
 
 
@@ -137,7 +140,7 @@ class Margins(BaseModel):
     sizes_searched: tuple[float, float] = q.said("smallest and largest half-diagonal searched", unit="m")
 
 
-class BodyResponse(UnderPulse, OfEdges, InUnits[BlockParams]):
+class BodyResponse(UnderPulse, InUnitsOfOne, InUnits[BlockParams]):
     """What happens to a body under a pulse whose centre of mass is not that of the block."""
 
     thresholds: list[Threshold] | None = q.said(f"{AMPLITUDES}, this period, ascending")
@@ -147,7 +150,6 @@ class BodyResponse(UnderPulse, OfEdges, InUnits[BlockParams]):
 class BlockResponse(UnderPulse, OfBlock, InUnits[BlockParams]):
     """What happens to the block."""
 
-    error_bound: float | None = of("error_bound")
     frequency_ratio: float = of("frequency_ratio")
     largest_surviving_acceleration: float | None = of("largest_surviving_acceleration")
     largest_surviving_friction_demand: float | None = of("largest_surviving_friction_demand")

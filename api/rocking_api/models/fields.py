@@ -90,12 +90,26 @@ class ManySolved(BaseModel):
     exceeded_alpha: list[bool] = of("exceeded_alpha")
 
 
+Edge = Annotated[
+    Literal["right", "left"] | None,
+    said("edge of the largest |theta|/alpha, or about which it overturns; null: no uplift, or from a data set"),
+]
+
+
 class InUnitsOfOne(Peaked):
     """What is found of one body in SI units, whatever its edges and the motion."""
 
     peak_rotation_deg: float | None = of("peak_rotation_deg")
-    top_displacement: float | None = of("top_displacement")
+    rotation_left_deg: float | None = of("rotation_left_deg")
+    rotation_right_deg: float | None = of("rotation_right_deg")
+    edge: Edge
+    uplift_time: float | None = of("uplift_time")
+    residual_energy: float | None = of("residual_energy")
+    alpha_left_deg: float = of("alpha_left_deg")
+    alpha_right_deg: float = of("alpha_right_deg")
+    displacement: float | None = of("displacement")
     exceeded_alpha: bool = of("exceeded_alpha")
+    error_bound: float | None = of("error_bound")
     uplift_acceleration: float = of("uplift_acceleration")
     meaning: str = of("meaning")
     margin: str | None = of("margin")
@@ -105,23 +119,6 @@ class InUnitsOfOne(Peaked):
     smallest_normal_reaction: float | None = of("smallest_normal_reaction")
     lifts_off: bool = of("lifts_off")
     notes: list[str] = said("what else is worth knowing")
-
-
-Edge = Annotated[
-    Literal["right", "left"] | None,
-    said("edge of the largest |theta|/alpha, or about which it overturns; null: no uplift"),
-]
-
-
-class OfEdges(InUnitsOfOne):
-    """What is found of a body whose edges differ from those of a block."""
-
-    edge: Edge
-    rotation_left_deg: float | None = of("rotation_left_deg")
-    rotation_right_deg: float | None = of("rotation_right_deg")
-    uplift_time: float | None = of("uplift_time")
-    alpha_left_deg: float = of("alpha_left_deg")
-    alpha_right_deg: float = of("alpha_right_deg")
 
 
 class Size(BaseModel):
@@ -140,7 +137,6 @@ class OfBlock(Size, InUnitsOfOne):
     """What is found of a block."""
 
     slenderness: float = of("slenderness")
-    residual_energy: float | None = of("residual_energy")
     friction_at_uplift: float = of("friction_at_uplift")
 
 
@@ -154,3 +150,7 @@ class UnderRecord(BaseModel):
     """What is found under a record."""
 
     overturning_scale: float | None = of("overturning_scale")
+    amplification: float | None = of("amplification")
+    peak_is_determined: bool = of("peak_is_determined")
+    overturned_resampled: bool | None = of("overturned_resampled")
+    peak_rotation_resampled: float | None = of("peak_rotation_resampled")

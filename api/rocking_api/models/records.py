@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from rocking_api.models.answer import BY_SOLVER, InUnits, Q
 from rocking_api.models.blocks import ScaleThreshold
 from rocking_api.models.body_params import BodyParams, JsonBody
-from rocking_api.models.fields import Ended, ManySolved, OfBlock, OfEdges, Peaked, UnderRecord, of
+from rocking_api.models.fields import Ended, InUnitsOfOne, ManySolved, OfBlock, Peaked, UnderRecord
 from rocking_api.models.params import Params
 from rocking_api.models.quantity import (
     SCALES,
@@ -176,15 +176,11 @@ _SCALES = said("all scales at which the outcome changes, ascending; null: not as
 class RecordResponse(UnderRecord, OfBlock, RecordAnswer[RecordResponseParams]):
     """Response of the block; the fields mean the same as those of /v1/blocks/response."""
 
-    amplification: float | None = of("amplification")
-    peak_is_determined: bool = of("peak_is_determined")
-    overturned_resampled: bool | None = of("overturned_resampled")
-    peak_rotation_resampled: float | None = of("peak_rotation_resampled")
     thresholds: list[ScaleThreshold] | None = _SCALES
     pulse: FittedPulse | None = said("null unless requested", None)
 
 
-class RecordBodyResponse(UnderRecord, OfEdges, RecordAnswer[RecordResponseParams]):
+class RecordBodyResponse(UnderRecord, InUnitsOfOne, RecordAnswer[RecordResponseParams]):
     """What happens to a body whose centre of mass is not that of the block."""
 
     thresholds: list[ScaleThreshold] | None = _SCALES
@@ -210,7 +206,7 @@ class RecordBodyHistoryResponse(Ended, RecordAnswer[RecordHistoryParams]):
     edge: list[int] = said("edge in contact: 1 right, -1 left, 0 both", unit="-")
     ground_acceleration: list[float] = said("horizontal", unit="m/s2")
     vertical_acceleration: list[float] = said("upwards", unit="m/s2")
-    top_displacement: list[float] = said("horizontal displacement of the top", unit="m")
+    displacement: list[float] = said("horizontal displacement of the top", unit="m")
     contact: ContactResponse | None = said("null unless requested", None)
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel
 
+from rocking._dimensional.response import BodyResponse
 from rocking._interpolation.kernel import UNKNOWN_IMPACTS
 from rocking._model import fields as own
 from rocking._model.fields import COLUMN_FIELDS
@@ -30,7 +32,7 @@ SOURCES = ("solver", "cube")  # by whether a response is from a data set
 
 _WORDS = {int(outcome): (outcome.name, outcome.sentence) for outcome in Outcome}
 
-_OF_POINT = [field for field in own.BOUNDED_FIELDS if field is not own.FROM_CUBE]
+_OF_POINT = [field for field in (*own.BOUNDED_FIELDS, *own.DERIVED_FIELDS) if field is not own.FROM_CUBE]
 
 _DATA = said("sha256 of the data set that answered, of several that next below the restitution; null: the solver did")
 
@@ -206,12 +208,11 @@ def columns_of(result: BatchResult) -> dict[str, Column]:
 
 
 def point_response(
-    params: ResponseParams, found: BoundedResponse, versions: tuple[str, ...], url: str
+    params: ResponseParams, found: BoundedResponse | BodyResponse, from_cube: bool, versions: tuple[str, ...], url: str
 ) -> PointResponse:
     """The response for one block."""
-    fields: dict[str, Any] = {one.name: getattr(found, one.name).item() for one in _OF_POINT}
-    fields |= {name: values.item() for name, values in found.derived.items()}
-    outcome, from_cube = fields["outcome"], found.from_cube.item()
+    fields: dict[str, Any] = {one.name: np.asarray(getattr(found, one.name)).item() for one in _OF_POINT}
+    outcome = fields["outcome"]
     note, warnings = None, []
     if outcome >= Outcome.OVERTURNED_DIRECTLY:
         note = "the block overturns: there is no peak"

@@ -10,14 +10,12 @@ from urllib.parse import urlencode
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
 
-from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError
+from rocking._base.errors import InvalidArgumentError, SeveralArgumentsError, TableFileError
 from rocking._base.quantities import GROUPS
 from rocking._dimensional.problem import Problem
-from rocking._dimensional.response import BodyResponse as SolvedBody
-from rocking._dimensional.response import respond
+from rocking._dimensional.response import interpolated_response, respond
 from rocking._dimensional.table import BlockTable, read_table, respond_table
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.bounded_response import BoundedResponse
 from rocking_api.execution.evaluation import evaluate
 from rocking_api.http.encoding import JsonOrFile, body_form, body_of, csv_response, stated
 from rocking_api.http.errors import TooLargeError
@@ -26,7 +24,8 @@ from rocking_api.models.answer import Url
 from rocking_api.models.params import ResponseParams
 from rocking_api.models.pulses import digest_of, name_of
 from rocking_api.models.quantity import FREQUENCY_RATIO, SLENDERNESS, WithUnit, served
-from rocking_api.models.responses import PointResponse, point_response
+from rocking_api.models.responses import point_response
+from rocking_api.models.table import table_refusal
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
 router = APIRouter(prefix="/v1/blocks", tags=["response"])
@@ -74,7 +73,8 @@ async def post_blocks(
     """JSON, or CSV with units in its header; the response has the same format, or that of `format`.
 
     Columns of CSV: width, height, peak_acceleration, period, each with its unit in brackets or in its cells, and
-    optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`.
+    optionally name and restitution; or the parameters of another kind of body. Others are not used, see `skipped`;
+    `columns` states other headers.
     """
     given = body_form(request, ("json", "csv"))
     shared = stated(body, params)
@@ -84,7 +84,7 @@ async def post_blocks(
         columns: dict[str, Any] = {**respond_table(table, stop)}
         if (shared.format or given) == "csv":
             return csv_response(columns, "blocks")
-        columns |= {name: getattr(table.read, name) for name in ("columns", "skipped", "totals")}
+        columns |= {name: getattr(table.read, name) for name in ("columns", "skipped")}
         query = m.BlocksQuery.model_construct(  # the name of samples is no name of a pulse
             pulse=name_of(shared.pulse),
             restitution=shared.restitution,
@@ -103,7 +103,11 @@ def _read_table(body: m.BlockRows | bytes, params: m.BlocksParams | m.BlockRows,
         raise InvalidArgumentError("pulse", None, "required in the query beside CSV, or in a JSON body")
     if isinstance(body, bytes):
         text = body.decode("utf-8-sig", "replace")
-        table = read_table(text, params.pulse, params.restitution, most=m.MAX_BLOCKS, stop=stop, limited=served)
+        options: dict[str, Any] = {"most": m.MAX_BLOCKS, "stop": stop, "limited": served, "layout": params.layout}
+        try:
+            table = read_table(text, params.pulse, params.restitution, **options)
+        except TableFileError as error:
+            raise table_refusal(error) from None
         table.check()
     else:
         if len(body.blocks) > m.MAX_BLOCKS:
@@ -129,35 +133,33 @@ def _block(service: Service, params: m.BlockParams, url: str, stop: StopFlag) ->
     peak = params.peak_acceleration
     problem = Problem.of(params.rocking_body, params.pulse, peak, params.period, params.restitution)
     problem = replace(problem, unit_is_stated=isinstance(peak, WithUnit))
-    if not problem.is_block:
+    if not problem.body.moves_as_block:
         if params.method == "cube":
             raise InvalidArgumentError("method", params.method, "auto or solver: data sets hold blocks only")
-        found = respond(problem, stop=stop)
+        found = respond(problem, stop=stop, error_bound=True)
         fields: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
         return m.BodyResponse(query=params, url=url, **fields)
-    point, bounded = _point(service, params, problem, stop)
-    seconds = SEARCH_SHARE * service.settings.max_seconds
-    limits = FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper
-    found = SolvedBody(bounded, problem, seconds=seconds, served=limits, stop=stop)
-    fields = {"thresholds": found.changes, **found.summary()}
-    fields["notes"] = [*([] if bounded.from_cube else [BY_SOLVER]), *fields["notes"]]
-    fields["margins"] = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
-    return m.BlockResponse(query=params, url=url, response=point, data_version=point.data_version, **fields)
-
-
-def _point(
-    service: Service, params: m.BlockParams, problem: Problem, stop: StopFlag
-) -> tuple[PointResponse, BoundedResponse]:
-    """The response in groups, by a data set or by the solver, as a model too."""
     groups = problem.groups
     for quantity in (SLENDERNESS, FREQUENCY_RATIO):
         quantity.convert(groups[quantity.name])
     values: dict[str, Any] = {name: value for name, value in groups.items() if name != "alpha"}
     values |= {name: getattr(params, name) for name in ("pulse", "method", "absolute_tolerance")}
     dimensionless = ResponseParams.model_construct(**values, alpha_deg=math.degrees(groups["alpha"]))
-    points = np.array([groups[quantity.name] for quantity in GROUPS]).reshape(4, 1)
-    found, versions = evaluate(service.cubes, dimensionless, points, stop)
-    if not found.from_cube:
-        found = problem.solve_with_bound(stop=stop)  # with the fields that are derived from the block in metres
-    url = f"/v1/response?{urlencode(dict(dimensionless))}"
-    return point_response(dimensionless, found, versions, url), found.reshape(())
+    looked_up = None
+    versions: tuple[str, ...] = ()
+    if params.method != "solver":
+        points = np.array([groups[quantity.name] for quantity in GROUPS]).reshape(4, 1)
+        looked_up, versions = evaluate(service.cubes, dimensionless, points, stop)
+    from_cube = looked_up is not None and bool(looked_up.from_cube)
+    if from_cube:
+        found = interpolated_response(problem, looked_up, stop)
+    else:
+        found = respond(problem, stop=stop, error_bound=True)
+    seconds = SEARCH_SHARE * service.settings.max_seconds
+    found = replace(found, seconds=seconds, served=(FREQUENCY_RATIO.lower, FREQUENCY_RATIO.upper))
+    fields = {"thresholds": found.changes, **found.summary()}
+    fields["notes"] = [*([] if from_cube else [BY_SOLVER]), *fields["notes"]]
+    fields["margins"] = found.margins and m.Margins.model_validate(found.margins, from_attributes=True)
+    in_groups = f"/v1/response?{urlencode(dict(dimensionless))}"
+    point = point_response(dimensionless, found, from_cube, versions, in_groups)
+    return m.BlockResponse(query=params, url=url, response=point, data_version=point.data_version, **fields)

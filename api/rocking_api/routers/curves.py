@@ -88,9 +88,8 @@ def _spectrum(
     result = evaluate_many(service.cubes, params, groups, stop)
     if params.format == "nc":
         attributes = params.model_dump(exclude={"format"}, exclude_none=True)
-        return encoding.netcdf_response(
-            encoding.dataset_of({"frequency_ratio": frequency_ratio}, result, attributes), "spectrum"
-        )
+        dataset = encoding.dataset_of({"frequency_ratio": frequency_ratio}, result, attributes)
+        return encoding.netcdf_response(dataset, "spectrum", "Peak rotation of blocks over the frequency ratio", url)
     curve = encoding.columns_as_they_are({"frequency_ratio": frequency_ratio}) | columns_of(result)
     if params.format == "csv":
         return encoding.csv_stream(curve, frequency_ratio.size, "spectrum")
@@ -105,7 +104,7 @@ def json_of(answer: BaseModel) -> Response:
     return Response(answer.model_dump_json(), media_type="application/json")
 
 
-SERIES = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "top_displacement")
+SERIES = ("rotation", "angular_velocity", "edge", "ground_acceleration", "vertical_acceleration", "displacement")
 """Variables of motions that are sent where they are known."""
 
 
@@ -145,7 +144,7 @@ def _history(params: HistoryParams, url: str, stop: StopFlag) -> Response:
         stop=stop,
     )
     if params.format == "nc":
-        return encoding.netcdf_response(motion, "history")
+        return encoding.netcdf_response(motion, "history", "Motion of a block under a pulse", url)
     columns, reactions = motion_columns(motion, "tau")
     if params.format == "csv":
         return encoding.csv_response(columns | reactions, "history")
@@ -304,7 +303,8 @@ def _map(params: MapParams, frequency_ratio: Array, slenderness: Array, url: str
         stop=stop,
     )
     if params.format == "nc":
-        return encoding.netcdf_response(_dataset(params, frequency_ratio, slenderness, found), "map")
+        dataset = _dataset(params, frequency_ratio, slenderness, found)
+        return encoding.netcdf_response(dataset, "map", "Outcome and peak rotation of blocks under a pulse", url)
     if params.format == "csv":
         s, w = np.meshgrid(slenderness, frequency_ratio, indexing="ij")
         columns: dict[str, NDArray[Any]] = {"slenderness": s, "frequency_ratio": w}
@@ -339,12 +339,9 @@ def _axes(service: Service, params: MapParams) -> tuple[Array, Array]:
 def _dataset(params: MapParams, frequency_ratio: Array, slenderness: Array, found: SolverResponse) -> xr.Dataset:
     """The map with the names, types and attributes of the data sets."""
     axes = ("slenderness", "frequency_ratio")
-    names = ("peak_rotation", "outcome", "impacts", "exceeded_alpha")
-    variables: dict[str, Any] = {name: encoding.solved_variable(name, axes, getattr(found, name)) for name in names}
     coordinates = {"slenderness": slenderness, "frequency_ratio": frequency_ratio}
-    attributes = params.model_dump(exclude={"format"}, exclude_none=True)
     return xr.Dataset(
-        variables,
+        encoding.solved_variables(axes, vars(found)),
         coords={name: (name, values, AXES[name]) for name, values in coordinates.items()},
-        attrs={"Conventions": "CF-1.11", **attributes},
+        attrs=params.model_dump(exclude={"format"}, exclude_none=True),
     )

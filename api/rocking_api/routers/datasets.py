@@ -87,13 +87,17 @@ class SubsetParams(Params):
 
 
 @router.get("/{name:path}/subset", summary="A part of a cube", response_class=Response, responses=FOUND)
-async def get_subset(name: DatasetName, params: Annotated[SubsetParams, Query()], service: ServiceDep) -> Response:
+async def get_subset(
+    name: DatasetName, params: Annotated[SubsetParams, Query()], service: ServiceDep, url: Url
+) -> Response:
     """Nodes of a cube within ranges of its axes: a netCDF-3 file, or one row of CSV for each node."""
     ranges = params.ranges()
-    return await service.read(lambda _: _subset(service, name, params, ranges))
+    return await service.read(lambda _: _subset(service, name, params, ranges, url))
 
 
-def _subset(service: Service, name: str, params: SubsetParams, ranges: dict[str, tuple[float, float]]) -> Response:
+def _subset(
+    service: Service, name: str, params: SubsetParams, ranges: dict[str, tuple[float, float]], url: str
+) -> Response:
     product, cube = service.cubes.catalogue.dataset(name)
     if any(axis not in cube.dims for axis in DIMENSIONS):
         raise InvalidArgumentError("name", name, f"a cube, with axes {', '.join(DIMENSIONS)}")
@@ -117,9 +121,8 @@ def _subset(service: Service, name: str, params: SubsetParams, ranges: dict[str,
     if points > service.settings.max_points:
         raise TooLargeError("points", points, f"at most {service.settings.max_points}")
     if params.format != "csv":
-        part = part.drop_vars("pulse").drop_encoding()
-        part.attrs = {**part.attrs, "source_sha256": product.sha256}
-        return encoding.netcdf_response(part, "subset")
+        part = part.assign_attrs(source_sha256=product.sha256)
+        return encoding.netcdf_response(part, "subset", str(part.attrs["title"]), url)
     return encoding.csv_stream(encoding.columns_as_they_are(_columns(part, wanted)), points, "subset")
 
 

@@ -73,7 +73,7 @@ def _overturning(
     if curves is None:
         curves = _traced(service, params, stop)
     if params.format == "nc":
-        return netcdf_response(curves.drop_vars("pulse", errors="ignore"), "overturning")
+        return netcdf_response(curves, "overturning", "Boundary curves of overturning under a pulse", url)
     if params.format == "csv":
         return csv_response(points_of(curves), "overturning")
     source = "dataset" if version else "solver"

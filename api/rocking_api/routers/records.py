@@ -12,26 +12,25 @@ from fastapi import APIRouter, Query, Request, Response
 from rocking._base.errors import InvalidArgumentError, RecordFileError, finite
 from rocking._base.quantities import MASS
 from rocking._dimensional.curves import history, with_forces
-from rocking._dimensional.problem import Problem, record_groups
+from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import changes_of, respond
-from rocking._dimensional.thresholds import block_thresholds, scale_window, thresholds_of
+from rocking._dimensional.thresholds import scale_window, thresholds_of
 from rocking._excitation.records.readers.read_record import parse_record
-from rocking._excitation.records.record import Record, summary_of
+from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import summary_of as record_summary
 from rocking._excitation.records.vertical import reject_flight
 from rocking._history.time_history import time_history
+from rocking._model.fields import OVERTURNED
+from rocking._model.labelled import variable
 from rocking._model.outcome import Outcome
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.records.record_response import record_response
 from rocking.suites.body_arrays import as_block
 from rocking.suites.configuration import LAYOUT
-from rocking.suites.pulse_fit import fit_pulse
-from rocking.suites.pulse_fit import summary_of as fitted_summary
 from rocking_api.http import encoding
 from rocking_api.http.errors import TooLargeError, refusal
 from rocking_api.models import records as m
 from rocking_api.models.answer import Url
 from rocking_api.models.blocks import ScaleThreshold
-from rocking_api.models.fields import OUTCOMES
 from rocking_api.routers.curves import json_of, motion_columns, motion_fields
 from rocking_api.service import SEARCH_SHARE, Service, ServiceDep
 
@@ -148,43 +147,46 @@ def _response(
     service: Service, params: m.RecordResponseParams, record: Record, url: str, stop: StopFlag
 ) -> m.RecordResponse | m.RecordBodyResponse:
     problem = _problem(params, record, params.scale)
-    if params.fit and not problem.is_block:
+    if params.fit and not problem.body.moves_as_block:
         raise InvalidArgumentError("fit", params.fit, "a block whose centre of mass is in its middle")
     seconds = SEARCH_SHARE * service.settings.max_seconds
-    found = respond(problem, stop=stop, thresholds=params.thresholds, seconds=seconds)
+    found = respond(problem, stop=stop, error_bound=True, thresholds=params.thresholds, seconds=seconds)
     fields: dict[str, Any] = {"thresholds": found.changes, **found.summary()}
     fields |= {"query": params, "url": url, "record": _description(record)}
-    if not problem.is_block:
+    if not problem.body.moves_as_block:
         return m.RecordBodyResponse(**fields)
-    pulse = None
     if params.fit:
-        pulse = m.FittedPulse(**fitted_summary(fit_pulse(record, blocks=problem.block, stop=stop)))
-    return m.RecordResponse(**fields, pulse=pulse)
+        from rocking.suites.pulse_fit import fit_pulse, summary_of  # noqa: PLC0415  (scipy.optimize: half a second)
+
+        fields["pulse"] = m.FittedPulse(**summary_of(fit_pulse(record, blocks=problem.block, stop=stop)))
+    return m.RecordResponse(**fields)
 
 
-def _problem(params: m.RecordFileParams, record: Record, scale: Any, *, flies: bool = False) -> Problem:
-    return Problem.of(params.rocking_body, record, scale=scale, restitution=params.restitution, flies=flies)
+def _problem(params: m.RecordFileParams, record: Record, scale: Any) -> Problem:
+    return Problem.of(params.rocking_body, record, scale=scale, restitution=params.restitution)
 
 
 def _history(params: m.RecordHistoryParams, record: Record, url: str, stop: StopFlag) -> Response:
     problem = _problem(params, record, params.scale)
+    problem.reject_flight()
     contact = params.contact or params.mass is not None
     options: dict[str, Any] = {"samples": params.samples, "contact": contact, "stop": stop}
-    motion = time_history(record, **problem.groups, **options) if problem.is_block else history(problem, **options)
+    in_groups = problem.body.moves_as_block
+    motion = time_history(record, **problem.groups, **options) if in_groups else history(problem, **options)
     if params.mass is not None:
         motion = with_forces(motion, MASS.number(params.mass), float(problem.body.gravity))
     if params.format == "nc":
-        return encoding.netcdf_response(motion, "history")
+        return encoding.netcdf_response(motion, "history", "Motion of a block under a record", url)
     columns, reactions = motion_columns(motion, "time")
     if params.format == "csv":
         return encoding.csv_response(columns | reactions, "history")
-    kind = m.RecordHistoryResponse if problem.is_block else m.RecordBodyHistoryResponse
+    kind = m.RecordHistoryResponse if in_groups else m.RecordBodyHistoryResponse
     fields = motion_fields(motion, reactions)
     return json_of(kind.model_construct(query=params, url=url, record=_description(record), **fields, **columns))
 
 
 def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFlag) -> Response:
-    one = _problem(params, record, 1.0, flies=True)
+    one = _problem(params, record, 1.0)
     uplift, highest = scale_window(one)
     low = uplift if params.scale_min is None else params.scale_min
     high = highest if params.scale_max is None else params.scale_max
@@ -192,11 +194,7 @@ def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFl
         raise InvalidArgumentError("scale_max", high, f"above scale_min, {low:g} [-]")
     reject_flight("scale_max", record, high, float(one.body.gravity))
     scale = np.geomspace(low, high, params.points)
-    if one.is_block:
-        groups = record_groups(record, one.block, scale, one.groups["restitution"])
-        found: Any = record_response(record, **groups, stop=stop)
-    else:
-        found, _ = _problem(params, record, scale).solve(stop=stop)
+    found = respond(_problem(params, record, scale), stop=stop)
     columns: dict[str, Any] = {
         "scale": scale.tolist(),
         "peak_acceleration": (scale * record.peak_acceleration).tolist(),
@@ -209,20 +207,23 @@ def _scales(params: m.RecordScalesParams, record: Record, url: str, stop: StopFl
     if params.format == "csv":
         return encoding.csv_response(columns, "scales")
     if params.format == "nc":
-        numbers = {**columns, "peak_rotation": found.peak_rotation, "outcome": found.outcome}
-        units = {"peak_acceleration": "m s-2"}
-        variables = {
-            name: ("scale", np.asarray(values) + 0, {"units": units.get(name, "1")}) for name, values in numbers.items()
-        }
-        attributes = {"record": record.name, "record_digest": record.digest, "outcomes": " ".join(OUTCOMES)}
-        return encoding.netcdf_response(xr.Dataset(variables, attrs=attributes), "scales")
-    thresholds = (block_thresholds if one.is_block else thresholds_of)(one, high, stop)
-    changes = [ScaleThreshold(**one) for one in changes_of(thresholds, record)]
+        dataset = xr.Dataset(
+            encoding.solved_variables("scale", {one.name: getattr(found, one.name) for one in found.fields}),
+            {"scale": variable("scale", scale, "1", "factor of the record")},
+            {"record": record.name, "record_digest": record.digest},
+        )
+        dataset["overturned"] = OVERTURNED.variable("scale", found.overturned.astype("i1"))
+        peak = scale * record.peak_acceleration
+        dataset["peak_acceleration"] = variable("scale", peak, "m s-2", "peak acceleration of the scaled record")
+        return encoding.netcdf_response(dataset, "scales", "Response of a block over the scale of a record", url)
+    changes = [ScaleThreshold(**change) for change in changes_of(thresholds_of(one, high, stop), record)]
     columns |= {"record": _description(record), "thresholds": changes}
     return json_of(m.RecordScalesResponse.model_construct(query=params, url=url, **columns))
 
 
 def _pulse(params: m.RecordPulseParams, record: Record, url: str, stop: StopFlag) -> m.RecordPulseResponse:
+    from rocking.suites.pulse_fit import fit_pulse, summary_of  # noqa: PLC0415  (scipy.optimize: half a second)
+
     fit = fit_pulse(record, blocks=as_block(params.rocking_body), stop=stop)
     every = max(1, math.ceil(record.samples / params.samples))
     time = record.times[::every]
@@ -236,11 +237,11 @@ def _pulse(params: m.RecordPulseParams, record: Record, url: str, stop: StopFlag
         query=params,
         url=url,
         record=_description(record),
-        pulse=m.FittedPulse(**fitted_summary(fit)),
+        pulse=m.FittedPulse(**summary_of(fit)),
         time=time.tolist(),
         **{name: (params.scale * values).tolist() for name, values in drawn.items()},
     )
 
 
 def _description(record: Record) -> m.RecordDescription:
-    return m.RecordDescription(**summary_of(record), remarks=list(record.remarks), digest=record.digest)
+    return m.RecordDescription(**record_summary(record), remarks=list(record.remarks), digest=record.digest)

@@ -41,10 +41,10 @@ async def get_response(params: Annotated[ResponseParams, Query()], service: Serv
     try:
         if params.restitution > MAX_INLINE_RESTITUTION:
             raise UnreadError
-        found = evaluate(service.cubes, params, points, may_read=False)
+        found, versions = evaluate(service.cubes, params, points, may_read=False)
     except UnreadError:
-        found = await service.cheap.run(lambda stop: evaluate(service.cubes, params, points, stop))
-    return point_response(params, *found, url)
+        found, versions = await service.cheap.run(lambda stop: evaluate(service.cubes, params, points, stop))
+    return point_response(params, found, bool(found.from_cube), versions, url)
 
 
 _GROUPS_CSV = "slenderness,frequency_ratio,restitution\n0.4,5,0.85\n0.2,5,0.85\n"
@@ -106,7 +106,8 @@ def _answered(
     options |= {"pulse": name_of(pulse), "pulse_digest": digest_of(pulse), "points": batch.points}
     if form == "nc":
         attributes = {name: value for name, value in options.items() if value is not None}
-        return encoding.netcdf_response(encoding.dataset_of(batch.groups, result, attributes), "response")
+        dataset = encoding.dataset_of(batch.groups, result, attributes)
+        return encoding.netcdf_response(dataset, "response", "Response of blocks to a pulse", url)
     lists: dict[str, Any] = {name: column(slice(None)) for name, column in columns.items()}
     query = BatchQuery.model_construct(**options)
     answer = BatchResponse.model_construct(query=query, url=url, data_versions=list(result.versions), **lists)

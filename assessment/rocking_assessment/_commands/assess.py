@@ -11,127 +11,315 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from rocking.extension import PERIOD, PGA, PGV, BaselineOrder, OutputOptions, SeriesOptions, option, said, with_options
+from rocking.extension import (
+    LAYOUT,
+    Acceleration,
+    BaselineOrder,
+    FileFormat,
+    OutputFormat,
+    Sheet,
+    TableColumns,
+    TableDecimal,
+    TableDelimiter,
+    TableSkip,
+    Time,
+    TimeStep,
+    TimeUnit,
+    Unit,
+    Wrapped,
+    reported_errors,
+)
 from rocking_assessment._objects.columns import CLAUSES, INPUTS, SHAPES
 
 if TYPE_CHECKING:
-    from rocking.extension import Form, Record
+    from rocking.extension import Record
     from rocking_assessment._objects.result import Assessment
     from rocking_assessment._objects.tables import ObjectTable
 
-HINTS = {
+ARGUMENTS = {
     "records": "--pair",
     "objects": "OBJECTS",
     "site": "--pgv",
     "periods": "--period-min",
     "pulse": "--shapes",
     "path": "--mesh",
-    "columns": "--columns",
-    "format": "--file-format",
+    "unit": "--mesh-unit",
+    "up": "--mesh-up",
 }
 """The option or file of each argument that an error names; other arguments are options of the same name."""
 
-Texts = list[str] | None
+RECORD_ARGUMENTS = {
+    "unit": "--unit",
+    "path": "FILE",
+    "skip": "--record-skip",
+    "delimiter": "--record-delimiter",
+    "decimal": "--record-decimal",
+}
+"""Those of the files of records."""
+
+OBJECTS = "Objects"
+SITE = "Site"
+METHOD = "Method"
+REPORT = "Report"
 
 
-@with_options
 def assess(
-    form: OutputOptions,
-    stated: SeriesOptions,
     objects: Annotated[
         str | None,
         typer.Argument(
             help="Table of objects: CSV, JSON, XLSX or ODS, with units in its header or in its cells; columns "
-            f"{', '.join(one.name for one in INPUTS)}, and those of other kinds of bodies: "
-            f"{', '.join(one.name for one in SHAPES)}.",
+            f"{', '.join(column.name for column in INPUTS)}, and those of other kinds of bodies: "
+            f"{', '.join(column.name for column in SHAPES)}.",
             metavar="OBJECTS",
         ),
     ] = None,
-    column: Annotated[
-        Texts,
-        said('Meaning of a column: "Length (cm)=depth", "Age=unused"; may be repeated.', "HEADER=NAME", "--columns"),
+    columns: TableColumns = None,
+    decimal: TableDecimal = ".",
+    delimiter: TableDelimiter = None,
+    skip: TableSkip = 0,
+    sheet: Sheet = None,
+    template: Annotated[
+        str | None,
+        typer.Option(
+            help="CSV or XLSX file to write: a table to fill in; nothing is assessed.",
+            metavar="[FILE]",
+            rich_help_panel=OBJECTS,
+        ),
     ] = None,
     mesh: Annotated[
-        Texts, said("Mesh of an object, a closed surface (STL, PLY, OBJ, ...), z upwards; may be repeated.", "FILE")
+        list[str] | None,
+        typer.Option(
+            help="Mesh of an object, a closed surface (STL, PLY, OBJ, GLB, ...); may be repeated.",
+            metavar="[FILE]",
+            rich_help_panel=OBJECTS,
+        ),
     ] = None,
-    mesh_unit: Annotated[str, said("Unit of the lengths of the meshes: m, cm, mm, in, ft.", "UNIT")] = "m",
-    friction: Annotated[
-        float | None, said("Coefficient of friction of the meshes; without it sliding is not assessed.", "-")
+    mesh_unit: Annotated[
+        str | None,
+        typer.Option(
+            help="Unit of the lengths of the meshes: m, cm, mm, in, ft; glTF has metres.",
+            metavar="[UNIT]",
+            rich_help_panel=OBJECTS,
+        ),
+    ] = None,
+    mesh_up: Annotated[
+        str | None,
+        typer.Option(
+            help="Axis of the meshes that points upwards: x, y or z; by default z, of glTF y.",
+            metavar="[AXIS]",
+            rich_help_panel=OBJECTS,
+        ),
     ] = None,
     contact_tolerance: Annotated[
-        float, said("Height of the vertices of a mesh on which it stands, over its own height, 0 to 0.1.", "-")
+        float,
+        typer.Option(
+            help="Height of the vertices of a mesh on which it stands, over its own height, 0 to 0.1.",
+            metavar="[-]",
+            rich_help_panel=OBJECTS,
+        ),
     ] = 1e-4,
+    friction: Annotated[
+        float | None,
+        typer.Option(
+            help="Coefficient of friction of the meshes; without it sliding is not assessed.",
+            metavar="[-]",
+            rich_help_panel=OBJECTS,
+        ),
+    ] = None,
     pga: Annotated[
         str | None,
-        option(PGA, text="Peak ground acceleration of the site, from its hazard map; records are scaled to it"),
+        typer.Option(
+            help="Peak ground acceleration of the site, such as 0.3g, from its hazard map; records are scaled to it.",
+            metavar="[m/s2]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     pgv: Annotated[
         str | None,
-        option(PGV, text="Peak ground velocity of the site, from the same source; it sets the period of each pulse"),
+        typer.Option(
+            help="Peak ground velocity of the site, such as '0.3 m/s', from the same source; it sets the period of "
+            "each pulse.",
+            metavar="[m/s]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     period_min: Annotated[
         str | None,
-        option(PERIOD, text="Where you have no PGV: shortest period of the pulses to try, with --period-max"),
+        typer.Option(
+            help="Where you have no PGV: shortest period of the pulses to try, such as 0.2s, with --period-max.",
+            metavar="[s]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     period_max: Annotated[
-        str | None, option(PERIOD, text="Longest of these periods; longer pulses overturn larger objects")
+        str | None,
+        typer.Option(
+            help="Longest of these periods; longer pulses overturn larger objects.",
+            metavar="[s]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
-    record: Annotated[Texts, said("Accelerogram of the suite; may be repeated.", "FILE", "--record")] = None,
+    shapes: Annotated[
+        str | None,
+        typer.Option(
+            help="Pulses, such as sine,ricker; by default the seven that leave the ground at rest.",
+            metavar="[NAME,...]",
+            rich_help_panel=SITE,
+        ),
+    ] = None,
+    moving_ground: Annotated[
+        bool,
+        typer.Option(
+            "--moving-ground",
+            help="Also pulses that leave the ground moving: half sine, rectangular.",
+            rich_help_panel=SITE,
+        ),
+    ] = False,
+    record: Annotated[
+        list[str] | None,
+        typer.Option(help="Accelerogram of the suite; may be repeated.", metavar="[FILE]", rich_help_panel=SITE),
+    ] = None,
     pair: Annotated[
-        Texts, said("Two horizontal components: one record at all angles; may be repeated.", "FILE,FILE")
+        list[str] | None,
+        typer.Option(
+            help="Two horizontal components: one record at all angles; may be repeated.",
+            metavar="[FILE,FILE]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     vertical: Annotated[
-        Texts, said("Vertical component: one for each --record, then one for each --pair, or none.", "FILE")
+        list[str] | None,
+        typer.Option(
+            help="Vertical component: one for each --record, then one for each --pair, or none.",
+            metavar="[FILE]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     baseline_order: BaselineOrder = None,
     hazard: Annotated[
-        str | None, said("Hazard curve of PGA of the site, for instance from OpenQuake or the USGS.", "FILE")
+        str | None,
+        typer.Option(
+            help="Hazard curve of PGA of the site, for instance from OpenQuake or the USGS.",
+            metavar="[FILE]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
     floor_periods: Annotated[
         str | None,
-        said("Periods of the building, for objects on a floor: 0.5s,0.2s.", "s,s,...", "--floor-periods", "--floor"),
+        typer.Option(
+            "--floor-periods",
+            "--floor",
+            help="Periods of the building, for objects on a floor: 0.5s,0.2s.",
+            metavar="[s,s,...]",
+            rich_help_panel=SITE,
+        ),
     ] = None,
-    floor_damping: Annotated[str, said("Damping ratios of these modes, one or one for each.", "-,-,...")] = "0.05",
+    floor_damping: Annotated[
+        str,
+        typer.Option(
+            help="Damping ratios of these modes, one or one for each.", metavar="[-,-,...]", rich_help_panel=SITE
+        ),
+    ] = "0.05",
     floor_participation: Annotated[
-        str, said("Participation factors times mode shapes at the floor, one or one for each.", "-,-,...")
+        str,
+        typer.Option(
+            help="Participation factors times mode shapes at the floor, one or one for each.",
+            metavar="[-,-,...]",
+            rich_help_panel=SITE,
+        ),
     ] = "1",
-    shapes: Annotated[
+    file_format: FileFormat = None,
+    acceleration: Acceleration = None,
+    time: Time = None,
+    time_step: TimeStep = None,
+    time_unit: TimeUnit = None,
+    unit: Unit = None,
+    record_skip: Annotated[
+        int, typer.Option(help="As --skip, of files of records.", metavar="[NUMBER]", rich_help_panel=LAYOUT)
+    ] = 0,
+    record_delimiter: Annotated[
         str | None,
-        said("Pulses, such as sine,ricker; by default the seven that leave the ground at rest.", "NAME,NAME,..."),
+        typer.Option(help="As --delimiter, of files of records.", metavar="[NAME]", rich_help_panel=LAYOUT),
     ] = None,
-    moving_ground: Annotated[
-        bool, said("Also pulses that leave the ground moving: half sine, rectangular.", "", "--moving-ground")
+    record_decimal: Annotated[
+        str, typer.Option(help="As --decimal, of files of records.", metavar="[SIGN]", rich_help_panel=LAYOUT)
+    ] = ".",
+    wrapped: Wrapped = False,
+    allow_unusual: Annotated[
+        bool,
+        typer.Option(
+            "--allow-unusual",
+            help="Accept what usually is a wrong unit: an object below 1 cm or above 50 m; a record with a PGA above "
+            "5 g, a PGV above 10 m/s, a step above 0.1 s.",
+        ),
     ] = False,
-    # two flags: a column of the help for the negative names of one would leave no room for the other names
-    sensitivity: Annotated[bool, said("", "", "--sensitivity", hidden=True)] = True,
-    no_sensitivity: Annotated[
-        bool, said("Do not find factors of changed objects, nor sizes that survive.", "", "--no-sensitivity")
-    ] = False,
+    sensitivity: Annotated[
+        bool,
+        typer.Option(help="Also find factors of changed objects, and sizes that survive.", rich_help_panel=METHOD),
+    ] = True,
     standards: Annotated[
-        str, said(f"Checks by standards beside the outcome: all, or some of {', '.join(CLAUSES)}.", "NAME,NAME,...")
+        str,
+        typer.Option(
+            help=f"Checks by standards beside the outcome: all, or some of {', '.join(CLAUSES)}.",
+            metavar="[NAME,...]",
+            rich_help_panel=METHOD,
+        ),
     ] = "",
     samples: Annotated[
-        int, said("Number of variants of each object within its tolerance to try, such as 10000.", "NUMBER")
+        int,
+        typer.Option(
+            help="Number of variants of each object within its tolerance to try, such as 10000.",
+            metavar="[NUMBER]",
+            rich_help_panel=METHOD,
+        ),
     ] = 0,
-    seed: Annotated[int, said("Seed of these variants.", "NUMBER")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of these variants.", metavar="[NUMBER]", rich_help_panel=METHOD)] = 0,
     resolution: Annotated[
-        float, said("Largest relative distance between the factors tried on a record, 0.0001 to 0.1.", "-")
+        float,
+        typer.Option(
+            help="Largest relative distance between the factors tried on a record, 0.0001 to 0.1.",
+            metavar="[-]",
+            rich_help_panel=METHOD,
+        ),
     ] = 0.005,
     output: Annotated[
-        str | None, said("CSV or XLSX file to write: the table as given, and all columns.", "FILE", "--output", "-o")
+        str | None,
+        typer.Option(
+            "--output", "-o", help="CSV or XLSX file to write: the table as given, and all columns.", metavar="[FILE]"
+        ),
     ] = None,
     directions: Annotated[
-        bool, said("Each object in both directions; by default in the worse one.", "", "--directions")
+        bool, typer.Option("--directions", help="Each object in both directions; by default in the worse one.")
     ] = False,
-    report: Annotated[str | None, said("HTML file to write: verdicts, drawings, inputs; prints on A4.", "FILE")] = None,
+    report: Annotated[
+        str | None,
+        typer.Option(
+            help="HTML file to write: verdicts, drawings, inputs; prints on A4.",
+            metavar="[FILE]",
+            rich_help_panel=REPORT,
+        ),
+    ] = None,
     detail: Annotated[
         Literal["usual", "all"],
-        said("Objects with drawings in the report: those that rock, or are close to it; all.", "NAME"),
+        typer.Option(
+            help="Objects with drawings in the report: those that rock, or are close to it; all.",
+            rich_help_panel=REPORT,
+        ),
     ] = "usual",
-    title: Annotated[str, said("Title of the report.", "TEXT")] = "Assessment of free-standing objects",
-    author: Annotated[str, said("Author of the report.", "TEXT")] = "",
-    place: Annotated[str, said("Name of the site in the report.", "TEXT", "--site")] = "",
-    date: Annotated[str | None, said("Date of the report, such as 2026-11-25; by default today.", "DATE")] = None,
+    title: Annotated[
+        str, typer.Option(help="Title of the report.", metavar="[TEXT]", rich_help_panel=REPORT)
+    ] = "Assessment of free-standing objects",
+    author: Annotated[str, typer.Option(help="Author of the report.", metavar="[TEXT]", rich_help_panel=REPORT)] = "",
+    site: Annotated[
+        str, typer.Option(help="Name of the site in the report.", metavar="[TEXT]", rich_help_panel=REPORT)
+    ] = "",
+    date: Annotated[
+        str | None,
+        typer.Option(
+            help="Date of the report, such as 2026-11-25; by default today.", metavar="[DATE]", rich_help_panel=REPORT
+        ),
+    ] = None,
+    output_format: OutputFormat = "table",
 ) -> None:
     """List the objects that the motions of a site overturn, the worst first, each with the lowest factor that does so.
 
@@ -139,14 +327,12 @@ def assess(
     """
     from rocking.extension import (
         InvalidArgumentError,
-        file_errors,
-        option_errors,
         output_errors,
-        output_format,
         plain_numbers,
         printable,
         progress,
         split_pulses,
+        stated_columns,
         write_output,
     )
     from rocking_assessment._hazard.curve_files import read_hazard
@@ -154,10 +340,13 @@ def assess(
     from rocking_assessment._objects.objects import Object
     from rocking_assessment._objects.report import Project, report_html
     from rocking_assessment._objects.site import Site
-    from rocking_assessment._objects.tables import ObjectTable, read_objects
+    from rocking_assessment._objects.tables import ObjectTable, read_objects, write_template
 
-    with option_errors(HINTS), file_errors():
-        kind = output_format(form)
+    with reported_errors(ARGUMENTS):
+        if template is not None:
+            with output_errors("template", template):
+                write_template(template)
+            return
         if report is not None and Path(report).suffix.lower() not in (".html", ".htm"):
             raise InvalidArgumentError(
                 "report", report, "a name that ends in .html or .htm; a browser prints it as PDF"
@@ -169,11 +358,27 @@ def assess(
             raise InvalidArgumentError(missing, None, "the shortest and the longest period")
         if friction is not None and not mesh:
             raise InvalidArgumentError("friction", friction, "a mesh beside it; a table has a column for it")
-        site = Site(
+    layout: dict[str, Any] = {
+        "format": file_format,
+        "acceleration": acceleration,
+        "time": time,
+        "time_step": time_step,
+        "time_unit": time_unit,
+        "unit": unit,
+        "skip": record_skip,
+        "delimiter": record_delimiter,
+        "decimal": record_decimal,
+        "wrapped": wrapped,
+        "allow_unusual": allow_unusual,
+    }
+    with reported_errors({**ARGUMENTS, **RECORD_ARGUMENTS}):
+        records = _read_records(record or [], pair or [], vertical or [], baseline_order, layout)
+    with reported_errors(ARGUMENTS):
+        ground = Site(
             pga,
             pgv,
             None if period_min is None or period_max is None else (period_min, period_max),
-            _read(record or (), pair or (), vertical or (), baseline_order, stated.stated()),
+            records,
             None if hazard is None else read_hazard(hazard),
             None if shapes is None else split_pulses(shapes),
             moving_ground,
@@ -181,20 +386,38 @@ def assess(
             plain_numbers("floor_damping", floor_damping),
             plain_numbers("floor_participation", floor_participation),
         )
-        table = ObjectTable([], []) if objects is None else read_objects(objects, columns=_columns(column or ()))
-        bad = [f"{objects}, {printable(str(one))}" for one in table.bad_rows]
-        of_meshes: dict[str, Any] = {"unit": mesh_unit, "friction": friction, "contact_tolerance": contact_tolerance}
-        meshes = [Object.from_mesh(path, **of_meshes) for path in mesh or ()]
-        given = [*table.objects, *meshes]
-        if not given:
-            raise InvalidArgumentError(
-                "objects", objects, "\n".join(["a table with one object or more, or a mesh", *bad])
+        table = ObjectTable()
+        if objects is not None:
+            table = read_objects(
+                objects,
+                columns=stated_columns(columns or []),
+                decimal=decimal,
+                delimiter=delimiter,
+                skip=skip,
+                sheet=sheet,
+                allow_unusual=allow_unusual,
             )
-        with progress(f"assessing {len(given)} objects") as advance:
-            found = assess_objects(
-                given,
-                site,
-                sensitivity=sensitivity and not no_sensitivity,
+        bad_rows = [f"{objects}, {printable(str(row))}" for row in table.bad_rows]
+        meshes = [
+            Object.from_mesh(
+                path,
+                unit=mesh_unit,
+                up=mesh_up,
+                friction=friction,
+                contact_tolerance=contact_tolerance,
+                allow_unusual=allow_unusual,
+            )
+            for path in mesh or []
+        ]
+        everything = [*table.objects, *meshes]
+        if not everything:
+            allowed = "\n".join(["a table with one object or more, or a mesh", *bad_rows])
+            raise InvalidArgumentError("objects", objects, allowed)
+        with progress(f"assessing {len(everything)} objects") as advance:
+            assessment = assess_objects(
+                everything,
+                ground,
+                sensitivity=sensitivity,
                 standards=standards,
                 samples=samples,
                 seed=seed,
@@ -203,36 +426,26 @@ def assess(
             )
         if output is not None:
             is_xlsx = Path(output).suffix.lower() == ".xlsx"
-            write_table = found.to_xlsx if is_xlsx else found.to_csv
+            write_table = assessment.to_xlsx if is_xlsx else assessment.to_csv
             with output_errors("output", output):
                 write_table(output, bad_rows=table.bad_rows)
         if report is not None:
             day = date or dt.datetime.now().astimezone().date().isoformat()
             command = shlex.join(["rocking", *sys.argv[1:], *([] if date else ["--date", day])])
-            project = Project(title, author, place, day, command)
-            text = report_html(found, project, table.bad_rows, table.reading, detailed=detail == "all")
+            project = Project(title, author, site, day, command)
+            text = report_html(assessment, project, table.bad_rows, table.reading, detailed=detail == "all")
             with output_errors("report", report):
                 write_output(report, text)
-    _print(found, kind, table, bad, directions)
-    if kind.kind == "table" and table.reading:
+    _print(assessment, output_format, table, bad_rows, directions)
+    if output_format == "table" and table.reading:
         typer.echo(printable(table.reading))
-    if bad:
-        typer.echo("\n".join(bad), err=True)
+    if bad_rows:
+        typer.echo("\n".join(bad_rows), err=True)
         raise typer.Exit(2)
 
 
-def _columns(given: Sequence[str]) -> dict[str, str]:
-    """What columns of the table are, by their headers."""
-    from rocking.extension import InvalidArgumentError
-
-    for one in given:
-        if not one.rpartition("=")[0].strip():
-            raise InvalidArgumentError("columns", one, 'a header and a name, such as "Length (cm)=depth"')
-    return {header.strip(): name.strip() for header, _, name in (one.rpartition("=") for one in given)}
-
-
-def _read(
-    paths: Sequence[str], pairs: Sequence[str], verticals: Sequence[str], order: int | None, stated: dict[str, Any]
+def _read_records(
+    paths: Sequence[str], pairs: Sequence[str], verticals: Sequence[str], order: int | None, layout: dict[str, Any]
 ) -> list[Record | tuple[Record, Record]]:
     """The records and pairs of components of a suite."""
     from rocking.extension import InvalidArgumentError, read_record
@@ -240,47 +453,43 @@ def _read(
     if verticals and len(verticals) != len(paths) + len(pairs):
         allowed = f"{len(paths) + len(pairs)} of them, one for each record and pair"
         raise InvalidArgumentError("vertical", f"{len(verticals)} files", allowed)
-    up = iter(verticals)
+    remaining = iter(verticals)
 
     def read(path: str, vertical: str | None = None) -> Record:
-        return read_record(path, vertical=vertical, **stated).baseline_corrected(order=order)
+        return read_record(path, vertical=vertical, **layout).baseline_corrected(order=order)
 
-    found: list[Record | tuple[Record, Record]] = [read(path, next(up, None)) for path in paths]
-    for one in pairs:
-        first, comma, second = one.partition(",")
+    records: list[Record | tuple[Record, Record]] = [read(path, next(remaining, None)) for path in paths]
+    for pair in pairs:
+        first, comma, second = pair.partition(",")
         if not comma:
-            raise InvalidArgumentError("pair", one, "two files, FILE,FILE")
-        found.append((read(first, next(up, None)), read(second)))
-    return found
+            raise InvalidArgumentError("pair", pair, "two files, FILE,FILE")
+        records.append((read(first, next(remaining, None)), read(second)))
+    return records
 
 
-def _print(found: Assessment, form: Form, table: ObjectTable, bad: list[str], directions: bool) -> None:
+def _print(
+    assessment: Assessment, output_format: str, table: ObjectTable, bad_rows: list[str], directions: bool
+) -> None:
     """Print a line for each object, and below them each kind of warning with the objects to which it applies."""
     from rocking.extension import print_json, print_table, printable
     from rocking_assessment._objects.columns import OUTPUTS
-    from rocking_assessment._objects.summary import (
-        counts_of,
-        lines_of,
-        names_in_short,
-        rows_in_units,
-        table_of,
-        warnings_of,
-    )
+    from rocking_assessment._objects.summary import counts_of, lines_of, names_in_short, table_of, warnings_of
 
-    columns = {one.name: [row[one.name] for row in found.rows] for one in OUTPUTS}
-    if form.kind == "json":
-        about = {"details": found.details, "columns": table.columns, "skipped": table.skipped, "totals": table.totals}
-        print_json(columns | about | {"motions": found.motions, "resolution": found.resolution, "bad_rows": bad})
+    if output_format == "json":
+        columns = {column.name: [row[column.name] for row in assessment.rows] for column in OUTPUTS}
+        about = {"details": assessment.details, "columns": table.columns, "skipped": table.skipped}
+        motions = {"motions": assessment.motions, "resolution": assessment.resolution}
+        print_json({**columns, **about, "remarks": table.remarks, **motions, "bad_rows": bad_rows})
         return
-    if form.kind == "csv":
-        typer.echo(found.to_csv(), nl=False)
+    if output_format == "csv":
+        typer.echo(assessment.to_csv(), nl=False)
         return
-    print_table(rows_in_units(found) if form.all else table_of(found, directions=directions))
-    typer.echo(counts_of(lines_of(found)))
-    if found.resolution:
-        typer.echo(f"factors tried on records are at most {100.0 * found.resolution:g} % apart")
-    for text, names in warnings_of(found):
+    print_table(table_of(assessment, directions=directions))
+    typer.echo(counts_of(lines_of(assessment)))
+    if assessment.resolution:
+        typer.echo(f"factors tried on records are at most {100.0 * assessment.resolution:g} % apart")
+    for text, names in warnings_of(assessment):
         count = f"{len(names)} object{'s' if len(names) > 1 else ''}"
         typer.echo(f"warning: {count}: {printable(f'{text}: {names_in_short(names)}')}")
-    if not (directions or form.all) and len({*map(id, found.objects)}) < len(found.objects):
-        typer.echo("each object in its worse direction; --directions shows both, --all every value")
+    if not directions and len({*map(id, assessment.objects)}) < len(assessment.objects):
+        typer.echo("each object in its worse direction; --directions shows both, --format csv every value")

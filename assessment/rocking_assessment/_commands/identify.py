@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from rocking.extension import OutputOptions, TraceOptions, said, with_options
-
-if TYPE_CHECKING:
-    import xarray as xr
+from rocking.extension import (
+    Decimal,
+    Delimiter,
+    OutputFormat,
+    Rotation,
+    Skip,
+    Time,
+    TimeStep,
+    TimeUnit,
+    Unit,
+    reported_errors,
+)
 
 MAX_SAMPLES = 1_000_000  # most rows of a file that are read
 
+IDENTIFIED = ("restitution", "alpha", "frequency_parameter")
 
-@with_options
+
 def identify(
     file: Annotated[
         str,
@@ -23,50 +32,61 @@ def identify(
             metavar="FILE",
         ),
     ],
-    output: OutputOptions,
-    stated: TraceOptions,
-    edges: Annotated[int, said("1: equal edges; 2: a right and a left edge.", "1|2")] = 1,
-    confidence: Annotated[float, said("Confidence of the intervals, (0, 1).", "-")] = 0.95,
+    rotation: Rotation = None,
+    time: Time = None,
+    time_step: TimeStep = None,
+    time_unit: TimeUnit = None,
+    unit: Unit = None,
+    skip: Skip = 0,
+    delimiter: Delimiter = None,
+    decimal: Decimal = ".",
+    edges: Annotated[int, typer.Option(help="1: equal edges; 2: a right and a left edge.", metavar="[1|2]")] = 1,
+    confidence: Annotated[float, typer.Option(help="Confidence of the intervals, (0, 1).", metavar="[-]")] = 0.95,
+    output_format: OutputFormat = "table",
 ) -> None:
     """Restitution, slenderness angle and frequency parameter from a trace of free rocking, with intervals."""
-    from rocking.extension import option_errors, output_format, print_csv, print_json, print_table, print_text, progress
-
-    with option_errors():
-        form = output_format(output)
-        with progress("fitting the trace"):
-            found = _found(file, stated, edges, confidence)
-    columns = {name: found[name].values.tolist() for name in ("edge", *_columns())}
-    if form.kind == "csv":
-        print_csv(columns, form)
-        return
-    about: dict[str, Any] = {"impacts": found.sizes["impact"]}
-    about |= {name: found[name].item() for name in ("noise", "offset", "drift", "drift_lower", "drift_upper")}
-    about["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
-    if form.kind == "json":
-        print_json({**columns, **about})
-        return
-    for text in about.pop("warnings"):
-        typer.echo(f"warning: {text}")
-    print_table(columns)
-    print_text(about, form)
-
-
-def _columns() -> list[str]:
-    return [name + end for name in ("restitution", "alpha", "frequency_parameter") for end in ("", "_lower", "_upper")]
-
-
-def _found(path: str, stated: TraceOptions, edges: int, confidence: float) -> xr.Dataset:
     from pathlib import Path
 
-    from rocking.extension import InvalidArgumentError, TextFile, file_errors, read_bytes, read_rotations
+    from rocking.extension import (
+        TextFile,
+        print_csv,
+        print_json,
+        print_table,
+        print_values,
+        progress,
+        read_bytes,
+        read_rotations,
+        unit_label,
+    )
     from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
-    with file_errors():
-        file = TextFile(Path(path).name, read_bytes(path, "path"))
-        time, rotation = read_rotations(file, MAX_SAMPLES, **vars(stated))
-    try:
-        return identify_free_rocking(time, rotation, edges=edges, confidence=confidence)
-    except InvalidArgumentError as error:
-        if error.parameter in ("edges", "confidence"):
-            raise
-        raise typer.BadParameter(str(error), param_hint="FILE") from None
+    with reported_errors({"time": "FILE", "rotation": "FILE"}), progress("fitting the trace"):
+        times, rotations = read_rotations(
+            TextFile(Path(file).name, read_bytes(file, "path")),
+            MAX_SAMPLES,
+            rotation=rotation,
+            time=time,
+            time_step=time_step,
+            time_unit=time_unit,
+            unit=unit,
+            skip=skip,
+            delimiter=delimiter,
+            decimal=decimal,
+        )
+        fit = identify_free_rocking(times, rotations, edges=edges, confidence=confidence)
+    names = ["edge", *(name + end for name in IDENTIFIED for end in ("", "_lower", "_upper"))]
+    others = ["noise", "offset", "drift", "drift_lower", "drift_upper"]
+    columns = {name: fit[name].values.tolist() for name in names}
+    units = {name: unit_label(fit[name].attrs.get("units", "")) for name in (*names, *others)}
+    if output_format == "csv":
+        print_csv(columns, units)
+        return
+    values: dict[str, Any] = {"impacts": fit.sizes["impact"]} | {name: fit[name].item() for name in others}
+    warnings = list(filter(None, fit.attrs["warnings"].split("; ")))
+    if output_format == "json":
+        print_json({**columns, **values, "warnings": warnings})
+        return
+    for text in warnings:
+        typer.echo(f"warning: {text}")
+    print_table(columns, units)
+    print_values(values, units)

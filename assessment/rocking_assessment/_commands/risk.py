@@ -6,26 +6,26 @@ from typing import Annotated
 
 import typer
 
-from rocking.extension import OutputOptions, said, with_options
+from rocking.extension import Configuration, OutputFormat, reported_errors
 
 ENDINGS = (".xml", ".pelicun.csv")
 
+RATES = ("annual_rate", "annual_rate_lower", "annual_rate_upper")
 
-@with_options
+
 def risk(
-    configuration: Annotated[
-        str,
-        typer.Argument(
-            help="Configuration of a suite (YAML, TOML or JSON), such as workflow/config/suite.yaml.",
-            metavar="CONFIGURATION",
-        ),
-    ],
-    output: OutputOptions,
-    hazard: Annotated[str | None, said("Hazard curve: a table, or a file of OpenQuake or the USGS.", "FILE")] = None,
-    file: Annotated[
+    configuration: Configuration,
+    hazard: Annotated[
         str | None,
-        said("File to write: .xml (NRML of OpenQuake), or .pelicun.csv.", "FILE", "--output", "-o"),
+        typer.Option(help="Hazard curve: a table, or a file of OpenQuake or the USGS.", metavar="[FILE]"),
     ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "--output", "-o", help="File to write: .xml (NRML of OpenQuake), or .pelicun.csv.", metavar="[FILE]"
+        ),
+    ] = None,
+    output_format: OutputFormat = "table",
 ) -> None:
     """Annual rates at which blocks reach their limit states, from a suite of records and a hazard curve.
 
@@ -33,15 +33,11 @@ def risk(
     """
     from rocking.extension import (
         InvalidArgumentError,
-        configuration_errors,
         curve_table,
-        finite,
-        option_errors,
+        finite_columns,
         output_errors,
-        output_format,
-        print_csv,
+        print_columns,
         print_json,
-        print_table,
         read_suite,
         suite_fragility,
     )
@@ -50,33 +46,28 @@ def risk(
     from rocking_assessment._hazard.pelicun import write_pelicun
     from rocking_assessment._hazard.rates import annual_rate
 
-    with configuration_errors():
-        form = output_format(output)
-    suite = read_suite(configuration)
-    with option_errors():
-        if hazard is None and file is None:
+    with reported_errors():
+        if hazard is None and output is None:
             raise InvalidArgumentError("hazard", None, "a hazard curve, or --output, a file for a loss program")
-        if file is not None and not file.lower().endswith(ENDINGS):
-            raise InvalidArgumentError("output", file, f"a name that ends in {' or '.join(ENDINGS)}")
+        if output is not None and not output.lower().endswith(ENDINGS):
+            raise InvalidArgumentError("output", output, f"a name that ends in {' or '.join(ENDINGS)}")
         curve = None if hazard is None else read_hazard(hazard)
-    fragility = suite_fragility(suite)
-    with option_errors({"fragility": "--output", "format": "--output"}):
-        if file is not None:
-            write = write_nrml if file.lower().endswith(".xml") else write_pelicun
-            with output_errors("output", file):
-                write(fragility, file)
-        if curve is None:
-            return
+    with reported_errors(source="CONFIGURATION"):
+        suite = read_suite(configuration)
+        fragility = suite_fragility(suite)
+    if output is not None:
+        write = write_nrml if output.lower().endswith(".xml") else write_pelicun
+        with reported_errors({"fragility": "--output"}), output_errors("output", output):
+            write(fragility, output)
+    if curve is None:
+        return
+    with reported_errors():
         rates = annual_rate(fragility, curve)
-    names = ("annual_rate", "annual_rate_lower", "annual_rate_upper")
-    columns = curve_table(fragility.assign(rates.data_vars), names)
-    table = {name: columns[name] for name in ("demand", "width", "height", "model", *names) if name in columns}
-    if form.kind == "csv":
-        print_csv(table, form)
-    elif form.kind == "json":
-        numbers = {
-            name: [finite(cell) if isinstance(cell, float) else cell for cell in cells] for name, cells in table.items()
-        }
-        print_json({"suite": suite.name, "curves": numbers})
-    else:
-        print_table(table)
+    columns = finite_columns(curve_table(fragility.assign(rates.data_vars), RATES))
+    names = [name for name in ("demand", "width", "height", "model", *RATES) if name in columns]
+    table = {name: columns[name] for name in names}
+    if output_format == "json":
+        print_json({"suite": suite.name, "curves": table})
+        return
+    units = {"width": "m", "height": "m", **dict.fromkeys(RATES, "1/year")}
+    print_columns(table, output_format, units)

@@ -1,10 +1,11 @@
-"""Mass properties and outline of a surface mesh in a vertical plane, by trimesh."""
+"""Mass properties, outline and footprint of a surface mesh, by trimesh."""
 
 from __future__ import annotations
 
 import io
 import math
 import warnings
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated
@@ -29,25 +30,36 @@ from rocking.extension import (
     positive,
 )
 from rocking_assessment._meshes.parts import with_few_parts
-from rocking_assessment._meshes.repair import RepairedMesh, repaired
 
-PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, ...), z upwards", example="vase.stl")
-UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft", default="m")
+PATH = Quantity("path", "", "file of a closed surface (STL, PLY, OBJ, GLB, ...)", example="vase.stl")
+UNIT = Quantity("unit", "", "unit of the lengths in the file: m, cm, mm, in or ft; of glTF m")
+UP = Quantity("up", "", "axis of the file that points upwards: x, y or z; z by default, y of glTF")
 DIRECTION = Quantity(
     "direction",
     "rad",
-    "angle of the ground motion from the x axis of the mesh towards its y axis",
+    "angle of the ground motion from the first horizontal axis of the mesh towards the second",
     lower=-2.0 * math.pi,
     upper=2.0 * math.pi,
     closed="both",
     example="30 deg",
 )
 
+GLTF = (".glb", ".gltf")
+"""Formats whose standard states metres, and +Y upwards."""
+
+AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
+"""Axes of the file that are the first and second horizontal axis and the upward one, by the name of the last."""
+
+USUAL_SIZE = 0.01, 50.0
+"""Smallest and largest extent of a mesh that are not asked about [m]."""
+
 CONTACT_TOLERANCE = 1e-4
 """Height above the lowest point up to which vertices are in contact with the ground, over the height of the mesh [-].
 
 0.16 mm for a statue of 1.6 m. A vertex 1.2 mm above the others, within 1e-3 of the height, does not carry.
 """
+
+EMPTY = 1e-9  # volume of a surface over that of the mesh up to which it encloses nothing [-]
 
 LONG_SIDE = 0.1
 """A side of a footprint that is at least this share of the perimeter has a direction of its own [-].
@@ -57,19 +69,127 @@ round base, are rounded.
 """
 
 
-FAR = 100.0
-"""A mesh farther from the origin than this many times its size is moved there: map coordinates lose digits [-]."""
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A closed surface in metres, z upwards, and what a user should know of its file."""
+
+    path: str
+    surface: trimesh.Trimesh
+    remarks: tuple[str, ...]
+
+    def properties(self, direction: float, contact_tolerance: float = CONTACT_TOLERANCE) -> PolygonProperties:
+        """Edges, centre of mass and radius of gyration in the plane of a direction [rad]."""
+        along = _horizontal(direction)
+        across = np.cross([0.0, 0.0, 1.0], along)
+        lowest, highest = self.surface.bounds[:, 2].tolist()
+        footprint = self._contact_points(contact_tolerance) @ along[:2]
+        left, right = -float(footprint.min()), float(footprint.max())
+        if not (left > 0.0 and right > 0.0):
+            raise InvalidArgumentError(
+                "path",
+                self.path,
+                "a body whose centre of mass lies above its footprint, the points within contact_tolerance of the "
+                "lowest",
+            )
+        # rotation is about the horizontal axis normal to the plane, through the centre of mass
+        inertia = float(across @ np.asarray(self.surface.moment_inertia) @ across)
+        if not inertia > 0.0:
+            raise InvalidArgumentError(
+                "path", self.path, "a mesh that does not cross itself: its moment of inertia is negative"
+            )
+        gyration = math.sqrt(inertia / float(self.surface.mass))
+        return PolygonProperties(left, right, float(self.surface.center_mass[2]) - lowest, gyration, highest - lowest)
+
+    def outline(self, direction: float) -> Array:
+        """Convex outline in the plane of a direction [rad], for drawings; (points, 2) [m].
+
+        Distances from the centre of mass along the plane, and heights above the lowest point.
+        """
+        vertices = np.asarray(self.surface.vertices)
+        heights = vertices[:, 2] - vertices[:, 2].min()
+        points = np.stack([(vertices - self.surface.center_mass) @ _horizontal(direction), heights], axis=1)
+        return np.asarray(points[ConvexHull(points).vertices])
+
+    def footprint(self, contact_tolerance: float = CONTACT_TOLERANCE) -> Array:
+        """Convex outline of the footprint from the centre of mass [m], array (points, 2)."""
+        points = self._contact_points(contact_tolerance)
+        try:
+            corners = ConvexHull(points).vertices
+        except QhullError:  # fewer than three points, or all on one line
+            raise InvalidArgumentError(
+                "path", self.path, "a mesh that stands on three points or more within contact_tolerance"
+            ) from None
+        return np.asarray(points[corners])
+
+    def _contact_points(self, contact_tolerance: float) -> Array:
+        """Vertices on which the mesh stands, from its centre of mass; array (points, 2) [m]."""
+        share = number("contact_tolerance", contact_tolerance, 0.0, 0.1)
+        vertices = np.asarray(self.surface.vertices)
+        heights = vertices[:, 2]
+        limit = heights.min() + share * np.ptp(heights)
+        return np.asarray((vertices - self.surface.center_mass)[heights <= limit, :2])
+
+
+def read_mesh(path: str | Path, *, unit: str | None = None, up: str | None = None, allow_unusual: bool = False) -> Mesh:
+    """Read a closed surface from a file.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file that trimesh reads (STL, PLY, OBJ, GLB, ...).
+    unit : str
+        Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft"; required, but for glTF, which has metres.
+    up : str
+        Axis of the file that points upwards, "x", "y" or "z"; by default "z", of glTF "y".
+    allow_unusual : bool
+        Accept a largest extent below 1 cm or above 50 m, which usually is a wrong unit.
+
+    Raises
+    ------
+    InvalidArgumentError
+        If the unit is not stated, the file cannot be read, or its surface is not closed after the repairs of trimesh:
+        holes of three and four edges are filled, faces are turned consistently, and outwards.
+    """
+    is_gltf = Path(path).suffix.lower() in GLTF
+    remarks = []
+    if unit is None and not is_gltf:
+        raise InvalidArgumentError(
+            "unit", None, f"the unit of the lengths in {Path(path).name}, one of m, cm, mm, in, ft"
+        )
+    if is_gltf and unit not in (None, "m"):
+        remarks.append(f"is glTF, whose lengths are in m; the stated unit {unit} is used")
+    if is_gltf and up not in (None, "y"):
+        remarks.append(f"is glTF, whose y axis points upwards; the stated axis {up} is used")
+    factor = UNITS["m"][one_of("unit", unit or "m", UNITS["m"])]
+    axes = AXES[one_of("up", up or ("y" if is_gltf else "z"), AXES)]
+    try:
+        status = Path(path).stat()
+        surface, repairs, defect = _read_surface(Path(path), status.st_mtime_ns, status.st_size, factor, axes)
+    except FileNotFoundError as error:
+        raise UnreadableFileError("path", str(path), error) from None
+    except Exception as error:  # noqa: BLE001  (each format has its own errors)
+        raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
+    if defect:
+        raise InvalidArgumentError("path", str(path), f"a mesh that encloses a volume; this one {defect}")
+    smallest, largest = USUAL_SIZE
+    size = float(surface.extents.max())
+    if not (allow_unusual or smallest <= size <= largest):
+        question = f"True for {Path(path).name}, which has a size of {size:.4g} m; is its unit {unit or 'm'}?"
+        raise InvalidArgumentError("allow_unusual", allow_unusual, question)
+    return Mesh(str(path), surface, (*remarks, *repairs))
 
 
 def body_from_mesh(
     path: str | Path,
     direction: Scalar = 0.0,
     *,
-    unit: str = "m",
+    unit: str | None = None,
+    up: str | None = None,
     gravity: Scalar = STANDARD_GRAVITY,
     contact_tolerance: float = CONTACT_TOLERANCE,
+    allow_unusual: bool = False,
 ) -> RigidBody:
-    """A body of uniform density from a surface mesh, which stands on its lowest points; z is upwards.
+    """A body of uniform density from a surface mesh, which stands on its lowest points.
 
     It rocks in the vertical plane of the direction, on the outermost points of its footprint there: the planar
     model of a base of any shape, which leaves out that a round base also rolls.
@@ -79,34 +199,39 @@ def body_from_mesh(
     path : str or Path
         A file that trimesh reads (STL, PLY, OBJ, GLB, ...).
     direction : float
-        Angle of the ground motion from the x axis towards the y axis [rad], or a text such as "30 deg".
+        Angle of the ground motion from the x axis towards the y axis [rad], or a text such as "30 deg"; from z
+        towards x where y points upwards, from y towards z where x does.
     unit : str
-        Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft".
+        Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft"; required, but for glTF, which has metres.
+    up : str
+        Axis of the file that points upwards, "x", "y" or "z"; by default "z", of glTF "y".
     gravity
         As of `RigidBody`.
     contact_tolerance : float
         Height above the lowest point up to which vertices are in contact with the ground, over the height of the mesh
         [-], [0, 0.1]: 0.16 mm for a height of 1.6 m.
+    allow_unusual : bool
+        Accept a largest extent below 1 cm or above 50 m, which usually is a wrong unit.
 
     Raises
     ------
     InvalidArgumentError
-        If the file cannot be read, has a defect that cannot be repaired with certainty, encloses no volume, or does
-        not stand.
+        If the unit is not stated, if the file cannot be read, is not closed after the repairs of trimesh, encloses no
+        volume, or does not stand.
     ImportError
         If trimesh is not installed.
 
     Warns
     -----
     UserWarning
-        If the mesh was repaired: flat holes filled, normals turned outwards, sheets beside the surface left out.
-        If it has separate solids, with gaps between them, which are treated as one body.
+        If the mesh was repaired: holes of three or four edges filled, faces turned. If it has separate surfaces. If an
+        argument contradicts the standard of glTF.
     """
     checked_gravity = positive("gravity", gravity, "m/s2")
     angle = number("direction", direction, -2.0 * math.pi, 2.0 * math.pi, unit="rad")
-    contact = number("contact_tolerance", contact_tolerance, 0.0, 0.1)
-    properties, remarks = mesh_properties(path, angle, unit, contact)
-    for remark in remarks:
+    mesh = read_mesh(path, unit=unit, up=up, allow_unusual=allow_unusual)
+    properties = mesh.properties(angle, contact_tolerance)
+    for remark in mesh.remarks:
         warnings.warn(f"{Path(path).name} {remark}", UserWarning, 2)
     return RigidBody(
         properties.left,
@@ -121,69 +246,12 @@ def body_from_mesh(
 def mesh(
     path: Annotated[str, PATH],
     direction: Annotated[float, DIRECTION] = 0.0,
-    unit: Annotated[str, UNIT] = "m",
+    unit: Annotated[str | None, UNIT] = None,
+    up: Annotated[str | None, UP] = None,
     gravity: Annotated[float, GRAVITY] = STANDARD_GRAVITY,
 ) -> RigidBody:
     """A body of uniform density from a surface mesh, standing on its lowest points."""
-    return body_from_mesh(path, direction, unit=unit, gravity=gravity)
-
-
-def mesh_properties(
-    path: str | Path, direction: float, unit: str, contact_tolerance: float = CONTACT_TOLERANCE
-) -> tuple[PolygonProperties, list[str]]:
-    """Edges, centre of mass and radius of gyration in the plane of a direction [rad], in metres; what was repaired."""
-    factor = UNITS["m"][one_of("unit", unit, UNITS["m"])]
-    (mesh, remarks), along = _mesh(path), _horizontal(direction)
-    across = np.cross([0.0, 0.0, 1.0], along)
-    centre = np.asarray(mesh.center_mass)
-    heights = np.asarray(mesh.vertices)[:, 2]
-    lowest, highest = float(heights.min()), float(heights.max())
-    footprint = _footprint(mesh, contact_tolerance) @ along[:2]
-    left, right = -float(footprint.min()), float(footprint.max())
-    if not (left > 0.0 and right > 0.0):
-        raise InvalidArgumentError(
-            "path",
-            str(path),
-            "a body whose centre of mass lies above its footprint, the points within contact_tolerance of the lowest",
-        )
-    # rotation is about the horizontal axis normal to the plane, through the centre of mass
-    about = float(across @ np.asarray(mesh.moment_inertia) @ across)
-    if not about > 0.0:
-        raise InvalidArgumentError(
-            "path", str(path), "a mesh that does not cross itself: its moment of inertia is negative"
-        )
-    found = PolygonProperties(
-        left * factor,
-        right * factor,
-        (float(centre[2]) - lowest) * factor,
-        math.sqrt(about / float(mesh.mass)) * factor,
-        (highest - lowest) * factor,
-    )
-    return found, remarks
-
-
-def mesh_outline(path: str | Path, direction: float, unit: str) -> Array:
-    """Convex outline in the plane of a direction [rad], for drawings; (points, 2) [m].
-
-    Distances from the centre of mass along the plane, and heights above the lowest point.
-    """
-    mesh, _ = _mesh(path)
-    vertices = np.asarray(mesh.vertices)
-    heights = vertices[:, 2] - vertices[:, 2].min()
-    points = np.stack([(vertices - mesh.center_mass) @ _horizontal(direction), heights], axis=1)
-    return np.asarray(points[ConvexHull(points).vertices] * UNITS["m"][unit])
-
-
-def mesh_footprint(path: str | Path, unit: str, contact_tolerance: float = CONTACT_TOLERANCE) -> Array:
-    """Convex outline of the footprint from the centre of mass [m], array (points, 2); arguments and errors as above."""
-    points = _footprint(_mesh(path)[0], contact_tolerance)
-    try:
-        corners = ConvexHull(points).vertices
-    except QhullError:  # fewer than three points, or all on one line
-        raise InvalidArgumentError(
-            "path", str(path), "a mesh that stands on three points or more within contact_tolerance"
-        ) from None
-    return np.asarray(points[corners] * UNITS["m"][one_of("unit", unit, UNITS["m"])])
+    return body_from_mesh(path, direction, unit=unit, up=up, gravity=gravity)
 
 
 def directions_across(footprint: Array, step: float) -> list[float]:
@@ -204,42 +272,71 @@ def directions_around(footprint: Array, step: int) -> list[float]:
     return sorted({*map(float, range(0, 180, step)), *directions_across(footprint, step)})
 
 
-def _footprint(mesh: trimesh.Trimesh, contact_tolerance: float) -> Array:
-    """Vertices on which a mesh stands, from its centre of mass; array (points, 2)."""
-    vertices = np.asarray(mesh.vertices)
-    heights = vertices[:, 2]
-    limit = heights.min() + contact_tolerance * np.ptp(heights)
-    return np.asarray((vertices - mesh.center_mass)[heights <= limit, :2])
-
-
-def _mesh(path: str | Path) -> tuple[trimesh.Trimesh, list[str]]:
-    """The mesh of a file, and what of it was repaired."""
-    try:
-        status = Path(path).stat()
-        mesh, remarks, defect = _loaded(Path(path), status.st_mtime_ns, status.st_size)
-    except FileNotFoundError as error:
-        raise UnreadableFileError("path", str(path), error) from None
-    except Exception as error:  # noqa: BLE001  (each format has its own errors)
-        raise InvalidArgumentError("path", str(path), f"a mesh that trimesh reads ({error})") from None
-    if defect:
-        raise InvalidArgumentError("path", str(path), f"a mesh that encloses a volume; this one {defect}")
-    return mesh, remarks
+Surface = tuple[trimesh.Trimesh, list[str], str]
+"""A mesh, what was repaired, and what cannot be, as ends of a sentence about it."""
 
 
 @lru_cache(maxsize=1)
-def _loaded(path: Path, _changed: int, _size: int) -> RepairedMesh:
-    """The mesh of a file, kept for the other directions: loading it and its inertia take most of the time."""
+def _read_surface(path: Path, _changed: int, _size: int, factor: float, axes: tuple[int, int, int]) -> Surface:
+    """The mesh of a file in metres, z upwards, around the origin: map coordinates would lose digits.
+
+    It is kept for the other directions: loading it and its inertia take most of the time.
+    """
     # from its bytes: a file that holds all of its mesh is given no way to name others
     kind = path.suffix[1:].lower()
     source = path if kind == "gltf" else io.BytesIO(with_few_parts(path.read_bytes(), kind))
     mesh = trimesh.load_mesh(source, file_type=kind, process=True, skip_materials=True)
     if not len(mesh.faces):
-        return RepairedMesh(mesh, [], "has no faces")
-    middle = mesh.bounds.mean(axis=0)
-    if np.abs(middle).max() > FAR * float(mesh.extents.max()):
-        mesh.apply_translation(-middle)
+        return mesh, [], "has no faces; strips of triangles are not read"
+    mesh.vertices = factor * (mesh.vertices - mesh.bounds.mean(axis=0))[:, axes]
     with np.errstate(invalid="ignore", divide="ignore"):  # of a mesh without a volume
-        return repaired(mesh)
+        return _repaired(mesh)
+
+
+def _repaired(mesh: trimesh.Trimesh) -> Surface:
+    """Repair a mesh by trimesh, in place."""
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    remarks = []
+    if not (mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0.0):
+        before = len(mesh.faces)
+        mesh.update_faces(mesh.unique_faces() & mesh.nondegenerate_faces())
+        left_out = before - len(mesh.faces)
+        if left_out:
+            remarks.append(f"has faces that are there twice or have no area: {left_out} of {before} were left out")
+        inverted = not mesh.is_winding_consistent or mesh.volume < 0.0
+        trimesh.repair.fix_normals(mesh)
+        if not mesh.is_watertight:
+            closed = len(mesh.faces)
+            trimesh.repair.fill_holes(mesh)
+            trimesh.repair.fix_normals(mesh)
+            remarks.append(f"was not closed: its holes were filled with {len(mesh.faces) - closed} faces")
+        if inverted:
+            remarks.append("had faces that pointed inwards, which were turned")
+    if not mesh.is_watertight:
+        _, counts = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+        single, several = int((counts == 1).sum()), int((counts > 2).sum())
+        text = f"is not closed: {single} edges have one face, {several} have more than two; close it where it was made"
+        return mesh, [], text
+    if not mesh.is_winding_consistent:
+        return mesh, [], "has a surface with one side only, whose faces cannot be turned consistently"
+    if not mesh.volume > 0.0:
+        return mesh, [], "encloses no volume"
+    if mesh.body_count > 1:
+        surface = trimesh.graph.connected_component_labels(mesh.face_adjacency, node_count=len(mesh.faces))
+        corners = mesh.triangles.transpose(1, 0, 2)
+        volumes = np.bincount(surface, np.einsum("ij,ij->i", corners[0], np.cross(corners[1], corners[2])) / 6.0)
+        empty = int((np.abs(volumes) <= EMPTY * mesh.volume).sum())
+        if empty:
+            return (
+                mesh,
+                [],
+                f"has {empty} surface{'s' if empty > 1 else ''} that enclose{'' if empty > 1 else 's'} nothing",
+            )
+        remarks.append(
+            f"has {mesh.body_count} separate surfaces, which are treated as one body; those whose faces point inwards "
+            "are cavities"
+        )
+    return mesh, remarks, ""
 
 
 def _horizontal(direction: float) -> Array:

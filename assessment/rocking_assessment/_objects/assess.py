@@ -17,7 +17,6 @@ from rocking.extension import (
     Flags,
     Index,
     InvalidArgumentError,
-    Record,
     Scalar,
     StopFlag,
     binomial_interval,
@@ -204,7 +203,7 @@ def assess(
     kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
     each = [one for one in given for _ in one.planes]
     ordered = tuple(each[k] for k in order)
-    apart = share_apart if any(isinstance(motion.motion, Record) for motion in motions) else 0.0
+    apart = share_apart if any(motion.motion.is_scanned for motion in motions) else 0.0
     return Assessment(
         kept, tuple(names.tolist()), searched_factor(motions), ordered, factors[order], rotation[order], site, apart
     )

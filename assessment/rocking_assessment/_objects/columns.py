@@ -6,20 +6,15 @@ from rocking.extension import (
     DEPTH,
     DIAMETER,
     FRICTION,
-    HALF_HEIGHT,
-    HALF_WIDTH,
     HEIGHT,
-    LENGTH,
     MASS,
     MASS_HEIGHT,
     NAME,
     NOTES,
-    NUMBER,
     OFFSET_DEPTH,
     OFFSET_WIDTH,
     PEDESTAL,
     RESTITUTION,
-    THICKNESS,
     TOLERANCE,
     WIDTH,
     Quantity,
@@ -32,13 +27,8 @@ INPUTS = (
 )
 """What an object has."""
 
-STAND_INS = (NUMBER, LENGTH, THICKNESS, HALF_WIDTH, HALF_HEIGHT)  # columns of tables, read as one of these
-
-SHAPES = columns_beside((*INPUTS, *STAND_INS), "inclination")
+SHAPES = columns_beside(INPUTS, "inclination", "offset")
 """Parameters of kinds of bodies that an object may have in place of or beside its own dimensions."""
-
-REQUIRED = (("width", "diameter", "left"), ("height", "mass_height"))
-"""Columns of which the header of a table needs one from each group."""
 
 CLAUSES = {
     "static": "static check: PGA over g b/h",

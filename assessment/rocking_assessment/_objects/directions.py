@@ -50,14 +50,14 @@ def factors_by_direction(
     for motion in motions:
         problem = problem_of(body, motion)
         factor = factor_from_one_side(problem, motion, stop, resolution)
-        overturned = problem.solve_edges(stop=stop)[0]["outcome"].ravel() >= Outcome.OVERTURNED_DIRECTLY
+        overturned = problem.solve(stop=stop)[0]["outcome"].ravel() >= Outcome.OVERTURNED_DIRECTLY
         # an object beyond the range of the search has no factor, and may overturn
         columns.append(np.fmin(factor, np.where(overturned, 1.0, np.nan)))
         counted = ahead & (np.nan_to_num(columns[-1], nan=np.inf) <= component)  # at a factor up to 1
         direction, side = np.nonzero(counted)
         if direction.size:
             acceleration = motion.peak_acceleration * component[counted]
-            full = problem_of(bodies.take(side).scaled(), motion, acceleration).solve_edges(stop=stop)[0]["outcome"]
+            full = problem_of(bodies.take(side).scaled(), motion, acceleration).solve(stop=stop)[0]["outcome"]
             at_full_strength[direction[full.ravel() >= Outcome.OVERTURNED_DIRECTLY]] = True
     own = np.nan_to_num(np.stack(columns, axis=1), nan=np.inf)
     by_side = np.where(ahead, own.min(axis=1) / np.where(ahead, component, 1.0), np.inf)

@@ -10,11 +10,10 @@ import numpy as np
 
 from rocking.extension import (
     FREQUENCY_RATIO,
+    PERIOD,
     STANDARD_GRAVITY,
-    AbstractPulse,
     Array,
     Problem,
-    Record,
     StopFlag,
     check_stop,
     contact_extremes,
@@ -48,10 +47,11 @@ def history_of(one: Object, direction: str, motion: Motion) -> xr.Dataset:
     mirrored = body.changed(**{**given, "left": given["right"], "right": given["left"]})
     lopsided = plane.offset != 0.0 or plane.side != 0.0
     sides = [plane.against_wall(body), *([plane.mirrored.against_wall(mirrored)] if lopsided else [])]
-    peak: dict[str, Any] = {"peak_acceleration": motion.peak_acceleration, "period": motion.period}
-    if isinstance(motion.motion, Record):
-        peak = {"scale": motion.peak_acceleration / motion.motion.peak_acceleration}
-    found = [side.history(motion.motion, restitution=one.restitution, **peak) for side in sides]
+    ground = motion.motion
+    strength: dict[str, Any] = {ground.strength.name: motion.peak_acceleration / ground.unit_acceleration}
+    if PERIOD in ground.arguments:
+        strength["period"] = motion.period
+    found = [side.history(ground, restitution=one.restitution, **strength) for side in sides]
     return max(found, key=lambda each: float(np.abs(each["rotation"]).max()))
 
 
@@ -107,7 +107,7 @@ def envelope_of(
 
     Of objects in directions; nan where none up to `highest` [m/s2] was found.
     """
-    pulses = {one.motion.name: one.motion for one in motions if isinstance(one.motion, AbstractPulse)}
+    pulses = {one.motion.name: one.motion for one in motions if PERIOD in one.motion.arguments}
     if not pulses or not given:
         return np.empty(0), {}
     body = bodies_of(given).column

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,17 +36,12 @@ from rocking.extension import (
 )
 from rocking.extension import body as describe
 
+if TYPE_CHECKING:
+    from rocking_assessment._meshes.mesh import Mesh
+
 LENGTHS = 1e-4, 1e3  # smallest and largest dimension of an object [m]
 STEP = 15  # between the directions around an object [degrees]
 CYLINDER = 0.75  # 12 k^2 = 3/4 diameter^2 + height^2 of a cylinder, in place of width^2 + height^2 [-]
-
-
-class RowDetails(dict[str, str]):
-    """Other texts of a row of a table, and the whole row unchanged."""
-
-    def __init__(self, others: Mapping[str, str], row: Mapping[str, str]) -> None:
-        super().__init__(others)
-        self.row = row
 
 
 @dataclass(frozen=True)
@@ -78,6 +74,8 @@ class Object:
         Texts for the report.
     details : mapping of str to str
         Other texts, such as an inventory number, by header; tables that are written repeat them.
+    cells : mapping of str to str or float
+        The unchanged row of a table, by header; empty for an object that was not read from one.
 
     Notes
     -----
@@ -99,6 +97,7 @@ class Object:
     pedestal: str = ""
     notes: str = ""
     details: Mapping[str, str] = field(default_factory=dict, hash=False)
+    cells: Mapping[str, str | float] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.width is None and self.diameter is None:
@@ -164,8 +163,15 @@ class Object:
         vars(self).update(checked)
 
     @staticmethod
-    def from_mesh(path: str | Path, *, unit: str = "m", name: str | None = None, **others: Any) -> MeshObject:
-        """An object of uniform density from a surface mesh, z upwards, as of `rocking_assessment.body_from_mesh`.
+    def from_mesh(
+        path: str | Path,
+        *,
+        unit: str | None = None,
+        up: str | None = None,
+        name: str | None = None,
+        **others: Any,
+    ) -> MeshObject:
+        """An object of uniform density from a surface mesh, as of `rocking_assessment.body_from_mesh`.
 
         It is assessed in vertical planes every 15 degrees from the x axis towards the y axis, and across the long sides
         of its footprint where they are in other directions, from both sides.
@@ -175,22 +181,25 @@ class Object:
         path : str or Path
             A file that trimesh reads (STL, PLY, OBJ, GLB, ...).
         unit : str
-            Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft".
+            Unit of the lengths in the file, "m", "cm", "mm", "in" or "ft"; required, but for glTF, which has metres.
+        up : str
+            Axis of the file that points upwards, "x", "y" or "z"; by default "z", of glTF "y".
         name : str, optional
             For output; the name of the file by default.
         others
             mass, friction, restitution, tolerance, pedestal and notes, as above, and `contact_tolerance`: height above
             the lowest point up to which vertices are in contact with the ground, over the height of the mesh [-],
             [0, 0.1], by default 1e-4. The column `contact_tolerance` of an assessment names it in metres.
+            `allow_unusual=True` accepts a size below 1 cm or above 50 m.
 
         Raises
         ------
         InvalidArgumentError
-            If the file cannot be read, encloses no volume, or does not stand; as for an object.
+            If the unit is not stated, the file cannot be read, encloses no volume, or does not stand; as for an object.
         ImportError
             If trimesh is not installed.
         """
-        return MeshObject(Path(path).stem if name is None else name, path=str(path), unit=unit, **others)
+        return MeshObject(Path(path).stem if name is None else name, path=str(path), unit=unit, up=up, **others)
 
     @staticmethod
     def from_outline(vertices: ArrayLike, *, name: str = "outline", **others: Any) -> OutlineObject:
@@ -226,11 +235,6 @@ class Object:
         """
         made = body if isinstance(body, RespondingBody) else describe(body)
         return DescribedObject(name, described=made, **others)
-
-    @property
-    def cells(self) -> Mapping[str, str]:
-        """The unchanged row of its table, by header; empty for an object that was not read from a table."""
-        return self.details.row if isinstance(self.details, RowDetails) else {}
 
     @property
     def depth_is_missing(self) -> bool:
@@ -330,11 +334,20 @@ class MeshObject(Object):
     """What `Object.from_mesh` makes."""
 
     path: str = ""  # the file
-    unit: str = "m"  # of its lengths
+    unit: str | None = None  # of its lengths
+    up: str | None = None  # its axis that points upwards
     contact_tolerance: float = 1e-4  # of vertices in contact with the ground, over the height of the mesh [-]
+    allow_unusual: bool = False  # whether any size is accepted
 
     def __post_init__(self) -> None:
         self._check_described("a mesh")
+
+    @property
+    def mesh(self) -> Mesh:
+        """The surface."""
+        from rocking_assessment._meshes.mesh import read_mesh  # noqa: PLC0415  (trimesh is an extra)
+
+        return read_mesh(self.path, unit=self.unit, up=self.up, allow_unusual=self.allow_unusual)
 
     @property
     def contact_height(self) -> float:
@@ -345,31 +358,26 @@ class MeshObject(Object):
     def planes(self) -> dict[str, Plane]:
         from rocking_assessment._meshes.mesh import directions_around  # noqa: PLC0415  (trimesh is an extra)
 
+        mesh = self.mesh
+        for remark in mesh.remarks:
+            warnings.warn(f"{Path(self.path).name} {remark}", UserWarning, 2)
         angles = directions_around(self.footprint, STEP)
-        return {f"{angle:g} deg": self._plane_at(angle) for angle in angles}
+        return {
+            f"{angle:g} deg": Plane.of(mesh.properties(math.radians(angle), self.contact_tolerance)) for angle in angles
+        }
 
     @property
     def planes_around(self) -> dict[float, Plane]:
         return {float(name.removesuffix(" deg")): plane for name, plane in self.planes.items()}
 
-    def _plane_at(self, angle: float) -> Plane:
-        from rocking_assessment._meshes.mesh import body_from_mesh  # noqa: PLC0415  (trimesh takes time to load)
-
-        given: dict[str, Any] = {"unit": self.unit, "contact_tolerance": self.contact_tolerance}
-        return plane_of(body_from_mesh(self.path, math.radians(angle), **given))
-
     @cached_property
     def footprint(self) -> Array:
-        from rocking_assessment._meshes.mesh import mesh_footprint  # noqa: PLC0415  (trimesh takes time to load)
-
-        return mesh_footprint(self.path, self.unit, self.contact_tolerance)
+        return self.mesh.footprint(self.contact_tolerance)
 
     def outline(self, direction: str) -> Array:
-        from rocking_assessment._meshes.mesh import mesh_outline  # noqa: PLC0415  (trimesh takes time to load)
-
         angle = math.radians(float(direction.removesuffix(" deg")))
         offset = np.array([self.planes[direction].offset, 0.0])  # of the centre of mass from the middle of the base
-        return np.asarray(mesh_outline(self.path, angle, self.unit) + offset)
+        return np.asarray(self.mesh.outline(angle) + offset)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.extension import STANDARD_GRAVITY, BadRow, Record, __version__
+from rocking.extension import STANDARD_GRAVITY, BadRow, __version__
 from rocking_assessment._objects.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
 from rocking_assessment._objects.columns import CLAUSES, VERDICTS
 from rocking_assessment._objects.motions import envelope_of, frictions_of
@@ -23,7 +23,6 @@ from rocking_assessment._objects.summary import (
     counts_of,
     lines_of,
     names_in_short,
-    number_header,
     number_of,
     text_of,
     warnings_of,
@@ -74,7 +73,6 @@ def report_html(
     chosen = [
         one for line in concerned for one in (lines_of(found, directions=True, only=line) if detailed else [line])
     ]
-    number = number_header(found)
     numbers: dict[int, int] = {}  # of an object in the part on objects, by its first row
     for line in chosen:
         numbers.setdefault(line.rows[0], len(numbers) + 1)
@@ -87,7 +85,6 @@ def report_html(
         counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
         full_strength=counts_of(lines),
         worst=_worst(lines),
-        number=number,
         blocks=_blocks(found, chosen, detailed),
         all_concerned=sum(one.concerns for one in lines),
         detailed=detailed,
@@ -158,7 +155,7 @@ def _blocks(found: Assessment, chosen: Sequence[Line], detailed: bool) -> list[d
         names = "name", "ground", "period", "factor", "rotation", "friction", "exceeded_at"
         motions = [
             dict(zip(names, (motion.name, motion.ground, motion.period, *values), strict=True))
-            | {"is_record": isinstance(motion.motion, Record)}
+            | {"is_record": motion.motion.is_scanned}
             for motion, *values in zip(
                 *(found.site.motions, found.factors[row].tolist(), found.rotations[row].tolist()),
                 *(needed[k].tolist(), exceeded[k].tolist()),

@@ -15,11 +15,11 @@ from rocking.extension import (
     RESOLUTION,
     Array,
     BadRow,
+    Cell,
     EqualByValue,
     StopFlag,
     csv_text,
     integer,
-    numbers_of,
     write_output,
 )
 from rocking_assessment._objects.columns import OUTPUTS, VERDICTS, digits_apart
@@ -79,26 +79,26 @@ class Assessment(EqualByValue):
         return [dict(zip(self.columns, row, strict=True)) for row in zip(*columns, strict=True)]
 
     @property
-    def details(self) -> dict[str, list[str]]:
+    def details(self) -> dict[str, list[Cell]]:
         """What the table of objects has of the object of each row, by its headers and in their order.
 
         Of objects that were not read from a table their `details`.
         """
-        rows = [one.cells or one.details for one in self.objects]
-        names, taken = [one.name for one in self.objects], {name for one in OUTPUTS for name in (one.name, one.header)}
-        found = {}
+        rows = [obj.cells or obj.details for obj in self.objects]
+        names = [obj.name for obj in self.objects]
+        outputs = {name for column in OUTPUTS for name in (column.name, column.header)}
+        details: dict[str, list[Cell]] = {}
         for label in dict.fromkeys(label for row in rows for label in row):
             cells = [row.get(label, "") for row in rows]
-            same = label == "object" and cells == names
-            found[f"{label} (given)" if label in taken and not same else label] = cells
-        return found
+            is_output = label in outputs and not (label == "object" and cells == names)
+            details[f"{label} (given)" if is_output else label] = cells
+        return details
 
-    def with_details(self, columns: Mapping[str, Any], added: Sequence[Mapping[str, str]] = ()) -> dict[str, Any]:
+    def with_details(self, columns: Mapping[str, Any], added: Sequence[Mapping[str, Cell]] = ()) -> dict[str, Any]:
         """Columns of the table behind the `details` of its rows, and of rows that are added at the end."""
         (name, names), *others = columns.items()
-        given = self.details
-        in_place = name in given or any(one.cells for one in self.objects)
-        details = {label: [*texts, *(row.get(label, "") for row in added)] for label, texts in given.items()}
+        details = {label: [*cells, *(row.get(label, "") for row in added)] for label, cells in self.details.items()}
+        in_place = name in details or any(obj.cells for obj in self.objects)
         if name in details:
             details[name] = names
         return (details | {name: names} if in_place else {name: names} | details) | dict(others)
@@ -205,9 +205,8 @@ class Assessment(EqualByValue):
         return text
 
     def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
-        """The same table as an .xlsx workbook; columns of numbers in the table of objects are numbers."""
-        columns = self._columns_with(bad_rows)
-        raw = xlsx_bytes(columns | {label: numbers_of(columns[label]) for label in self.details if label in columns})
+        """The same table as an .xlsx workbook; numbers of a workbook with objects are numbers."""
+        raw = xlsx_bytes(self._columns_with(bad_rows))
         if path is not None:
             write_output(path, raw)
         return raw

@@ -15,7 +15,6 @@ from rocking.extension import (
     Index,
     Outcome,
     Problem,
-    Record,
     StopFlag,
     highest_vertical_scale,
     lowest_thresholds,
@@ -91,7 +90,7 @@ def overturned_by(
     Refused where its vertical acceleration reaches -g, from `strongest_factor` on.
     """
     problems = problems_of(body, motion, acceleration)
-    codes = [problem.solve_edges(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
+    codes = [problem.solve(stop=stop)[0]["outcome"].reshape(problem.shape) for problem in problems]
     return np.asarray(np.max(codes, axis=0) >= Outcome.OVERTURNED_DIRECTLY)
 
 
@@ -117,14 +116,13 @@ def problems_of(body: BodyArray, motion: Motion, acceleration: Array | float | N
 def problem_of(body: BodyArray, motion: Motion, acceleration: Array | float | None = None) -> Problem:
     """The bodies under a motion from one side, at the strength of the site or another."""
     peak = motion.peak_acceleration if acceleration is None else acceleration
-    return Problem(body, motion.motion, np.asarray(peak), np.asarray(motion.period), None)
+    strength = np.asarray(peak / motion.motion.unit_acceleration)
+    return Problem(body, motion.motion, strength, np.asarray(motion.period), None)
 
 
 def strongest_factor(motion: Motion) -> float:
     """Factor on a motion up to which a vertical component does not lift everything off the ground [-]."""
-    if not isinstance(motion.motion, Record):
-        return math.inf
-    unit = motion.peak_acceleration / motion.motion.peak_acceleration
+    unit = motion.peak_acceleration / motion.motion.unit_acceleration
     return 0.999 * highest_vertical_scale(motion.motion) / unit
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -110,7 +110,7 @@ class Site:
             if getattr(self, name) is not None:
                 value = number(name, getattr(self, name), *STRENGTHS, unit=unit)
                 vars(self)[name] = value  # a frozen dataclass
-        records = (self.records,) if isinstance(self.records, Record) else self.records
+        records = self.records if isinstance(self.records, Iterable) else (self.records,)
         vars(self)["records"] = tuple(map(checked_pair, records))
         ways = {"pgv": self.pgv is not None, "periods": self.periods is not None, "records": bool(self.records)}
         stated = [name for name, there in ways.items() if there]
@@ -177,8 +177,8 @@ class Site:
     def _records(self) -> list[Motion]:
         found = []
         for group, given in enumerate(vars(self)["records"]):
-            components = [("", given)] if isinstance(given, Record) else rotated(*given)
-            name = (given if isinstance(given, Record) else given[0]).name or f"record {group + 1}"
+            components = rotated(*given) if len(given) > 1 else [("", given[0])]
+            name = given[0].name or f"record {group + 1}"
             peak = max(one.peak_acceleration for _, one in components[:: PAIR_ANGLES // 2])  # of the given ones
             ground = _floats(self.pga)[0] if self.pga is not None else peak
             found += [
@@ -203,8 +203,7 @@ class Site:
         return [Motion(name, one, pga[0], t, group, pga[0]) for group, (name, one, t) in enumerate(chosen)]
 
     def _on_floor(self, motion: Motion, stop: StopFlag | None) -> Motion:
-        given = motion.motion
-        ground = given if isinstance(given, Record) else sampled(motion)
+        ground = sampled(motion)
         modes: Any = (self.floor_periods, self.floor_damping, self.floor_participation)
         names = "periods", "damping", "participation"
         found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
@@ -216,8 +215,7 @@ class Site:
 
 def record_doubts(site: Site) -> list[str]:
     """Warnings about the records, in words: their remarks, and an offset of a record that is scaled by its PGA."""
-    pairs = ((given,) if isinstance(given, Record) else given for given in vars(site)["records"])
-    records = [record for pair in pairs for record in pair]
+    records = [record for pair in vars(site)["records"] for record in pair]
     found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
     if site.pga is not None or site.hazard is not None:
         found += offset_doubts(records)

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking.extension import NUMBER, UNITS, named, plain_name
-from rocking_assessment._objects.columns import CLAUSES, CLOSE, OUTPUTS, RESTS_AT_FULL_STRENGTH, digits_apart
+from rocking.extension import UNITS
+from rocking_assessment._objects.columns import CLAUSES, CLOSE, RESTS_AT_FULL_STRENGTH, digits_apart
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.result import Assessment
 
@@ -176,9 +176,10 @@ def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[A
     def column(name: str) -> list[Any]:
         return [one.values[name] for one in lines]
 
-    number = number_header(found)
-    columns = {number: [one.object.cells.get(number, "") for one in lines]} if number else {}
-    columns |= {"object": [_shortened(name) for name in column("object")]}
+    columns: dict[str, list[Any]] = {}
+    for label in dict.fromkeys(label for line in lines for label in line.object.details):
+        columns[label] = [_shortened(line.object.details.get(label, "")) for line in lines]
+    columns["object"] = [_shortened(name) for name in column("object")]
     if directions:
         columns["direction"] = column("direction")
     clauses = {
@@ -205,24 +206,6 @@ def counts_of(lines: Sequence[Line]) -> str:
     overturned = [line.values["share_at_full_strength"] > 0.0 for line in lines if line.overturns]
     full, below = sum(overturned), len(overturned) - sum(overturned)
     return f"overturned at full strength: {full} of {len(lines)} objects; only at a lower factor: {below}"
-
-
-def rows_in_units(found: Assessment) -> dict[str, list[Any]]:
-    """All rows and columns behind those of the table of objects, in the units that people use."""
-    rows = found.rows
-    columns = {}
-    for one in OUTPUTS:
-        unit = PEOPLE.get(one.unit, one.unit)
-        label = one.name if unit in ("", "-", "bool") else f"{one.name} [{unit}]"
-        columns[label] = [rounded(row[one.name], one.unit) for row in rows]
-    return found.with_details(columns)
-
-
-def number_header(found: Assessment) -> str:
-    """The header of the inventory numbers in the table of objects, "" without one beside the names."""
-    known = {plain_name(name): NUMBER for name in NUMBER.names}
-    own = (label for one in found.objects[:1] for label, cell in one.cells.items() if cell != one.name)
-    return next((label for label in own if named(label, known)), "")
 
 
 def warnings_of(found: Assessment) -> list[tuple[str, list[str]]]:

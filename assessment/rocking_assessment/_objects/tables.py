@@ -1,39 +1,55 @@
-"""Tables of objects: the columns of an inventory, read by `rocking._dimensional.table_reader`, and JSON."""
+"""Tables of objects: CSV, workbooks, JSON, and a template to fill in."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import fields
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking.extension import (
-    FREQUENCY_PARAMETER,
+    SIZES,
     BadRow,
+    Cell,
     InvalidArgumentError,
+    Row,
     Schema,
     Table,
+    TableLayout,
     TooManyRowsError,
     described,
-    name_and_unit,
-    plain_name,
+    open_text,
     read_bytes,
-    read_csv,
-    read_file,
+    read_rows,
+    read_table_file,
     text_of,
-    unit_name,
+    text_of_cell,
+    unusual_sizes,
+    write_output,
 )
-from rocking_assessment._objects.columns import INPUTS, REQUIRED, SHAPES, STAND_INS
-from rocking_assessment._objects.objects import Object, RowDetails
+from rocking_assessment._objects.columns import INPUTS, SHAPES
+from rocking_assessment._objects.objects import Object
+from rocking_assessment._objects.xlsx import xlsx_bytes
 
 if TYPE_CHECKING:
     from rocking.extension import StopFlag
 
+TEMPLATE = ("name", "width [cm]", "depth [cm]", "diameter [cm]", "height [cm]", "mass [kg]", "friction", "notes")
+"""Header of the table to fill in."""
 
-@dataclass(frozen=True, repr=False)
-class ObjectTable:
+COMMENTS = (
+    "# One object a row. Lines above the header that begin with # are passed over.",
+    "# Each length has its unit in brackets in the header: mm; cm; m; in; ft. Write the unit that you measure in.",
+    "# width and depth: sides of the base on which it stands. diameter: of a round base; leave both empty then.",
+    "# height: of the whole object. mass and friction (coefficient at the base) may be empty; so may notes.",
+    "# The decimal sign is the point. Columns of other names are kept as they stand.",
+)
+"""Lines above it."""
+
+
+class ObjectTable(Table[Object]):
     """Objects of a table, and the rows that could not be read.
 
     Attributes
@@ -41,28 +57,21 @@ class ObjectTable:
     objects : list of Object
         In the order of the rows.
     bad_rows : list of BadRow
-        Rows that name no valid object.
+        Rows that name no valid object, each with all reasons.
     skipped : list of str
         Headers of columns that are not read; their cells are kept in the `details` of the objects.
     columns : dict of str to str
-        What each other column was read as, by its header; of JSON nothing, whose keys say it.
-    totals : list of str
-        Rows of totals, which are no objects, such as "row 9: Total".
+        What each other column was read as, by its header, such as "width [cm]"; of JSON nothing, whose keys say it.
+    remarks : list of str
+        Where `columns` states another unit than the header.
+    reading : str
+        How each column was read, and which columns were not, in words.
     """
 
-    objects: list[Object]
-    bad_rows: list[BadRow] = field(default_factory=list)
-    skipped: list[str] = field(default_factory=list)
-    columns: dict[str, str] = field(default_factory=dict)
-    totals: list[str] = field(default_factory=list)
-
     @property
-    def reading(self) -> str:
-        """How each column was read, and which columns and rows were not, in words."""
-        read = ", ".join(f"{header} as {name}" for header, name in self.columns.items())
-        skipped = [*map(_shown, self.skipped), *(f"{row} (no object)" for row in self.totals)]
-        unread = f"; not read: {', '.join(skipped)}" if skipped else ""
-        return f"columns read: {read}{unread}" if read else ""
+    def objects(self) -> list[Object]:
+        """The objects."""
+        return self.items
 
     def __repr__(self) -> str:
         """The number of objects that were read, and of rows and columns that were not."""
@@ -70,107 +79,138 @@ class ObjectTable:
         return f"<rocking.ObjectTable of {len(self.objects)} objects, {len(self.bad_rows)} bad rows{reading}>"
 
 
-def _shown(label: str) -> str:
-    """The header of a column that is not read; a frequency parameter has the letter of a depth in Italian."""
-    name, unit = name_and_unit(label)
-    is_frequency = plain_name(name) == FREQUENCY_PARAMETER.symbol and unit_name(unit, FREQUENCY_PARAMETER.unit)
-    return f"{label} ({FREQUENCY_PARAMETER.meaning}, no depth)" if is_frequency else label
+def read_objects(
+    source: str | PathLike[str],
+    *,
+    columns: Mapping[str, str] | None = None,
+    decimal: str = ".",
+    delimiter: str | None = None,
+    skip: int = 0,
+    sheet: str | None = None,
+    allow_unusual: bool = False,
+) -> ObjectTable:
+    """The objects in a table: a CSV file (any ending), JSON (.json), or a workbook (.xlsx, .ods).
 
-
-def read_objects(source: str | PathLike[str], *, columns: Mapping[str, str] | None = None) -> ObjectTable:
-    """The objects in a table: a CSV file (any ending), JSON (.json), or a sheet (.xlsx, .ods).
-
-    What is not certain is not read. A row is refused, among others, if a number could be either of two ("1,234"), or a
-    length stands in a column that is not read: name what it is, or that it is not used.
+    The header has canonical names, such as "width [cm]" or "Height (mm)", with the unit there or in each cell. A row
+    that cannot be read is in `bad_rows` with all its reasons; the others are read.
 
     Parameters
     ----------
     source : str or path
         The file; `-` is standard input.
     columns : mapping of str to str, optional
-        What columns are, by their headers: the name of a quantity such as "depth", with a unit if the header has none,
-        or "unused". Not for JSON.
+        The canonical header of a column with another one, {"Breite (cm)": "width [cm]"}, or "unused". Not for JSON.
+    decimal : {".", ","}
+        Decimal sign of texts.
+    delimiter : str, optional
+        Sign between the cells of CSV, where the header has several of comma, semicolon and tab.
+    skip : int
+        Lines above the header.
+    sheet : str, optional
+        Name of the sheet of a workbook, where several hold cells.
+    allow_unusual : bool
+        True to read objects below 1 cm or above 50 m.
 
     Raises
     ------
     InvalidArgumentError
-        If the file cannot be read, or has no header with a base and a height in units that are understood.
+        If the file cannot be read, or its header does not state a base and a height with units.
     ImportError
-        If the package for sheets is not installed, the extra `sheets`.
+        If the package for workbooks is not installed, the extra `sheets`.
     """
+    layout = TableLayout(
+        columns=dict(columns or {}),
+        decimal=decimal,
+        delimiter=delimiter,
+        skip=skip,
+        sheet=sheet,
+        allow_unusual=allow_unusual,
+    )
     if Path(source).suffix.lower() == ".json":
-        return objects_of_text(read_bytes(source, "objects"), json=True)
-    return _objects(read_file(source, replace(SCHEMA, renamed=dict(columns or {}))))
+        return objects_of_json(text_of(read_bytes(source, "objects"), "objects"), layout=layout)
+    return ObjectTable(**vars(read_table_file(source, SCHEMA, layout)))
 
 
-def objects_of_text(raw: bytes, *, json: bool, most: int | None = None, stop: StopFlag | None = None) -> ObjectTable:
-    """Objects from the bytes of a text, JSON or CSV; the errors of `read_objects`. `stop` cancels the work.
+def objects_of_json(text: str, most: int | None = None, layout: TableLayout | None = None) -> ObjectTable:
+    """Objects from JSON: a list of objects with the names of the columns as keys; numbers are in SI units."""
+    try:
+        rows = json.loads(text)
+        json.dumps(rows, ensure_ascii=False).encode()  # an escape such as \ud800 is of no character
+    except (ValueError, RecursionError) as error:  # also integers of thousands of digits, brackets within brackets
+        raise InvalidArgumentError("objects", str(error), "JSON, with texts that UTF-8 can encode") from None
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InvalidArgumentError("objects", type(rows).__name__, "a list of objects, one for each row")
+    if most is not None and len(rows) > most:
+        raise TooManyRowsError("objects", len(rows), f"at most {most}")
+    names = {one.name for one in fields(Object)} - {"cells"} | _SHAPES
+    table = ObjectTable()
+    for number, row in enumerate(rows, start=1):
+        errors = [
+            InvalidArgumentError(str(key), row[key], f"one of {', '.join(sorted(names))}") for key in row.keys() - names
+        ]
+        try:
+            if not errors:
+                made = object_of({"name": f"row {number}"} | row)
+                errors = unusual_sizes(vars(made), layout or TableLayout())
+        except InvalidArgumentError as error:
+            errors = [error]
+        if errors:
+            table.bad_rows.append(BadRow(number, errors))
+        else:
+            table.objects.append(made)
+    return table
+
+
+def objects_of_csv(
+    text: str, most: int | None = None, stop: StopFlag | None = None, layout: TableLayout | None = None
+) -> ObjectTable:
+    """Objects from CSV text in a stated layout; the errors of `read_objects`. `stop` cancels the work.
 
     Beyond `most` rows the table is refused by `TooManyRowsError`, before an object is made.
     """
-    text = text_of(raw, "objects")
-    return objects_of_json(text, most) if json else objects_of_csv(text, most, stop)
+    file = open_text(text, "objects", SCHEMA, layout or TableLayout(), stop)
+    return ObjectTable(**vars(read_rows(file, SCHEMA, most)))
 
 
-def objects_of_json(text: str, most: int | None = None) -> ObjectTable:
-    """Objects from JSON: a list of objects with the names of the columns as keys; numbers are in SI units."""
-    try:
-        given = json.loads(text)
-        json.dumps(given, ensure_ascii=False).encode()  # an escape such as \ud800 is of no character
-    except (ValueError, RecursionError) as error:  # also integers of thousands of digits, brackets within brackets
-        raise InvalidArgumentError("objects", str(error), "JSON, with texts that UTF-8 can encode") from None
-    if not isinstance(given, list) or not all(isinstance(one, dict) for one in given):
-        raise InvalidArgumentError("objects", type(given).__name__, "a list of objects, one for each row")
-    if most is not None and len(given) > most:
-        raise TooManyRowsError("objects", len(given), f"at most {most}")
-    known = {one.name for one in fields(Object)} | _SHAPES
-    found, bad = [], []
-    for row, one in enumerate(given, start=1):
-        try:
-            for key in one.keys() - known:
-                raise InvalidArgumentError(str(key), one[key], f"one of {', '.join(sorted(known))}")
-            found.append(_made({"name": f"row {row}"} | one))
-        except InvalidArgumentError as error:
-            bad.append(BadRow(row, error.parameter, str(error)))
-    return ObjectTable(found, bad)
+def _object_of_row(row: Row) -> Object:
+    """The object of a row; its details are the cells of the columns that are not read."""
+    texts = {name: value.strip() if isinstance(value, str) else value for name, value in row.values.items()}
+    details = {label: text_of_cell(cell) for label, cell in row.unread.items()}
+    return object_of({"name": f"row {row.number}"} | texts | {"details": details, "cells": row.cells})
 
 
-def objects_of_csv(text: str, most: int | None = None, stop: StopFlag | None = None) -> ObjectTable:
-    """Objects from text with separated columns; the errors of `read_objects`. `stop` cancels the work."""
-    return _objects(read_csv(text, SCHEMA, most, stop))
-
-
-def _objects(table: Table[Object]) -> ObjectTable:
-    for one, row in zip(table.items, zip(*table.cells.values(), strict=True), strict=True):
-        details = RowDetails(one.details, dict(zip(table.cells, row, strict=True)))
-        vars(one)["details"] = details  # a frozen dataclass
-    return ObjectTable(table.items, table.bad_rows, table.skipped, table.columns, table.totals)
-
-
-def _object(row: int, values: dict[str, Any], others: dict[str, str]) -> Object:
-    """The object of a row, with the cells of the columns that hold no numbers that are read."""
-    given = {name: value.strip() if isinstance(value, str) else value for name, value in values.items()}
-    return _made({"name": f"row {row}"} | given | {"details": others})
-
-
-def _made(given: dict[str, Any]) -> Object:
+def object_of(values: dict[str, Any]) -> Object:
     """The object from its own parameters, or from those of a kind of body."""
-    if given.get("sides") == "both":
-        del given["sides"]
-    kind, shapes = given.pop("body", None), given.keys() & _SHAPES
+    if values.get("sides") == "both":
+        del values["sides"]
+    kind, shapes = values.pop("body", None), values.keys() & _SHAPES
     if kind is None and not shapes:
-        return Object(**given)
-    if "sides" in shapes and given.get("depth") is not None and given.keys().isdisjoint(["wall"]):
-        raise InvalidArgumentError("depth", given["depth"], "none beside sides: the width is across the wall")
-    stated = {name: given.pop(name) for name in [*given] if name not in _ABOUT}
-    made, parameters = described(kind, stated)
-    return Object.from_body(made(**parameters), **given)
+        return Object(**values)
+    if "sides" in shapes and values.get("depth") is not None and values.keys().isdisjoint(["wall"]):
+        raise InvalidArgumentError("depth", values["depth"], "none beside sides: the width is across the wall")
+    stated = {name: values.pop(name) for name in [*values] if name not in _NOT_SHAPES}
+    body, parameters = described(kind, stated)
+    return Object.from_body(body(**parameters), **values)
 
 
-_SHAPES = {one.name for one in SHAPES}
+_SHAPES = {quantity.name for quantity in SHAPES}
 
-_ABOUT = {"name", "mass", "friction", "restitution", "tolerance", "pedestal", "notes", "details"}
+_NOT_SHAPES = {"name", "mass", "friction", "restitution", "tolerance", "pedestal", "notes", "details", "cells"}
 """The values of an object other than its body."""
 
+SCHEMA = Schema("objects", (*INPUTS, *SHAPES), SIZES, _object_of_row, needs_depth=True)
+"""A table of objects."""
 
-SCHEMA = Schema("objects", (*INPUTS, *STAND_INS, *SHAPES), REQUIRED, _object, every_length=True)  # a table of objects
+
+def table_template() -> str:
+    """A table of objects to fill in, as CSV text: comments, and a header that states the units."""
+    return "\n".join([*COMMENTS, ",".join(TEMPLATE), ""])
+
+
+def write_template(path: str | PathLike[str]) -> None:
+    """Write the table to fill in, CSV or a workbook as the name ends."""
+    if Path(path).suffix.lower() != ".xlsx":
+        write_output(path, table_template())
+        return
+    rows: dict[str, list[Cell]] = {name: [] for name in TEMPLATE}
+    write_output(path, xlsx_bytes(rows, above=COMMENTS))

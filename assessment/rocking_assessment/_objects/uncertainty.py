@@ -16,7 +16,6 @@ from rocking.extension import (
     InvalidArgumentError,
     Scalar,
     StopFlag,
-    checked_restitution,
     impact_share,
     integer,
     number,
@@ -128,7 +127,7 @@ def overturning_probability(
     uncertain = {name: value for name, value in given.items() if hasattr(value, "ppf")}
     for name, value in given.items():
         if name == "restitution" and name not in uncertain:
-            given[name] = value if impact_share(value) is not None else checked_restitution(value, RESTITUTION.number)
+            given[name] = value if impact_share(value) is not None else RESTITUTION.number(value)
         elif name not in uncertain and value is not None:
             low = -math.inf if name == "offset" else 0.0
             given[name] = number(name, value, low, math.inf, closed="neither", unit="m")

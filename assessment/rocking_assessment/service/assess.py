@@ -6,17 +6,20 @@ import json
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import PlainTextResponse
 from rocking_api.http.encoding import JsonOrFile, body_form, body_of, stated, text_response
 from rocking_api.http.errors import TooLargeError
 from rocking_api.models.answer import Url
+from rocking_api.models.table import table_refusal
 from rocking_api.routers.curves import json_of
 from rocking_api.service import ServiceDep
 
-from rocking.extension import InvalidArgumentError, StopFlag
+from rocking.extension import InvalidArgumentError, StopFlag, TableFileError, text_of
 from rocking_assessment._objects.assess import assess
 from rocking_assessment._objects.site import Site
-from rocking_assessment._objects.tables import ObjectTable, objects_of_text
+from rocking_assessment._objects.tables import ObjectTable, objects_of_csv, objects_of_json, table_template
 from rocking_assessment.service.models import MAX_OBJECTS, AssessBody, AssessParams, AssessResponse
+from rocking_assessment.service.workbooks import MEDIA_TYPES, text_of_workbook
 
 router = APIRouter(prefix="/v1", tags=["response"])
 
@@ -48,22 +51,41 @@ async def post_assess(
 ) -> Any:
     """Which objects the motions of a site overturn, each with the lowest factor that does so, the worst first.
 
-    The table is CSV with units in its header or cells, or a JSON list of objects in SI units, with the site in the
-    query; or a JSON object with that list, the site, its records and a hazard curve. The response has the format of the
-    body, or that of `format`; CSV ends with the rows that were not read.
+    The table is CSV or a workbook with units in its header or cells, or a JSON list of objects in SI units, with the
+    site in the query; or a JSON object with that list, the site, its records and a hazard curve. The response has the
+    format of the body, or that of `format`; CSV ends with the rows that were not read.
     """
-    given = body_form(request, ("json", "csv"))
+    workbook = MEDIA_TYPES.get(request.headers.get("content-type", ""))
+    given = body_form(request, ("json", "csv")) if workbook is None else "json"
     is_list = isinstance(body, AssessBody) and body.model_fields_set <= {"objects"}
     params = query if is_list else stated(body, query)
+    if isinstance(body, bytes) and workbook is not None:
+        text = await text_of_workbook(service, body, "objects", workbook, params.sheet, params.decimal)
+        body = text.encode()
 
     def work(stop: StopFlag) -> Response:
-        raw = body if isinstance(body, bytes) else json.dumps(body.objects).encode()
-        table = objects_of_text(raw, json=given == "json", most=MAX_OBJECTS, stop=stop)
+        table = _table(body, params, stop)
         check_table(table, "objects")
         site = params.site(None if isinstance(body, bytes) else body)
         return _assessed(params, site, table, params.format or given, url, stop)
 
     return await service.solve_one(work, request)
+
+
+def _table(body: AssessBody | bytes, params: AssessParams, stop: StopFlag) -> ObjectTable:
+    """The objects of a body."""
+    if not isinstance(body, bytes):
+        return objects_of_json(json.dumps(body.objects), MAX_OBJECTS, params.layout)
+    try:
+        return objects_of_csv(text_of(body, "objects"), MAX_OBJECTS, stop, params.layout)
+    except TableFileError as error:
+        raise table_refusal(error) from None
+
+
+@router.get("/assess/template", summary="A table of objects to fill in", response_class=PlainTextResponse)
+async def get_template() -> Response:
+    """CSV with comments above its header."""
+    return text_response(table_template(), "objects")
 
 
 def check_table(table: ObjectTable, name: str) -> None:
@@ -93,10 +115,13 @@ def _assessed(params: AssessParams, site: Site, table: ObjectTable, form: str, u
                 "motions": assessment.motions,
                 "highest_factor": assessment.highest_factor,
                 "resolution": assessment.resolution,
-                "bad_rows": [vars(row) for row in table.bad_rows],
+                "bad_rows": [
+                    {"row": bad.row, "columns": bad.columns, "reasons": bad.reasons, "cells": bad.cells}
+                    for bad in table.bad_rows
+                ],
                 "columns": table.columns,
                 "skipped": table.skipped,
-                "totals": table.totals,
+                "remarks": table.remarks,
             }
         )
     )

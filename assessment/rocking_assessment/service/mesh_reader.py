@@ -44,15 +44,13 @@ def _shape_of(path: Path, unit: str) -> tuple[dict[float, PolygonProperties], li
     from rocking_assessment._meshes.mesh import (  # noqa: PLC0415  # only the helper loads trimesh
         CONTACT_TOLERANCE,
         directions_around,
-        mesh_footprint,
-        mesh_properties,
+        read_mesh,
     )
 
-    footprint = mesh_footprint(path, unit)
-    found = {angle: mesh_properties(path, math.radians(angle), unit) for angle in directions_around(footprint, STEP)}
-    remarks = next(remarks for _, remarks in found.values())
-    height = next(properties.top for properties, _ in found.values())
+    mesh = read_mesh(path, unit=unit)
+    footprint = mesh.footprint()
+    planes = {angle: mesh.properties(math.radians(angle)) for angle in directions_around(footprint, STEP)}
+    height = next(iter(planes.values())).top
     contact = f"stands on its vertices up to {1000.0 * CONTACT_TOLERANCE * height:.2g} mm above the lowest one"
     corners = footprint[:: len(footprint) // CORNERS + 1].tolist()
-    planes = {angle: properties for angle, (properties, _) in found.items()}
-    return planes, [(x, y) for x, y in corners], [contact, *remarks]
+    return planes, [(x, y) for x, y in corners], [contact, *mesh.remarks]

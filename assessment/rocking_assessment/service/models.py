@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, create_model, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator, model_validator
 from rocking_api.models.answer import Solved
-from rocking_api.models.params import Params
 from rocking_api.models.quantity import BaselineOrder, TableFormat, between, read_as, said
+from rocking_api.models.table import TableParams
 
 from rocking.extension import (
     PERIOD,
@@ -16,7 +16,6 @@ from rocking.extension import (
     RESOLUTION,
     RESOLUTIONS,
     InvalidArgumentError,
-    Quantity,
     Record,
     as_pulse,
     plain_numbers,
@@ -50,7 +49,7 @@ PeriodMin: Any = read_as(_PERIOD, "shortest period of the pulses, with `period_m
 PeriodMax: Any = read_as(_PERIOD, "longest period of the pulses, with `period_min`", float | None)
 
 
-class AssessParams(Params):
+class AssessParams(TableParams):
     """A site, by PGA and PGV, by PGA and a range of periods, or by records in the body."""
 
     pga: Pga = None
@@ -173,40 +172,77 @@ class AssessBody(AssessParams):
         return {"objects": value} if isinstance(value, list) else value
 
 
-def _field(column: Quantity) -> Any:
-    kinds: dict[str, Any] = {"": str, "bool": bool}
-    unit = column.unit if column.unit != "bool" else ""
-    optional = column.name != "uplifts" and column.unit != ""
-    kind = kinds.get(column.unit, float)
-    return (kind | None if optional else kind), said(column.meaning, unit=unit)
+def _column(name: str) -> Any:
+    """Describe the field of a column of an assessment, by its declaration."""
+    column = next(column for column in OUTPUTS if column.name == name)
+    return said(column.meaning, unit=column.unit if column.unit != "bool" else "")
 
 
-AssessedRow: type[BaseModel] = create_model(
-    "AssessedRow",
-    __doc__="One object in one direction; null: not known, of a factor: none of those tried up to `highest_factor`.",
-    **{column.name: _field(column) for column in OUTPUTS},
-)
+class AssessedRow(BaseModel):
+    """One object in one direction; null: not known, of a factor: none of those tried up to `highest_factor`."""
+
+    object: str = _column("object")
+    direction: str = _column("direction")
+    verdict: str = _column("verdict")
+    uplifts: bool = _column("uplifts")
+    uplift_acceleration: float | None = _column("uplift_acceleration")
+    factor: float | None = _column("factor")
+    governing: str = _column("governing")
+    overturned_by: str = _column("overturned_by")
+    overturned_at_full_strength: str = _column("overturned_at_full_strength")
+    share: float | None = _column("share")
+    share_at_full_strength: float | None = _column("share_at_full_strength")
+    share_lower: float | None = _column("share_lower")
+    share_upper: float | None = _column("share_upper")
+    rotation: float | None = _column("rotation")
+    displacement: float | None = _column("displacement")
+    annual_rate: float | None = _column("annual_rate")
+    annual_rate_lower: float | None = _column("annual_rate_lower")
+    annual_rate_upper: float | None = _column("annual_rate_upper")
+    friction_needed: float | None = _column("friction_needed")
+    slides_first: bool | None = _column("slides_first")
+    slides_under: str = _column("slides_under")
+    slides_at: float | None = _column("slides_at")
+    sliding: float | None = _column("sliding")
+    smallest_width: float | None = _column("smallest_width")
+    largest_height: float | None = _column("largest_height")
+    factor_less_restitution: float | None = _column("factor_less_restitution")
+    factor_more_restitution: float | None = _column("factor_more_restitution")
+    factor_slenderer: float | None = _column("factor_slenderer")
+    factor_stockier: float | None = _column("factor_stockier")
+    sampled_share: float | None = _column("sampled_share")
+    static_ratio: float | None = _column("static_ratio")
+    ishiyama_ratio: float | None = _column("ishiyama_ratio")
+    asce43_ratio: float | None = _column("asce43_ratio")
+    circolare_linear_ratio: float | None = _column("circolare_linear_ratio")
+    circolare_nonlinear_ratio: float | None = _column("circolare_nonlinear_ratio")
+    circolare2019_nonlinear_ratio: float | None = _column("circolare2019_nonlinear_ratio")
+    contact_tolerance: float | None = _column("contact_tolerance")
+    warnings: str = _column("warnings")
 
 
 class UnreadRow(BaseModel):
     """A row of the table that was not read."""
 
     row: int = said("number in the table, from 1", unit="-")
-    column: str = said("name of the column; empty: the whole row")
-    reason: str = said("what was found and what is allowed")
+    columns: list[str] = said("the quantity of each reason; row: the whole row")
+    reasons: list[str] = said("what was found and what is allowed")
+    cells: dict[str, str | float] = said("the row as it stands, by the headers of the table", {})
 
 
 class AssessResponse(Solved[AssessParams]):
     """Objects at a site, the worst first."""
 
-    rows: list[AssessedRow] = said("one for each object and direction, the worst first")  # type: ignore[valid-type]
+    rows: list[AssessedRow] = said("one for each object and direction, the worst first")
     motions: list[str] = said("motions of the site; each acts from both sides")
     highest_factor: float = said("highest factor searched", unit="-")
     resolution: float = said(
         "largest relative distance between the factors tried on records, 0 without records", unit="-"
     )
     bad_rows: list[UnreadRow] = said("rows that were not read; the others are assessed")
-    details: dict[str, list[str]] = said("unchanged cells of the object of each row, by the headers of the table", {})
-    columns: dict[str, str] = said("meaning of the columns that were read, by header")
+    details: dict[str, list[str | float]] = said(
+        "unchanged cells of the object of each row, by the headers of the table", {}
+    )
+    columns: dict[str, str] = said("canonical header of each column that was read, by header")
     skipped: list[str] = said("columns of the table that were not read; `details` has their cells")
-    totals: list[str] = said("rows of totals of the table, which are no objects, with their first cells")
+    remarks: list[str] = said("where `columns` states another unit than the header of the table")

@@ -6,32 +6,27 @@ import csv
 import io
 import re
 import shlex
-import zipfile
+from collections.abc import Iterator
 from datetime import UTC, datetime
-from importlib.util import find_spec
-from itertools import islice
 from pathlib import Path, PurePath
 from urllib.parse import unquote_to_bytes
 
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, PlainTextResponse
 from rocking_api.http.encoding import text_response
-from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.http.errors import TooLargeError
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
 from rocking.extension import (
-    MARK,
-    MAX_CHARACTERS,
     SHEETS,
     BadRow,
-    InvalidArgumentError,
     StopFlag,
-    csv_of_sheet,
-    delimiter_of,
+    TableFile,
+    TableLayout,
+    open_text,
     plain_numbers,
-    rows_of_csv,
     text_of,
 )
 from rocking_assessment._objects.assess import assess
@@ -43,8 +38,7 @@ from rocking_assessment._objects.tables import SCHEMA, ObjectTable, objects_of_c
 from rocking_assessment.service.assess import MAX_BODY, check_table
 from rocking_assessment.service.models import MAX_OBJECTS
 from rocking_assessment.service.object_page import SITE, address_of, periods_of, quantity_of, site_of
-
-MAX_SHEET = 32 * 1024 * 1024  # largest unpacked file of a sheet [bytes]
+from rocking_assessment.service.workbooks import text_of_workbook
 
 MAX_SENSITIVITY = 200
 """Objects up to which sizes that survive and changed objects are assessed as well [-]: these take most of the time."""
@@ -141,23 +135,7 @@ async def post_text(request: Request, service: ServiceDep, name: str = "") -> Re
     ending = PurePath(name).suffix.lower()
     if ending not in SHEETS:
         return PlainTextResponse(await service.read(lambda _: text_of(raw, "table")))
-    if find_spec("python_calamine") is None:
-        raise UnsupportedBodyError("table", ending, 'CSV: sheets need pip install "rocking[sheets]" on the service')
-    try:
-        size = sum(member.file_size for member in zipfile.ZipFile(io.BytesIO(raw)).infolist())
-    except zipfile.BadZipFile:
-        raise InvalidArgumentError("table", name, "a sheet, which is a zip archive") from None
-    if size > MAX_SHEET:  # as stated; what is there is bounded by the memory of the helper
-        raise TooLargeError("table", size, f"at most {MAX_SHEET} bytes, unpacked")
-    return PlainTextResponse(await service.helper.read("table", name, _sheet_text, raw))
-
-
-def _sheet_text(raw: bytes) -> str:
-    """The first sheet of a file as CSV."""
-    text = csv_of_sheet(raw, "table")
-    if len(text) > MAX_CHARACTERS:
-        raise InvalidArgumentError("table", len(text), f"a table of at most {MAX_CHARACTERS} characters")
-    return text
+    return PlainTextResponse(await text_of_workbook(service, raw, "table", name))
 
 
 def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
@@ -174,13 +152,22 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
         if found := re.fullmatch("(?:line|cell)-([0-9]{1,9})(?:-([0-9]{1,4}))?", name):
             corrected.setdefault(int(found[1]), {})[int(found[2]) if found[2] else None] = value
     if corrected:
-        rows = list(islice(rows_of_csv(fields["table"], SCHEMA, stop), max(corrected)))
-        rest = fields["table"].removeprefix(MARK)[sum(map(len, rows)) :]
-        delimiter = delimiter_of(fields["table"], SCHEMA)
-        for number in (one for one in corrected if 0 < one <= len(rows)):
-            rows[number - 1] = _with_cells(rows[number - 1], corrected[number], delimiter)
-        fields["table"] = "".join([*rows, rest])
+        text = fields["table"].removeprefix("\ufeff")
+        file = open_text(text, "table", SCHEMA, TableLayout(), stop)
+        above = text[: len(text) - sum(map(len, file.lines))]
+        rows = _rows_of(file)
+        corrected_rows = [_with_cells(row, corrected.get(number, {}), file.delimiter) for number, row in rows]
+        fields["table"] = "".join([above, *corrected_rows])
     return fields
+
+
+def _rows_of(file: TableFile) -> Iterator[tuple[int, str]]:
+    """Number and text of each row from the header on."""
+    reader = csv.reader(file.lines, delimiter=file.delimiter)
+    start = 0
+    for number, _ in enumerate(reader, start=file.first):
+        yield number, "".join(file.lines[start : reader.line_num])
+        start = reader.line_num
 
 
 def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
@@ -221,8 +208,11 @@ def _page(
     given: dict[str, str], settings: Settings, table: ObjectTable | None = None, found: Assessment | None = None
 ) -> HTMLResponse:
     bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
-    shown = {one.row for one in bad_rows}
-    rows = islice(enumerate(rows_of_csv(given["table"], SCHEMA), start=1), max(shown, default=0))
+    numbers = {bad.row for bad in bad_rows}
+    texts: dict[int, str] = {}
+    if numbers:
+        file = open_text(given["table"], "table", SCHEMA, TableLayout())
+        texts = {number: row.rstrip("\r\n") for number, row in _rows_of(file) if number in numbers}
     lines = lines_of(found) if found else []
     text = html(
         "objects.html",
@@ -231,13 +221,13 @@ def _page(
         settings,
         given=given,
         bad_rows=[(one, _wrong_places(one, table)) for one in bad_rows if table],
-        texts={number: row.rstrip("\r\n") for number, row in rows if number in shown},
+        texts=texts,
         table=table,
         found=found,
         lines=lines,
         full_strength=counts_of(lines),
         warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
-        own_of=lambda one: ", ".join(filter(None, (one.cells[label] for label in table.skipped))) if table else "",
+        own_of=lambda obj: ", ".join(filter(None, obj.details.values())),
         verdicts=VERDICTS,
         number_of=number_of,
         address=address_of,
@@ -247,5 +237,7 @@ def _page(
 
 def _wrong_places(bad: BadRow, table: ObjectTable) -> set[int]:
     """The places of the cells that a row was not read for; none if it is the whole row."""
-    names = [(label.strip(), table.columns.get(label)) for label in bad.cells]
-    return {place for place, pair in enumerate(names) if bad.column and bad.column in pair}
+    if "row" in bad.columns:
+        return set()
+    names = [table.columns.get(label, "").partition(" [")[0] for label in bad.cells]
+    return {place for place, name in enumerate(names) if name in bad.columns}

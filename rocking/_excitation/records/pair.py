@@ -15,18 +15,16 @@ PAIR_ANGLES = 12
 """Directions in which the components of a pair are combined, over 180 degrees [-]; even."""
 
 
-def checked_pair(given: Any) -> Record | tuple[Record, Record]:
-    """A record, or two with one step."""
-    if isinstance(given, Record):
-        return given
-    pair = tuple(given) if isinstance(given, Sequence) else ()
-    if len(pair) != 2 or not all(isinstance(one, Record) for one in pair):
+def checked_pair(given: Any) -> tuple[Record, ...]:
+    """One record, or two with one step."""
+    pair = tuple(given) if isinstance(given, Sequence) else (given,)
+    if len(pair) not in (1, 2) or not all(isinstance(record, Record) for record in pair):
         raise InvalidArgumentError("records", given, "records, or pairs of two records")
-    first, second = pair
+    first, second = pair[0], pair[-1]
     if first.time_step != second.time_step:
         allowed = f"the time step of its first component, {first.time_step:g} s"
         raise InvalidArgumentError("records", f"a pair whose second component has {second.time_step:g} s", allowed)
-    return first, second
+    return pair
 
 
 def rotated(first: Record, second: Record) -> list[tuple[str, Record]]:

@@ -17,8 +17,10 @@ from numpy.typing import ArrayLike
 from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, finite, in_range, number, one_of
+from rocking._base.quantities import FREQUENCY_PARAMETER, SCALE
 from rocking._base.units import UNITS as QUANTITIES
 from rocking._base.units import Scalar
+from rocking._excitation.motion import AbstractMotion
 from rocking._excitation.records import measures
 from rocking._excitation.records.processing import baseline, offset_remark, resample
 
@@ -27,10 +29,16 @@ MAX_ACCELERATION = 1e6  # largest acceleration of a record [m/s2]; a larger valu
 TIME_STEP = 1e-6, 10.0  # smallest and largest time step of a record [s]: laboratories sample at up to a megahertz
 MAX_DURATION = 1e5  # longest duration of a record [s], more than a day
 
+REFINEMENT = 8  # samples into which one is divided by band-limited interpolation, for the comparison of samplings
+MAX_REFINED = 400_000  # most samples of a refined record; a longer one is not compared
+
+MAX_INTERVAL = 50.0
+"""Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
+
 
 @final
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class Record:
+class Record(AbstractMotion):
     """A recorded ground acceleration. Records are immutable; equal samples and steps make equal records.
 
     Velocity, displacement and the measures of intensity are those of the horizontal component.
@@ -72,6 +80,13 @@ class Record:
     source: str
     remarks: tuple[str, ...]
     vertical: Array | None
+
+    kind = "record"
+    strength = SCALE
+    arguments = (SCALE,)
+    rate = FREQUENCY_PARAMETER
+    highest_amplitude = 10.0
+    is_scanned = True
 
     def __init__(
         self,
@@ -151,6 +166,39 @@ class Record:
     def peak_acceleration(self) -> float:
         """PGA, the largest absolute acceleration [m/s2]."""
         return float(np.abs(self.acceleration).max())
+
+    @property
+    def unit_acceleration(self) -> float:
+        """The largest horizontal acceleration at the factor 1 [m/s2]: PGA."""
+        return self.peak_acceleration
+
+    def duration_at(self, period: Any) -> float:
+        """Duration [s]; a record has no period."""
+        del period
+        return self.duration
+
+    @property
+    def drift(self) -> float:
+        """Velocity at the last sample over the largest, without its sign [-]."""
+        return abs(self.final_velocity) / self.peak_velocity
+
+    def refined(self) -> Record | None:
+        """The record interpolated band-limited at an eighth of its step; None if that is too long or too small."""
+        step = self.time_step / REFINEMENT
+        if self.samples * REFINEMENT > MAX_REFINED or step < TIME_STEP[0]:
+            return None
+        return self.resampled(step)
+
+    @property
+    def frequency_parameters(self) -> tuple[float, float]:
+        """Smallest and largest frequency parameter p of a body under the record [rad/s]."""
+        return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / self.time_step)
+
+    def rate_at(self, frequency_parameter: Array, period: Array) -> Array:
+        """p times the time step [-], checked."""
+        del period
+        p = in_range("frequency_parameter", frequency_parameter, *self.frequency_parameters, unit="rad/s")
+        return np.asarray(p * self.time_step)
 
     @property
     def peak_vertical_acceleration(self) -> float:
@@ -269,11 +317,21 @@ class Record:
         return Record(process(self.acceleration), time_step, "m/s2", *about, vertical=vertical)
 
 
-SUMMARY = (
-    *("name", "source", "samples", "time_step", "peak_acceleration", "peak_vertical_acceleration", "peak_velocity"),
-    *("peak_displacement", "arias_intensity", "significant_duration", "mean_period", "final_velocity"),
-)
-"""Attributes of a record that the command line and the service show, in order."""
+SUMMARY = {
+    "name": "",
+    "source": "",
+    "samples": "-",
+    "time_step": "s",
+    "peak_acceleration": "m/s2",
+    "peak_vertical_acceleration": "m/s2",
+    "peak_velocity": "m/s",
+    "peak_displacement": "m",
+    "arias_intensity": "m/s",
+    "significant_duration": "s",
+    "mean_period": "s",
+    "final_velocity": "m/s",
+}
+"""Attributes of a record that the command line and the service show, in order, with their units."""
 
 
 def summary_of(record: Record) -> dict[str, Any]:

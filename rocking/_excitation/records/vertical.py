@@ -9,7 +9,7 @@ from rocking._base.arrays import Array
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.errors import InvalidArgumentError, in_range, number
 from rocking._base.units import Scalar
-from rocking._excitation.records.record import Record
+from rocking._excitation.motion import AbstractMotion
 
 HIGHEST_VERTICAL_SCALE = 1e6  # largest factor of a vertical component [-]
 
@@ -17,7 +17,7 @@ FLIGHT_MARGIN = 1e-9
 """Relative distance of `highest_vertical_scale` from the factor at which the acceleration reaches -g [-]."""
 
 
-def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> Array:
+def check_vertical_scale(motion: AbstractMotion, vertical_scale: ArrayLike | None) -> Array:
     """The factor of the vertical component as a float64 array of its own shape; 0 for a record that has none.
 
     Raises `InvalidArgumentError` if a factor is not in [0, 1e6], is neither 1 nor None for a record without a vertical
@@ -33,13 +33,13 @@ def check_vertical_scale(motion: Record, vertical_scale: ArrayLike | None) -> Ar
     return factor
 
 
-def check_one_vertical_scale(motion: Record, vertical_scale: Scalar | None) -> float:
+def check_one_vertical_scale(motion: AbstractMotion, vertical_scale: Scalar | None) -> float:
     """The same for one number."""
     factor = 1.0 if vertical_scale is None else vertical_scale
     return float(check_vertical_scale(motion, number("vertical_scale", factor, 0.0, HIGHEST_VERTICAL_SCALE)))
 
 
-def reject_flight(parameter: str, motion: Record, factor: float, gravity: float = STANDARD_GRAVITY) -> None:
+def reject_flight(parameter: str, motion: AbstractMotion, factor: float, gravity: float = STANDARD_GRAVITY) -> None:
     """Refuse a factor of the vertical component at which the acceleration reaches -g.
 
     `parameter`: name of the argument that holds the factor, for the message; `motion`: the record, with or without a
@@ -51,7 +51,7 @@ def reject_flight(parameter: str, motion: Record, factor: float, gravity: float 
         raise InvalidArgumentError(parameter, factor, text)
 
 
-def flight_text(motion: Record, factor: float, gravity: float) -> str | None:
+def flight_text(motion: AbstractMotion, factor: float, gravity: float) -> str | None:
     """Which factors are allowed, when and how far -g is exceeded with this one; None if it is not."""
     if motion.vertical is None:
         return None
@@ -69,7 +69,7 @@ def flight_text(motion: Record, factor: float, gravity: float) -> str | None:
     )
 
 
-def highest_vertical_scale(motion: Record, gravity: float = STANDARD_GRAVITY) -> float:
+def highest_vertical_scale(motion: AbstractMotion, gravity: float = STANDARD_GRAVITY) -> float:
     """Factor of a record just below that at which its vertical acceleration reaches -g [-]; infinite if none does."""
     lowest = 0.0 if motion.vertical is None else float(motion.vertical.min())
     return (1.0 - FLIGHT_MARGIN) * gravity / -lowest if lowest < 0.0 else math.inf

@@ -9,8 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, integer
-from rocking._base.quantities import FREQUENCY_PARAMETER
-from rocking._excitation.records.record import Record
+from rocking._excitation.records.record import MAX_INTERVAL, Record
 from rocking._excitation.records.vertical import check_vertical_scale
 from rocking._excitation.shapes import AbstractPulse
 from rocking._model.checks import check_groups
@@ -26,9 +25,6 @@ from rocking._solver.records.samples import TIME, motion_samples, pulse_samples
 from rocking._solver.records.state import body_states, step_state, taylor_orders
 from rocking._solver.restrained import equivalent_free, in_own_units, is_restrained, restrain
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
-
-MAX_INTERVAL = 50.0
-"""Largest length p dt of a sample interval [tau]: no motion that moves a block is sampled so coarsely."""
 
 MAX_DIVIDED = 200_000
 """Most intervals of a pulse after those longer than `MAX_INTERVAL` are divided [-]."""
@@ -104,21 +100,14 @@ def record_cells(
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
     """The checked groups of a response under a record by name; the vertical factor is 0 without such a component.
 
-    Raises `InvalidArgumentError` if `motion` is not a record, or a value is out of range.
+    Raises `InvalidArgumentError` if a value is out of range.
     """
     p, vertical = given.pop("frequency_parameter"), given.pop("vertical_scale")
     return {
-        "frequency_parameter": in_range("frequency_parameter", p, *frequency_parameter_range(motion), unit="rad/s"),
+        "frequency_parameter": in_range("frequency_parameter", p, *motion.frequency_parameters, unit="rad/s"),
         **check_groups(**given),
         "vertical_scale": check_vertical_scale(motion, vertical),
     }
-
-
-def frequency_parameter_range(motion: Record) -> tuple[float, float]:
-    """Smallest and largest frequency parameter p of a block under a record [rad/s]; an error if it is no record."""
-    if not isinstance(motion, Record):
-        raise InvalidArgumentError("motion", motion, "a rocking.Record, such as rocking.read_record returns")
-    return FREQUENCY_PARAMETER.lower, min(FREQUENCY_PARAMETER.upper, MAX_INTERVAL / motion.time_step)
 
 
 def solve_pulse(

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.api.explorer.reading import BLOCK, POINT, is_dimmed, query, settle
@@ -53,6 +54,7 @@ def expect_current(page, said=".", views=VIEWS):
         expect(page.locator(view)).to_have_attribute("data-shown", re.compile(said))
 
 
+@pytest.mark.long
 def test_a_change_dims_the_views_at_once_and_every_frame_shows_the_map_of_the_controls(open_page, service):
     page = open_page(POINT, failing=True)
     settle(page)
@@ -90,6 +92,7 @@ def test_a_change_dims_the_views_at_once_and_every_frame_shows_the_map_of_the_co
     assert page.evaluate("stale") == []
 
 
+@pytest.mark.long
 def test_the_last_answer_stays_dimmed_if_the_server_hangs_or_stops(open_page, service):
     page = open_page("about:blank", failing=True)
     page.clock.install()

@@ -252,8 +252,9 @@ WAITING = {"/": "Computing", "/datasets": "Reading the catalogue", "/suites": "R
 """What pages say a second later that they wait for."""
 
 
-@pytest.mark.parametrize("width", but_long([390, 1400], 390))
-@pytest.mark.parametrize("path", but_long(SHOWN, "/"))
+@pytest.mark.long
+@pytest.mark.parametrize("width", [390, 1400])
+@pytest.mark.parametrize("path", SHOWN)
 def test_a_page_is_seen_early_says_what_it_waits_for_and_stays_in_place(open_page, service, path, width):
     page = open_page("/state", **(PHONE if width == 390 else {"width": width}))  # the data sets are checked
     session = page.context.new_cdp_session(page)

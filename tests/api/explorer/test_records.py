@@ -108,6 +108,7 @@ def test_what_is_asked_about_an_earlier_file_does_not_go_on_with_a_later_one(ope
     assert [one for one in asked if "first" in one] == []
 
 
+@pytest.mark.long
 def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, content, motion):
     page = open_page("/records")
     choose_record(page, "plain.txt", "\n".join(map(repr, (motion.acceleration / STANDARD_GRAVITY).tolist())).encode())
@@ -142,6 +143,7 @@ def components():
     return {"NAPA_090": first, "NAPA_000": second, "NAPA_UP": second / 3.0}, east.time_step
 
 
+@pytest.mark.long
 def test_does_it_overturn_with_the_other_components(open_page, tmp_path):
     page = open_page("/records")
     values, step = components()

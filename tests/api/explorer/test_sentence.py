@@ -25,6 +25,7 @@ def answer_of(page, found):
     assert stated_rotation(page) == pytest.approx(np.degrees(float(found.rotation)), rel=0.006)
 
 
+@pytest.mark.long
 def test_an_example_rocks_beside_its_verdict(open_page):
     page = open_page(motion="no-preference")
     expect(page.locator(".headline")).to_have_text("None of 7 pulse shapes overturns it at 0.4 g and 40 cm/s.")
@@ -60,6 +61,7 @@ def test_is_a_vase_stable_at_this_site_and_how_wide_must_its_base_be_on_a_phone(
     assert width / 100 >= row["smallest_width"]
 
 
+@pytest.mark.long
 def test_the_chart_is_the_assessment_at_every_ratio_and_the_period_that_of_the_sentence(open_page):
     page = open_page("/?width=22+cm&height=55+cm&acceleration=0.4+g&velocity=30+cm/s&restitution=0.8")
     page.wait_for_function("() => document.getElementById('envelope').dataset.curve")
@@ -85,6 +87,7 @@ def test_the_chart_is_the_assessment_at_every_ratio_and_the_period_that_of_the_s
     assert "period" not in query(page)
 
 
+@pytest.mark.long
 def test_units_are_chosen_once_and_the_verdict_is_that_of_the_package_in_all(open_page):
     page = open_page()
     expect(page.locator(".headline")).to_be_visible()
@@ -140,6 +143,7 @@ def expect_verdict(page, metres, unit):
     assert f"{uplift:.3g} {unit}" in page.locator("#answer").inner_text()
 
 
+@pytest.mark.long
 def test_errors_are_shown_at_once_in_the_words_of_the_form(open_page):
     page = open_page(BLOCK)
     for name, value in (("width", ""), ("height", "tall"), ("acceleration", "-1")):

@@ -96,7 +96,8 @@ def test_a_part_of_the_benchmark_is_within_its_bounds():
     assert NAMES[0] == "restitution"
 
 
-@pytest.mark.parametrize("kind", but_long(KINDS, "moving-average", "restitution"))
+@pytest.mark.long
+@pytest.mark.parametrize("kind", KINDS)
 def test_intervals_hold_the_block_for_each_departure_from_a_plain_trace(kind):
     """In a run of the gate two traces a kind, where intervals that were wrong as often as they were would show soon."""
     result = errors(number(2, 100), 12, kind=kind)
@@ -104,6 +105,7 @@ def test_intervals_hold_the_block_for_each_departure_from_a_plain_trace(kind):
     assert np.all(result.within.mean(axis=0) >= number(0.5, 0.9))
 
 
+@pytest.mark.long
 def test_a_release_with_a_push_over_the_energy_of_the_tipping_angle():
     """The first flight is that of a body with more energy than one at rest at alpha: it has no peak."""
     clean = free_rocking(np.array([0.15]), ALPHA, P, ETA, 6.0, 100, velocity=-0.62 * P * ALPHA)[0]
@@ -116,6 +118,7 @@ def test_a_release_with_a_push_over_the_energy_of_the_tipping_angle():
     assert found["frequency_parameter"].item() == pytest.approx(P, rel=1e-4)
 
 
+@pytest.mark.long
 def test_a_moving_average_is_fitted():
     """Without noise it shifts alpha by 1 % if it is taken for the trace of a block; intervals were narrower."""
     time, rotation = trace()
@@ -176,6 +179,7 @@ def test_a_sensor_that_drifts_is_fitted_with_its_drift(drift):
     assert "the sensor drifts by" in found[0].attrs["warnings"]
 
 
+@pytest.mark.long
 def test_errors_that_follow_each_other_widen_the_intervals():
     time, rotation = trace()
     rng = np.random.default_rng(9)
@@ -191,7 +195,8 @@ def test_errors_that_follow_each_other_widen_the_intervals():
 SHAKEN = list(itertools.product([0.01, 0.05, 0.3], [0.7, 1.9, 4.1]))
 
 
-@pytest.mark.parametrize("shaken", but_long(SHAKEN, (0.01, 1.9), (0.3, 4.1)), ids=str)
+@pytest.mark.long
+@pytest.mark.parametrize("shaken", SHAKEN, ids=str)
 def test_rocking_on_moving_ground_is_refused_or_has_wider_intervals(shaken):
     """The ground moves with a share of the acceleration of uplift."""
     share, hertz = shaken

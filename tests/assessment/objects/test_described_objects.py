@@ -31,7 +31,7 @@ def test_an_object_of_a_table_is_of_any_rigid_kind():
     )
     table = objects_of_csv(text)
     found = {one.name: one for one in table.objects}
-    assert [(bad.row, bad.column) for bad in table.bad_rows] == [(8, "body")]
+    assert [(bad.row, bad.columns) for bad in table.bad_rows] == [(8, ["body"])]
     assert type(found["box"]) is rocking_assessment.Object
     assert found["case"].planes == found["same case"].planes
     expected = {
@@ -57,4 +57,4 @@ def test_a_table_of_objects_names_no_file(kind):
         objects_of_json(json.dumps([{"name": "a", "body": kind}])),
         objects_of_csv(f"name;width;height;body\na;40 cm;1.6 m;{kind}\n"),
     ):
-        assert [one.column for one in table.bad_rows] == ["body"]
+        assert [bad.columns for bad in table.bad_rows] == [["body"]]

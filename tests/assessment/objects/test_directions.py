@@ -101,7 +101,7 @@ def test_a_mesh_that_is_turned_has_the_directions_of_the_object(tmp_path):
     slab = trimesh.creation.box((0.8, 0.2, 1.6))
     slab.apply_transform(trimesh.transformations.rotation_matrix(math.radians(37.3), (0.0, 0.0, 1.0)))
     slab.export(tmp_path / "slab.ply")
-    mesh = rocking_assessment.Object.from_mesh(tmp_path / "slab.ply")
+    mesh = rocking_assessment.Object.from_mesh(tmp_path / "slab.ply", unit="m")
     table = rocking_assessment.assess(mesh, SITE, sensitivity=False)
     assert table.rows[0]["direction"] == "127.3 deg"
     found = table.directions()

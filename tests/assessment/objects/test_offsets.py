@@ -41,6 +41,7 @@ def test_the_level_before_the_shaking_counts():
     assert "level before the shaking of 0.2 m/s2" in offset_remark(a)
 
 
+@pytest.mark.long
 def test_a_record_that_is_scaled_by_its_pga_is_named():
     box = rocking_assessment.Object("box", width=0.3, height=1.5)
     for record, named in ((shifted(0.4), True), (shifted(0.4).baseline_corrected(order=0), False)):

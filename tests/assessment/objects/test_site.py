@@ -123,6 +123,7 @@ def test_wrong_records_and_floors_are_refused(given, name) -> None:
         rocking_assessment.Site(**given).motions  # noqa: B018
 
 
+@pytest.mark.long
 def test_sizes_and_samples_under_records() -> None:
     site = rocking_assessment.Site(3.0, records=[record(1), record(2, vertical=True)])
     (row,) = rocking_assessment.assess(

@@ -2,20 +2,16 @@
 
 import csv
 import io
-import random
+from typing import get_args
 
 import numpy as np
 import rocking_assessment
 from rocking_assessment._objects.columns import OUTPUTS
-from rocking_assessment._objects.tables import objects_of_text
-from rocking_assessment.service.assess import check_table
 from rocking_assessment.service.models import AssessedRow
+from rocking_assessment.service.workbooks import MEDIA_TYPES
 
 import rocking
-from rocking._base.errors import InvalidArgumentError
 from tests.api.conftest import CSV, assert_problem, post
-from tests.assessment.objects.dialects import Writer, errors_of
-from tests.sampling import SEED
 from tests.sheets import xlsx_bytes
 
 URL = "/v1/assess?pga=3&pgv=0.3&shapes=sine,ricker&sensitivity=false"
@@ -39,7 +35,14 @@ def test_rows_are_those_of_a_direct_call(client):
         assert answer["rows"] == expected.rows
         assert answer["motions"] == ["sine", "ricker"]
         assert answer["bad_rows"] == []
-    assert list(AssessedRow.model_fields) == [one.name for one in OUTPUTS]
+
+
+def test_a_row_has_the_declared_columns():
+    assert list(AssessedRow.model_fields) == [column.name for column in OUTPUTS]
+    kinds = {"": str, "bool": bool}
+    for column in OUTPUTS:
+        annotation = AssessedRow.model_fields[column.name].annotation
+        assert kinds.get(column.unit, float) in (annotation, *get_args(annotation)), column.name
 
 
 def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
@@ -71,32 +74,46 @@ def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
     assert without.json()["rows"][0]["annual_rate"] is None
 
 
-def test_tables_are_read_as_by_the_package(client):
-    """Random layouts, as text and as a workbook that the page turns into text."""
-    for seed in random.Random(SEED).sample(range(10**9), 4):
-        dialect = Writer(seed, typed=True).table()
-        text = client.post("/objects/text?name=a.xlsx", content=xlsx_bytes(dialect.rows)).content
-        response = post(client, URL, text, CSV, format="json")
-        try:
-            expected = objects_of_text(text, json=False)
-            check_table(expected, "objects")
-        except InvalidArgumentError:
-            assert response.status_code == 422, seed
-            continue
-        answer = response.json()
-        assert errors_of(expected, dialect) == [], seed
-        assert {row["object"] for row in answer["rows"]} == {one.name for one in expected.objects}, seed
-        assert [one["row"] for one in answer["bad_rows"]] == [one.row for one in expected.bad_rows], seed
-        for name in ("columns", "skipped", "totals"):
-            assert answer[name] == getattr(expected, name), seed
+def test_a_layout_is_stated_in_the_query(client):
+    table = "Objekt;Breite (cm);height [cm]\nVase;20,5;60\n"
+    refused = assert_problem(post(client, URL, table, CSV), 422, "objects")
+    assert "line 2: Vase;20,5;60" in refused["detail"]
+    stated = f"{URL}&decimal=,&columns=Breite (cm)=width [cm]&columns=Objekt=name"
+    answer = post(client, stated, table, CSV, format="json").json()
+    assert answer["columns"] == {"Objekt": "name", "Breite (cm)": "width [cm]", "height [cm]": "height [cm]"}
+    assert [row["object"] for row in answer["rows"]] == ["Vase"]
+    assert_problem(post(client, f"{URL}&columns=width", table, CSV), 422, "columns")
+
+
+def test_a_workbook_is_a_table(client):
+    rows = [["name", "Breite", "height [cm]"], ["Vase", "20,5 cm", 60.5]]
+    url = f"{URL}&decimal=,&columns=Breite=width"
+    (media, *_) = MEDIA_TYPES
+    answer = post(client, url, xlsx_bytes(rows), media).json()
+    assert answer["details"]["height [cm]"] == ["60,5"]
+    assert [row["object"] for row in answer["rows"]] == ["Vase"]
+    assert "sheet" in assert_problem(post(client, f"{url}&sheet=Hall", xlsx_bytes(rows), media), 422)["detail"]
+    assert_problem(post(client, url, b"no workbook", media), 422, "objects")
+
+
+def test_a_tiny_object_is_a_question(client):
+    rows = [{"name": "bust", "width": 0.004, "height": 0.1}]
+    assert "allow_unusual" in assert_problem(client.post(URL, json=rows), 422, "objects")["detail"]
+    assert client.post(f"{URL}&allow_unusual=true", json=rows).status_code == 200
+
+
+def test_the_template_is_a_table(client):
+    text = client.get("/v1/assess/template").text
+    answer = post(client, URL, f"{text}vase,,,20,60,,,\n", CSV, format="json").json()
+    assert [row["object"] for row in answer["rows"]] == ["vase"]
 
 
 def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     answer = post(client, URL, TABLE, CSV, format="json").json()
     assert answer["rows"] == client.post(URL, json=ROWS).json()["rows"]
     (bad,) = answer["bad_rows"]
-    assert (bad["row"], bad["column"]) == (3, "width")
-    assert "tall" in bad["reason"]
+    assert (bad["row"], bad["columns"], bad["cells"]["colour"]) == (3, ["width"], "")
+    assert "tall" in bad["reasons"][0]
     assert answer["warnings"] == ["rows that were not read: 1, see `bad_rows`"]
     assert answer["skipped"] == ["colour"]
     response = post(client, URL, TABLE, CSV)
@@ -111,7 +128,7 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert answer["details"]["colour"] == ["", "red", "red"]
     accepted = client.post(f"{URL}&format=csv", json=ROWS)
     assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]
-    assert {"name", "width", "height"} <= {*answer["columns"].values()}
+    assert {"name", "width [cm]", "height [m]"} <= {*answer["columns"].values()}
 
 
 def test_strengths_and_periods_take_units_and_records_keep_their_names(client):

@@ -12,7 +12,7 @@ from tests.api.explorer.hands import PHONE, Keyboard, Touch
 from tests.api.explorer.reading import query
 from tests.sheets import xlsx_bytes
 
-TABLE = "object;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\njug;wide;10;40\n"
+TABLE = "name;width [cm];depth [cm];height [cm]\nbust;38;30;68\nslab;30;5;60\njug;wide;10;40\n"
 
 
 def column(page, number):
@@ -43,6 +43,7 @@ def test_which_of_thirty_objects_first_by_keyboard_alone(open_page):
     assert page.locator("#ranking tbody th a").all_inner_texts() == ["Wooden saint"]
 
 
+@pytest.mark.long
 def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page):
     page = open_page("/objects", **PHONE)
     row = page.locator("#ranking tbody tr").first
@@ -92,10 +93,11 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
     expect(page.locator("#pga-problem")).to_contain_text("allowed")
 
 
+@pytest.mark.long
 def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service):
     page = open_page("/objects")
     rows = (f"object {n};{20 + n % 17};{40 + n % 61}" for n in range(250))
-    page.locator("#table").fill("object;width [cm];height [cm]\n" + "\n".join(rows))
+    page.locator("#table").fill("name;width [cm];height [cm]\n" + "\n".join(rows))
     service.hold()
     page.locator("#ask").click()
     expect(page.locator("#status")).to_have_text(re.compile(r"Computing … \d+ s"))
@@ -172,6 +174,7 @@ def test_an_outline_is_drawn_on_a_phone(open_page):
     expect(page.locator("#drawing circle")).to_have_count(5)
 
 
+@pytest.mark.long
 def test_a_mesh_is_read_and_a_damaged_one_explained_beside_its_field(open_page):
     trimesh = pytest.importorskip("trimesh")
     page = open_page("/object?shape=mesh", **PHONE)

@@ -1,6 +1,5 @@
 """The page of one object as the service renders it: numbers of the package, meshes, damaged and hostile files."""
 
-import io
 import re
 import struct
 from html import unescape
@@ -76,7 +75,7 @@ def test_a_missing_depth_is_said(client):
     asked = {"shape": "rectangle", "width": "85", "height": "170"}
     assert "Depth missing: measure the depth." in client.get("/object", params=asked | SITE).text
     assert "Depth missing" not in client.get("/object", params=asked | {"depth": "60"} | SITE).text
-    table = "object,width [m],height [m]\nshelf,0.85,1.7\n"
+    table = "name,width [m],height [m]\nshelf,0.85,1.7\n"
     text = client.post("/objects", data={"table": table, **SITE}).text
     assert re.search(r'verdict-2">depth missing<', text)
     assert ">measure the depth<" in text
@@ -97,7 +96,7 @@ def test_round_bases_and_outlines(client):
 
 
 def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
-    given = {"table": "object;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
+    given = {"table": "name;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
     text = client.post("/objects", data=given | FLOOR).text
     (address,) = (unescape(one) for one in re.findall(r'href="(/object\?[^"]*)"', text))
     fields = dict(parse_qsl(urlsplit(address).query, keep_blank_values=True))
@@ -143,9 +142,10 @@ def test_other_faults_of_an_address(client):
 
 @pytest.mark.parametrize("ending", but_long(["stl", "ply", "obj", "glb"], "obj", "glb"))
 def test_a_mesh_is_the_object_that_it_shows(client, slab, ending):
+    if ending == "glb":  # with y upwards
+        slab = slab.copy()
+        slab.vertices = slab.vertices[:, [1, 2, 0]]
     content = slab.export(file_type=ending)
-    if ending == "glb":  # y upwards in that format is z here, as trimesh reads it
-        assert trimesh.load_mesh(io.BytesIO(content), file_type="glb").extents[2] == pytest.approx(1200.0)
     response = posted(client, content, f"slab.{ending}", unit="mm")
     assert response.status_code == 200
     plain = directions_of(rocking_assessment.Object("slab", width=0.4, depth=0.15, height=1.2))
@@ -158,12 +158,12 @@ def test_a_mesh_is_the_object_that_it_shows(client, slab, ending):
 def test_an_open_mesh_is_doubted_and_the_defect_of_another_named(client, slab):
     gap = slab.copy()
     gap.update_faces(np.arange(len(gap.faces)) > 0)
-    assert "The mesh is not closed" in posted(client, gap.export(file_type="stl"), "gap.stl", unit="mm").text
+    assert "The mesh was not closed" in posted(client, gap.export(file_type="stl"), "gap.stl", unit="mm").text
     ball = trimesh.creation.icosphere(3, 500.0)
     rough = np.flatnonzero(ball.triangles_center[:, 0] + 500.0 * np.sin(0.01 * ball.triangles_center[:, 2]) > -200.0)
     ball.update_faces(rough)
     problem = assert_problem(posted(client, ball.export(file_type="stl"), "rock.stl", unit="mm"), 422, "mesh")
-    assert "open edges around" in problem["allowed"]
+    assert "is not closed" in problem["allowed"]
     assert "MiB" not in problem["detail"]
 
 

@@ -59,7 +59,7 @@ function verdict(found) {
 function sentence(found) {
   if (!survives(found) || found.response.outcome === "NO_UPLIFT") return `It ${found.meaning}.`;
   return (
-    `Under this one pulse it rocks by at most ${number(found.peak_rotation_deg)}°; its top moves ${length(found.top_displacement)} ` +
+    `Under this one pulse it rocks by at most ${number(found.peak_rotation_deg)}°; its top moves ${length(found.displacement)} ` +
     "to the side. Then it comes to rest."
   );
 }

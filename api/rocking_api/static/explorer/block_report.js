@@ -47,7 +47,7 @@ function resultOf(found) {
   if (peak === null) return `${opening} Impacts before: ${impacts}.`;
   if (outcome === "NO_UPLIFT") return opening;
   const bound = error === null ? "" : `, error at most ${number(error, 1)} α`;
-  const top = `displacement of the top ${length(found.top_displacement)}`;
+  const top = `displacement of the top ${length(found.displacement)}`;
   return `${opening} Peak rotation ${number(found.peak_rotation_deg, 4)}° = ${number(peak, 4)} α${bound}; ${top}.`;
 }
 

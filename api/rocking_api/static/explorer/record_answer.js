@@ -57,7 +57,7 @@ function sentence(found) {
   if (!found.rocking_model_applies) return `${found.meaning}.`;
   if (found.overturned || found.outcome === "NO_UPLIFT") return `Under this record it ${found.meaning}.`;
   const beyond = found.exceeded_alpha ? " It rocks beyond α." : "";
-  return `It turns at most ${number(found.peak_rotation_deg)}° (${number(found.peak_rotation)} α), and its top moves ${length(found.top_displacement)}.${doubtOf(found)}${beyond}`;
+  return `It turns at most ${number(found.peak_rotation_deg)}° (${number(found.peak_rotation)} α), and its top moves ${length(found.displacement)}.${doubtOf(found)}${beyond}`;
 }
 
 /** Facts about the block: pairs of term and value. */

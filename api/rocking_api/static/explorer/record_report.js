@@ -44,7 +44,7 @@ export function recordReport(found, changes) {
 
 function resultOf(found) {
   if (found.peak_rotation === null) return `Outcome: ${found.meaning}; ${found.impacts} impacts before.`;
-  const top = `displacement of the top ${length(found.top_displacement)}`;
+  const top = `displacement of the top ${length(found.displacement)}`;
   return `Outcome: ${found.meaning}. Peak rotation ${number(found.peak_rotation_deg, 4)}° = ${number(found.peak_rotation, 4)} α, ${top}, ${found.impacts} impacts while the ground moves.${doubtOf(found)}`;
 }
 
