@@ -65,7 +65,7 @@ class Block(RectangularBlock, RespondingBody):
         --------
         >>> block = Block(width=0.4, height=1.6)
         >>> held = block.with_restraint(stiffness="100 kN/m", damping="4 kN s/m", mass="600 kg")
-        >>> held.response("sine", peak_acceleration="0.6 g", period="0.5 s").overturned
+        >>> bool(held.response("sine", peak_acceleration="0.6 g", period="0.5 s").overturned)
         False
         """
         return restrained_block(self, stiffness, prestress, damping, mass)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rocking._base.arrays import Array
-from rocking._base.errors import broadcast, in_range, number, one_of
+from rocking._base.errors import broadcast, float_array, in_range, number, one_of
 from rocking._base.quantities import MASS, RESTRAINTS
 from rocking._base.units import Scalar, Values
 from rocking._boundary.restraints import HIGHEST, Name, SavingRestraint, search_restraint
@@ -20,9 +20,6 @@ from rocking._excitation.records.record import Record
 from rocking._model.block import AbstractBlock
 from rocking._model.body import Edge
 from rocking._numba.cancellation import StopFlag
-
-if TYPE_CHECKING:
-    from rocking._dimensional.block import Block
 
 UNITS = {"stiffness": "N/m", "prestress": "N", "damping": "N s/m"}
 """Units of a restraint that is stated with the mass of the block."""
@@ -99,7 +96,7 @@ class RestrainedBlock(RespondingBody):
 
     def tendon_stretch(self, rotation: Values) -> Array:
         """Elongation of the tendon 2 b sin(|theta|/2) [m] at a rotation theta [rad]."""
-        theta = in_range("rotation", rotation, -math.pi, math.pi, unit="rad")
+        theta = float_array("rotation", rotation, unit="rad")
         return np.asarray(2.0 * self.block.half_width * np.sin(0.5 * np.abs(theta)))
 
     def tendon_force(self, rotation: Values) -> Array:
@@ -110,7 +107,7 @@ class RestrainedBlock(RespondingBody):
 
     def damper_stroke(self, rotation: Values) -> Array:
         """Rise of the uplifted edge 2 b sin(|theta|) [m] at a rotation [rad]."""
-        theta = in_range("rotation", rotation, -math.pi, math.pi, unit="rad")
+        theta = float_array("rotation", rotation, unit="rad")
         return np.asarray(2.0 * self.block.half_width * np.sin(np.abs(theta)))
 
 
@@ -131,7 +128,7 @@ def group_units(block: AbstractBlock, mass: Values | None) -> dict[str, Any]:
 
 
 def restrained_block(
-    block: Block, stiffness: Values, prestress: Values, damping: Values, mass: Values | None
+    block: AbstractBlock, stiffness: Values, prestress: Values, damping: Values, mass: Values | None
 ) -> RestrainedBlock:
     """`rocking.Block.with_restraint`."""
     given = {"stiffness": stiffness, "prestress": prestress, "damping": damping}
@@ -147,7 +144,7 @@ def restrained_block(
 
 
 def saving_restraint_of_block(
-    block: Block,
+    block: AbstractBlock,
     motion: str | AbstractPulse | Record,
     name: Name,
     *,

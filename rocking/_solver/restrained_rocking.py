@@ -29,6 +29,8 @@ from rocking._numba.compilation import Record, kernel
 from rocking._solver.state import FREE_ORDER, FULL_PRECISION
 from rocking._solver.taylor.events import evaluate_series, refine_root
 
+LOG_PRECISION, TINY = math.log(FULL_PRECISION), 1e-300
+
 MAX_FREE_STEPS = 100_000
 """Most Taylor steps of a flight without ground motion: a hundred times what the range of kappa and zeta needs."""
 
@@ -52,12 +54,20 @@ def set_restraint(state: Record, cell: Record) -> None:
 def steepest_pull(state: Record) -> float:
     """k >= 0 with z'' + 2 zeta w + k z >= 0 while the body is destabilised [-]; 0 of a free one.
 
-    S - C <= 0 up to |theta| = pi/2, sin(x) <= x, and D - C <= z/2 since D > C beyond 2 alpha only. In the slender limit
-    the weight is subtracted.
+    With t = alpha z, F = -(1 + sigma) and S - C = -sin(t)/(sin(alpha) cos(alpha)) the moments are
+
+        z'' + 2 zeta w = (1/cos(alpha) - kappa) sin(t)/alpha + sigma (sin(alpha)/alpha) (C - D)
+
+    and C < D beyond t = 2 alpha only. There sin(t) >= 2 sin(alpha) cos(alpha) up to pi/2, so that both together are
+    >= 0 if sigma <= 2 (1 - kappa cos(alpha)): k = 0. Likewise z'' + 2 zeta w <= 0 below z = 0 while it is restored.
+    Otherwise sin(t) <= t and D - C <= z/2 bound them.
     """
     if state.alpha == 0.0:
         return float(max(state.spring - 1.0, 0.0))
-    return float(state.spring + 0.5 * (state.level - 1.0))
+    sigma, left = state.level - 1.0, 1.0 - state.spring * math.cos(state.alpha)
+    if left >= 0.0 and sigma <= 2.0 * left:
+        return 0.0
+    return float(state.spring + 0.5 * sigma)
 
 
 @kernel
@@ -142,18 +152,16 @@ def expand_free(state: Record, z0: float, w0: float) -> float:
         for j in range(1, n + 1):
             left -= d[j] * d[n + 1 - j]
         d[n + 1] = 0.5 * left / d[0]
-    longest = 4.0
+    longest = 1.4  # log of the step size
+    for k in range(FREE_ORDER - 1, FREE_ORDER + 1):
+        last, allowed = math.log(abs(z[k, 0]) + TINY), -700.0
+        for j in range(4):
+            allowed = max(allowed, (LOG_PRECISION + math.log(abs(z[j, 0]) + TINY) - last) / (k - j))
+        longest = min(longest, allowed)
     pull = steepest_pull(state)
     if pull > 0.0:  # as the cap of `rocking._solver.taylor.step.set_restraint_lane`
-        longest = 1.5 / math.sqrt(pull)
-    for k in range(FREE_ORDER - 1, FREE_ORDER + 1):
-        last, allowed = abs(z[k, 0]), 0.0
-        if last == 0.0:
-            continue
-        for j in range(4):
-            allowed = max(allowed, (FULL_PRECISION * abs(z[j, 0]) / last) ** (1.0 / (k - j)))
-        longest = min(longest, allowed)
-    return longest
+        return float(min(math.exp(longest), 1.5 / math.sqrt(pull)))
+    return math.exp(longest)
 
 
 @kernel

@@ -27,7 +27,7 @@ IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
 
 EDGES = (2,)
 
-FREE_ORDER = 24  # degree of the Taylor steps of restrained bodies without ground motion
+FREE_ORDER = 18  # degree of the Taylor steps of restrained bodies without ground motion
 
 BODY_FIELDS = [
     # of both edges, the right one (theta > 0) first; times and rotations have the units of the right edge

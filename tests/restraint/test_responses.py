@@ -14,6 +14,7 @@ from rocking._solver.bodies import outcome_margin_of, solve
 from rocking._solver.restrained import restrain
 from rocking._solver.state import block_cells
 
+FOLDER = Path(__file__).parents[2] / "reference" / "problems"
 TABLE = Path(__file__).parents[1] / "data" / "reference" / "restraints.csv"
 FIELDS = ("peak_rotation", "outcome", "impacts", "first_impact_time", "uplift_time", "end_rotation", "end_velocity")
 PULSES = ("sine", "cosine", "half_sine", "ricker", "c1", "rectangular")
@@ -62,6 +63,17 @@ def test_responses_are_those_of_the_multiprecision_integrator(alpha: float | Non
         assert int(response.outcome) == exact.outcome, cell
         if exact.outcome == 1:
             assert float(response.peak_rotation) == pytest.approx(float(exact.peak_rotation), rel=1e-10), cell
+
+
+def test_reference_problems_to_the_digits_that_they_ask_for() -> None:
+    rows = list(csv.DictReader((FOLDER / "restrained-blocks.csv").read_text().splitlines()))
+    assert len(rows) == 60
+    for row in rows:
+        pulse, outcome, peak, digits = (row.pop(name) for name in ("pulse", "outcome", "peak_rotation", "digits"))
+        response = rocking.peak_response(pulse, **{name: float(value) for name, value in row.items() if value})
+        assert int(response.outcome) == int(outcome), row
+        if peak:
+            assert float(response.peak_rotation) == pytest.approx(float(peak), rel=10.0 ** -int(digits)), row
 
 
 @pytest.mark.parametrize("alpha", [None, 0.3])
