@@ -54,13 +54,13 @@ def serve(
     for variable in unknown_variables(os.environ):
         typer.echo(f"Error: {variable} is not allowed; allowed: {', '.join(variables())}", err=True)
         raise typer.Exit(2)
-    given: dict[str, Any] = {} if results is None else {"results": results}
+    overrides: dict[str, Any] = {} if results is None else {"results": results}
     try:
-        settings = Settings(**given)
+        settings = Settings(**overrides)
     except ValidationError as error:
         wrong = error.errors()[0]
         (name,) = wrong["loc"]
-        name = f"--{name}" if name in given else f"ROCKING_{name}".upper()
+        name = f"--{name}" if name in overrides else f"ROCKING_{name}".upper()
         allowed = wrong.get("ctx", {}).get("error", wrong["msg"])
         typer.echo(f"Error: {name} = {wrong['input']!r} is not allowed; allowed: {allowed}", err=True)
         raise typer.Exit(2) from None

@@ -51,34 +51,37 @@ def fragility(
             suite = replace(suite, records=replace(suite.records, baseline_order=baseline_order))
         if table == "sensitivity" and suite.sensitivity is None:
             raise InvalidArgumentError("table", table, "levels and curves: the configuration has no sensitivity")
-        found = suite_fragility(suite)
+        solved = suite_fragility(suite)
     if output is not None:
         with reported_errors(), output_errors("output", output):
-            write_fragility(found, output)
+            write_fragility(solved, output)
         return
     with reported_errors(source="CONFIGURATION"):
-        unit = found["intensity"].attrs["units"]
-        records = found["record"].values.tolist()
-        about = {"suite": suite.name, "records": records, "measure": suite.measure, "unit": unit}
+        unit = solved["intensity"].attrs["units"]
+        records = solved["record"].values.tolist()
+        heading = {"suite": suite.name, "records": records, "measure": suite.measure, "unit": unit}
         if output_format == "json":
-            tables = {"levels": finite_columns(fragility_table(found)), "curves": finite_columns(curve_table(found))}
+            tables = {
+                "levels": finite_columns(fragility_table(solved)),
+                "curves": finite_columns(curve_table(solved)),
+            }
             if suite.sensitivity is not None:
                 tables["sensitivity"] = finite_columns(_sensitivity(suite))
-            print_json({**about, "confidence": suite.confidence, **tables})
+            print_json({**heading, "confidence": suite.confidence, **tables})
             return
         if table == "sensitivity":
             columns = _sensitivity(suite)
         elif table == "distribution":
-            columns = distribution_table(found)
+            columns = distribution_table(solved)
         elif table == "curves":
-            columns = curve_table(found)
+            columns = curve_table(solved)
         else:
-            columns = fragility_table(found)
+            columns = fragility_table(solved)
     label = unit_label(unit)
     units = {name: label for name in columns if name.startswith(("intensity", "median_intensity"))}
     units |= {"width": "m", "height": "m"}
     if output_format == "table":
-        print_values({**about, "records": len(records), "unit": label})
+        print_values({**heading, "records": len(records), "unit": label})
     print_columns(finite_columns(columns), output_format, units)
 
 
@@ -124,7 +127,7 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
 
     motions = suite.motions()
     with progress("solving the blocks under the records"):
-        found = fragility_of(
+        solved = fragility_of(
             motions,
             suite.blocks,
             intensity=suite.intensity,
@@ -136,9 +139,9 @@ def suite_fragility(suite: SuiteConfiguration) -> xr.Dataset:
     for motion in motions:
         for remark in motion.remarks:
             typer.echo(f"warning: {motion.name}: {remark}", err=True)
-    for warning in filter(None, found.attrs.get("warnings", "").split("; ")):
+    for warning in filter(None, solved.attrs.get("warnings", "").split("; ")):
         typer.echo(f"warning: {warning}", err=True)
-    return found
+    return solved
 
 
 def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
@@ -150,7 +153,7 @@ def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
     assert suite.sensitivity is not None
     assert isinstance(suite.blocks, tuple)  # by `suite_configuration`
     with progress("solving the blocks with other restitution and sampling"):
-        found = suite_sensitivity(
+        sensitivity = suite_sensitivity(
             suite.motions(),
             suite.blocks,
             intensity=suite.sensitivity.intensity,
@@ -159,4 +162,4 @@ def _sensitivity(suite: SuiteConfiguration) -> dict[str, list[Any]]:
             restitution_step=suite.sensitivity.restitution_step,
             confidence=suite.confidence,
         )
-    return sensitivity_table(found)
+    return sensitivity_table(sensitivity)

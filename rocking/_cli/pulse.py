@@ -74,8 +74,11 @@ def response(
         motion, eta = read_pulse(pulse), RESTITUTION.read(restitution)
         if file is not None:
             reject_given("a table, which has the bodies", width=width, height=height, body=body)
-            stated = {PEAK_ACCELERATION: peak_acceleration, PERIOD: period}
-            strength = {quantity.name: quantity.number(text) for quantity, text in stated.items() if text is not None}
+            strength = {}
+            if peak_acceleration is not None:
+                strength["peak_acceleration"] = PEAK_ACCELERATION.number(peak_acceleration)
+            if period is not None:
+                strength["period"] = PERIOD.number(period)
             layout = TableLayout(
                 columns=stated_columns(columns or []),
                 decimal=decimal,
@@ -88,11 +91,11 @@ def response(
             return
         block = read_body(width, height, body)
         with progress("solving the body"):
-            found = block.response(
+            solved = block.response(
                 motion, peak_acceleration=peak_acceleration, period=period, restitution=eta, error_bound=True
             )
-            values = response_values(found)
-    print_response(found, values, output_format)
+            values = response_values(solved)
+    print_response(solved, values, output_format)
 
 
 def _print_responses(file: str, table: BlockTable, output_format: str) -> None:
@@ -158,7 +161,7 @@ def history(
             raise InvalidArgumentError("pulse", None, "a pulse, or --start, the rotation of a release")
         block = read_body(width, height, body)
         with progress("solving the motion"):
-            found = block.history(
+            solved = block.history(
                 read_pulse(pulse) if pulse else None,
                 start=start,
                 peak_acceleration=peak_acceleration,
@@ -168,7 +171,7 @@ def history(
                 samples=samples,
                 contact=contact,
             )
-    print_dataset(found, "time", output_format)
+    print_dataset(solved, "time", output_format)
 
 
 def spectrum(
@@ -200,10 +203,10 @@ def spectrum(
         shortest, longest = _window(block, period_min, period_max, (0.5, 12.0))
         periods = np.geomspace(shortest, longest, points)
         with progress(f"solving {points} bodies"):
-            found = block.spectrum(
+            solved = block.spectrum(
                 motion, peak_acceleration=peak_acceleration, period=periods, restitution=RESTITUTION.read(restitution)
             )
-    print_dataset(found, "period", output_format)
+    print_dataset(solved, "period", output_format)
 
 
 def boundary(
@@ -229,9 +232,9 @@ def boundary(
         motion, block = read_pulse(pulse), read_body(width, height, body)
         window = _window(block, period_min, period_max, (0.2, 15.0))
         with progress("tracing the boundaries"):
-            found = block.boundary(motion, restitution=RESTITUTION.read(restitution), period=window)
-    points = points_of(found)
-    axes = {name: found[name].values.tolist() for name in ("period", "peak_acceleration")}
+            solved = block.boundary(motion, restitution=RESTITUTION.read(restitution), period=window)
+    points = points_of(solved)
+    axes = {name: solved[name].values.tolist() for name in ("period", "peak_acceleration")}
     columns = {"curve": points.pop("curve"), **axes, **points}
     print_columns(columns, output_format, {"period": "s", "peak_acceleration": "m/s2"})
 

@@ -162,7 +162,7 @@ def record(
         direction: dict[str, float] = {}
         with progress("solving the body under the record"):
             if second is None:
-                found = rigid_body.response(
+                solved = rigid_body.response(
                     motion, scale=scale, restitution=eta, error_bound=True, thresholds=thresholds
                 )
             else:
@@ -172,12 +172,12 @@ def record(
                     other = read_record(file, acceleration=second, **layout)
                 pair = motion, other.baseline_corrected(order=baseline_order)
                 worst = _worst_direction(rigid_body, pair, scale, eta, thresholds)
-                direction, motion, found = {"direction_deg": worst.angle}, worst.motion, worst.response
-            values = response_values(found) | direction | summary_of(motion)
+                direction, motion, solved = {"direction_deg": worst.angle}, worst.motion, worst.response
+            values = response_values(solved) | direction | summary_of(motion)
             values.pop("name")  # that of `record`
             if fit and isinstance(rigid_body, AbstractBlock):
                 values |= _fitted(motion, rigid_body)
-    print_response(found, values, output_format)
+    print_response(solved, values, output_format)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from rocking_api.app import create_app
 from rocking_api.settings import Settings
 
-from tests.api.conftest import client_of, health_of, parts_of, texts
+from tests.api.conftest import client_of, health_of, parts_of, texts, until
 from tests.sampling import number
 
 DESCRIPTION = create_app(Settings()).openapi()
@@ -23,6 +23,7 @@ NAMES = ["spectra/sine/eta-0.85", "overturning/sine/eta-0.85", "demonstration", 
 def limited(results):
     """A client of a service that gives up early."""
     with client_of(results, max_seconds=2.0, max_samples=2000, max_points=20_000) as client:
+        until(lambda: client.get("/ready").status_code == 200, 200)  # the kernels are compiled
         yield client
 
 

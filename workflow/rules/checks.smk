@@ -16,12 +16,8 @@ rule check_data_sets:
         report="results/checks/{pulse}.txt",
     log:
         "logs/checks/{pulse}.log",
-    benchmark:
-        "logs/benchmarks/checks-{pulse}.tsv"
     conda:
         "../envs/rocking.yaml"
-    resources:
-        mem_mb=memory(1200),
     params:
         code=product_code("checks/test_data_sets.py"),
         tests="workflow.checks.test_data_sets",

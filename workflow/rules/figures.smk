@@ -43,7 +43,6 @@ FIGURE_PROVENANCE = {
     )
     for figure in config["figures"]
 }
-# a figure that is in no group has a job of its own
 GROUPED = [figure for group in DRAWN_TOGETHER.values() for figure in group]
 DRAWN_TOGETHER |= {figure.replace("-", "_"): [figure] for figure in config["figures"] if figure not in GROUPED}
 

@@ -477,9 +477,9 @@ def _print(
 
     if output_format == "json":
         columns = {column.name: [row[column.name] for row in assessment.rows] for column in OUTPUTS}
-        about = {"details": assessment.details, "columns": table.columns, "skipped": table.skipped}
+        columns_read = {"details": assessment.details, "columns": table.columns, "skipped": table.skipped}
         motions = {"motions": assessment.motions, "resolution": assessment.resolution}
-        print_json({**columns, **about, "remarks": table.remarks, **motions, "bad_rows": bad_rows})
+        print_json({**columns, **columns_read, "remarks": table.remarks, **motions, "bad_rows": bad_rows})
         return
     if output_format == "csv":
         typer.echo(assessment.to_csv(), nl=False)

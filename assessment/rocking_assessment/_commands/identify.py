@@ -60,7 +60,7 @@ def identify(
     )
     from rocking_assessment._evidence.free_rocking import identify_free_rocking
 
-    with reported_errors({"time": "FILE", "rotation": "FILE"}), progress("fitting the trace"):
+    with reported_errors():
         times, rotations = read_rotations(
             TextFile(Path(file).name, read_bytes(file, "path")),
             MAX_SAMPLES,
@@ -73,15 +73,16 @@ def identify(
             delimiter=delimiter,
             decimal=decimal,
         )
+    with reported_errors({"time": "FILE", "rotation": "FILE"}), progress("fitting the trace"):
         fit = identify_free_rocking(times, rotations, edges=edges, confidence=confidence)
     names = ["edge", *(name + end for name in IDENTIFIED for end in ("", "_lower", "_upper"))]
-    others = ["noise", "offset", "drift", "drift_lower", "drift_upper"]
+    scalars = ["noise", "offset", "drift", "drift_lower", "drift_upper"]
     columns = {name: fit[name].values.tolist() for name in names}
-    units = {name: unit_label(fit[name].attrs.get("units", "")) for name in (*names, *others)}
+    units = {name: unit_label(fit[name].attrs.get("units", "")) for name in (*names, *scalars)}
     if output_format == "csv":
         print_csv(columns, units)
         return
-    values: dict[str, Any] = {"impacts": fit.sizes["impact"]} | {name: fit[name].item() for name in others}
+    values: dict[str, Any] = {"impacts": fit.sizes["impact"]} | {name: fit[name].item() for name in scalars}
     warnings = list(filter(None, fit.attrs["warnings"].split("; ")))
     if output_format == "json":
         print_json({**columns, **values, "warnings": warnings})

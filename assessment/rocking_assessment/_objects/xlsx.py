@@ -12,8 +12,8 @@ LONGEST = 32_767  # longest text of a cell [characters]
 
 WIDEST = 300  # widest column [pixels]
 
-AS_THEY_STAND = {"strings_to_formulas": False, "strings_to_urls": False}
-"""Options of XlsxWriter: no text of a table becomes a formula or a link."""
+OPTIONS = {"strings_to_formulas": False, "strings_to_urls": False, "in_memory": True}
+"""Options of XlsxWriter: no text of a table becomes a formula or a link; no temporary files, which need a disk."""
 
 CREATED = dt.datetime(2000, 1, 1, tzinfo=dt.UTC)
 """Stated date of creation: the bytes depend on the columns only."""
@@ -30,7 +30,7 @@ def xlsx_bytes(columns: Mapping[str, Sequence[Any]], above: Sequence[str] = ()) 
     table = pd.DataFrame({name: [_cell(value) for value in values] for name, values in columns.items()}, dtype=object)
     header = len(above)
     workbook = io.BytesIO()
-    with pd.ExcelWriter(workbook, engine="xlsxwriter", engine_kwargs={"options": AS_THEY_STAND}) as writer:
+    with pd.ExcelWriter(workbook, engine="xlsxwriter", engine_kwargs={"options": OPTIONS}) as writer:
         table.to_excel(
             writer,
             sheet_name="assessment",

@@ -56,7 +56,9 @@ class AssessParams(TableParams):
     pgv: Pgv = None
     period_min: PeriodMin = None
     period_max: PeriodMax = None
-    shapes: str | None = said("pulses, with commas; absent: all that end at rest", None, examples=["sine,ricker"])
+    shapes: str | None = said(
+        "pulses, with commas; absent: all that end at rest", None, max_length=10_000, examples=["sine,ricker"]
+    )
     moving_ground: bool = said("also half sine and rectangular, which leave the ground moving", False)
     floor_periods: str | None = said(
         "periods of the building, for objects on a floor, separated by commas", None, unit="s"

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from rocking._base.arrays import Array
+from rocking._base.cells import name_and_unit
 from rocking._base.errors import RecordFileError
 from rocking._base.units import UNITS, unit_name
 from rocking._excitation.records.readers.layout import Column, Layout, Samples, stated_layout
@@ -482,6 +483,4 @@ def is_row(line: str) -> bool:
 
 
 def _cell(text: str) -> Cell:
-    text = " ".join(text.split())
-    start = text.rfind({"]": "[", ")": "("}.get(text[-1:], "\n"))
-    return Cell(text, text[:start].strip(), text[start + 1 : -1].strip()) if start >= 0 else Cell(text, text, None)
+    return Cell(" ".join(text.split()), *name_and_unit(text))
