@@ -47,6 +47,9 @@ EXAMPLES = {
     "Response": lambda: rocking.peak_response("sine", **ARRAYS),
     "BoundedResponse": lambda: solve_with_bound("sine", **ARRAYS, alpha=None),
     "Thresholds": lambda: rocking.thresholds("sine", frequency_ratio=5.0, restitution=0.85),
+    "SavingRestraint": lambda: rocking.saving_restraint(
+        "sine", "prestress", slenderness=0.5, frequency_ratio=3.0, restitution=0.85
+    ),
     "FrequencyThresholds": lambda: critical_frequency_ratio(
         "sine", slenderness=0.3, restitution=0.85, window=(1.0, 10.0)
     ),

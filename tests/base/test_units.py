@@ -161,7 +161,8 @@ def test_ground_motions_of_quantities(peak, period):
     expected = BLOCK.response("sine", peak_acceleration=0.4 * 9.80665, period=0.5)
     found = BLOCK.response("sine", peak_acceleration=peak, period=period, restitution="momentum")
     assert found.rotation == pytest.approx(expected.rotation, rel=1e-12)
-    assert type(found.peak_acceleration) is type(found.period) is float
+    assert isinstance(found.peak_acceleration, float)
+    assert isinstance(found.period, float)
     history = BLOCK.history("sine", peak_acceleration=peak, period=period, duration="900 ms", samples=10)
     assert float(history["time"][-1]) == pytest.approx(0.9)
     spectrum = BLOCK.spectrum("sine", peak_acceleration=peak, period=QUANTITY([400, 500], "ms"))
