@@ -323,6 +323,8 @@ def _sliding(
         check_stop(stop)
         return max(sliding_displacement(motion, mu) for motion in motions)
 
+    slides_first = slides.astype(object)
+    slides_first[~is_known] = None
     slides_under, sliding = [""] * len(objects), np.full(len(objects), math.nan)
     for row in np.flatnonzero(slides | (is_known & rocking)).tolist():
         pairs = zip(motions, times[row].tolist(), strict=True)
@@ -331,7 +333,7 @@ def _sliding(
         if slides[row]:
             sliding[row] = slip(float(friction[row]))
     return {
-        "slides_first": np.where(is_known, slides.astype(object), None),
+        "slides_first": slides_first,
         "slides_under": slides_under,
         "slides_at": least(times),
         "sliding": sliding,

@@ -54,11 +54,8 @@ def history_of(obj: Object, direction: str, motion: Motion) -> xr.Dataset:
     return max(histories, key=lambda history: float(np.abs(history["rotation"]).max()))
 
 
-def frictions_of(objects: Sequence[tuple[Object, str]], motions: Sequence[Motion]) -> tuple[Array, Array]:
-    """Friction that objects in a direction need under each motion [-], and times at which it exceeds theirs [s].
-
-    Arrays (objects, motions), as the variables of `Assessment.friction`.
-    """
+def friction_needed(objects: Sequence[tuple[Object, str]], motions: Sequence[Motion]) -> Array:
+    """Largest friction that objects in a direction need under each motion [-]; array (objects, motions)."""
     body = bodies_of(objects)
     uplift, is_lopsided = np.asarray(body.uplift_acceleration), body.is_lopsided
     needed = np.empty((len(objects), len(motions)))
@@ -71,7 +68,7 @@ def frictions_of(objects: Sequence[tuple[Object, str]], motions: Sequence[Motion
             sides = problems if is_lopsided[row] else problems[:1]
             extremes = [contact_extremes(problem.body_motion(index=row)) for problem in sides]
             needed[row, k] = max(extreme.largest_friction_demand for extreme in extremes)
-    return needed, first_exceedances(body, frictions([obj for obj, _ in objects]), motions)
+    return needed
 
 
 def frictions(objects: Iterable[Object]) -> Array:

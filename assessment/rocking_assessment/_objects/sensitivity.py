@@ -65,7 +65,7 @@ def changed_objects(
         "factor_slenderer": bodies.scaled(1.0 - wider, 1.0 + higher),
         "factor_stockier": bodies.scaled(1.0 + wider, 1.0 - higher),
     }
-    columns = {}
+    columns: dict[str, Array] = {}
     coarser = CHANGED_RESOLUTION * resolution
     for name, body in changed.items():
         progress(float(len(columns)))

@@ -110,7 +110,6 @@ def test_hazard_is_of_the_ground_on_a_floor() -> None:
 @pytest.mark.parametrize(
     ("given", "name"),
     [
-        ({"records": [(record(1),)]}, "records"),
         ({"records": [(record(1), rocking.Record([1.0, 0.0], 0.5, "m/s2"))]}, "records"),
         ({"records": [record(1)], "hazard": ([1.0], [0.1])}, "hazard"),
         ({"records": [record(1)], "hazard": 1.0}, "hazard"),
