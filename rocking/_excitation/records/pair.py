@@ -17,8 +17,10 @@ PAIR_ANGLES = 12
 
 def checked_pair(given: Any) -> tuple[Record, ...]:
     """One record, or two with one step."""
-    pair = tuple(given) if isinstance(given, Sequence) else (given,)
-    if len(pair) not in (1, 2) or not all(isinstance(record, Record) for record in pair):
+    pair, size = (given,), 1
+    if isinstance(given, Sequence):
+        pair, size = tuple(given), 2
+    if len(pair) != size or not all(isinstance(record, Record) for record in pair):
         raise InvalidArgumentError("records", given, "records, or pairs of two records")
     first, second = pair[0], pair[-1]
     if first.time_step != second.time_step:
