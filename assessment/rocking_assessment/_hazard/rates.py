@@ -67,7 +67,9 @@ def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
     x, rates = check_hazard_curve(hazard_arrays(hazard, fragility.attrs.get("measure")))
     shape = fragility["median_intensity"]
     lower, upper = xr.full_like(shape, np.nan), xr.full_like(shape, np.nan)
-    levels = fragility["intensity"].values[[0, -1]] if "intensity" in fragility.coords else np.array([np.nan, np.nan])
+    levels = np.full(2, np.nan)
+    if "intensity" in fragility.coords:
+        levels = fragility["intensity"].values[[0, -1]]
     for model in fragility["model"].values.tolist():
         curves = fragility.sel(model=model)
         bounds = [*curve_rates(model, x, rates, curves["median_intensity"].values, curves["dispersion"].values)]

@@ -327,8 +327,8 @@ def _repaired(mesh: trimesh.Trimesh) -> Surface:
         volumes = np.bincount(surface, np.einsum("ij,ij->i", corners[0], np.cross(corners[1], corners[2])) / 6.0)
         empty = int((np.abs(volumes) <= EMPTY * mesh.volume).sum())
         if empty:
-            surfaces = f"{empty} surfaces that enclose" if empty > 1 else "1 surface that encloses"
-            return mesh, [], f"has {surfaces} nothing"
+            text = f"has {empty} surfaces that enclose nothing" if empty > 1 else "has 1 surface that encloses nothing"
+            return mesh, [], text
         remarks.append(
             f"has {mesh.body_count} separate surfaces, which are treated as one body; those whose faces point inwards "
             "are cavities"

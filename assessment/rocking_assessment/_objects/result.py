@@ -87,9 +87,12 @@ class Assessment(EqualByValue):
         """
         rows = [obj.cells or obj.details for obj in self.objects]
         names = [obj.name for obj in self.objects]
-        outputs = {name for column in OUTPUTS for name in (column.name, column.header)}
+        outputs = {quantity.name for quantity in OUTPUTS} | {quantity.header for quantity in OUTPUTS}
         details: dict[str, list[Cell]] = {}
-        for label in dict.fromkeys(label for row in rows for label in row):
+        labels: dict[str, None] = {}
+        for row in rows:
+            labels |= dict.fromkeys(row)
+        for label in labels:
             cells = [row.get(label, "") for row in rows]
             is_output = label in outputs and not (label == "object" and cells == names)
             details[f"{label} (given)" if is_output else label] = cells

@@ -221,8 +221,10 @@ class Site:
 
 def record_doubts(site: Site) -> list[str]:
     """Warnings about the records, in words: their remarks, and an offset of a record that is scaled by its PGA."""
-    records = [record for pair in vars(site)["records"] for record in pair]
+    records: list[Record] = []
     doubts = []
+    for pair in vars(site)["records"]:
+        records += pair
     for record in records:
         doubts += [f"{record.name or 'a record'}: {remark}" for remark in record.remarks]
     if site.pga is not None or site.hazard is not None:

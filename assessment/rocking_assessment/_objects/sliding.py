@@ -51,8 +51,10 @@ def _pieces(motion: Motion) -> tuple[Array, Array, Array]:
     if isinstance(pulse, Record) or pulse.samples is None:
         record = sampled(motion)  # of a pulse at the strength of the site
         scale = motion.peak_acceleration / pulse.peak_acceleration if isinstance(pulse, Record) else 1.0
-        upwards = np.zeros(record.samples) if record.vertical is None else record.vertical * scale
-        return record.times, record.acceleration * scale, upwards
+        vertical = np.zeros(record.samples)
+        if record.vertical is not None:
+            vertical = record.vertical * scale
+        return record.times, record.acceleration * scale, vertical
     phases, values = pulse.samples
     return phases * (motion.period / (2.0 * math.pi)), values * motion.peak_acceleration, np.zeros(values.size)
 

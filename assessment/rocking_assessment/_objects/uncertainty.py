@@ -168,7 +168,9 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
     width, height, offset = (
         np.broadcast_to(np.asarray(values[name], float), size) for name in ("width", "height", "offset")
     )
-    centre = 0.5 * height if values["mass_height"] is None else np.broadcast_to(np.asarray(values["mass_height"]), size)
+    centre = 0.5 * height
+    if values["mass_height"] is not None:
+        centre = np.broadcast_to(np.asarray(values["mass_height"]), size)
     possible = (width > 0.0) & (height > 0.0) & (centre > 0.0) & (np.abs(offset) < 0.5 * width)
     if not possible.all():
         k = int(np.flatnonzero(~possible)[0])
