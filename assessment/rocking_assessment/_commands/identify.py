@@ -75,7 +75,9 @@ def identify(
         )
     with reported_errors({"time": "FILE", "rotation": "FILE"}), progress("fitting the trace"):
         fit = identify_free_rocking(times, rotations, edges=edges, confidence=confidence)
-    names = ["edge", *(name + end for name in IDENTIFIED for end in ("", "_lower", "_upper"))]
+    names = ["edge"]
+    for name in IDENTIFIED:
+        names += [name, f"{name}_lower", f"{name}_upper"]
     scalars = ["noise", "offset", "drift", "drift_lower", "drift_upper"]
     columns = {name: fit[name].values.tolist() for name in names}
     units = {name: unit_label(fit[name].attrs.get("units", "")) for name in (*names, *scalars)}

@@ -1,7 +1,6 @@
 """Parameters of a planar block from outcomes of tests on a shaking table."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -48,7 +47,7 @@ def calibrate(
     motions : sequence of Record
         Measured motions of the table, one for each test.
     outcomes : array_like of bool (tests,)
-        Whether the body overturned.
+        True where the body overturned.
     alpha, half_diagonal, restitution : (float, float)
         Ends of the grid: slenderness angle [rad], (0, 1.5]; R [m], > 0; eta [-], [0, 1]. p^2 = 3 g/(4 R).
     points : int
@@ -75,8 +74,8 @@ def calibrate(
     ----------
     Efron B. (1979), Bootstrap methods: another look at the jackknife, Annals of Statistics 7(1), 1-26.
     """
-    fell = np.asarray(outcomes)
-    if fell.dtype != np.bool_ or fell.shape != (len(motions),) or fell.all() or not fell.any():
+    overturned = np.asarray(outcomes)
+    if overturned.dtype != np.bool_ or overturned.shape != (len(motions),) or len(set(overturned.tolist())) < 2:
         allowed = f"{len(motions)} truth values, one for each motion, not all equal"
         raise InvalidArgumentError("outcomes", outcomes, allowed)
     count = integer("points", points, 2, 50)
@@ -89,24 +88,28 @@ def calibrate(
     }
     first = _grid([np.linspace(ends[0], ends[1], count) for ends in ranges.values()])
     overturns = _predicted(motions, first)
-    best = _middle(first, (overturns == fell).mean(axis=1))
+    best = _middle(first, (overturns == overturned).mean(axis=1))
     finer = []
     for value, (low, high) in zip(best, ranges.values(), strict=True):
         step = (high - low) / (count - 1)
         finer.append(np.linspace(max(low, value - step), min(high, value + step), count))
     second = _grid(finer)
     blocks = np.concatenate([first, second])
-    right = np.concatenate([overturns == fell, _predicted(motions, second) == fell])
+    right = np.concatenate([overturns == overturned, _predicted(motions, second) == overturned])
     share = right.mean(axis=1)
     best = _middle(blocks, share)
     lower, upper = _ends_of_best(blocks, right, level)
-    found: dict[str, Any] = {"right": share.max()}
+    results = {"right": share.max()}
     for k, name in enumerate(ranges):
-        found |= {name: best[k], f"{name}_lower": min(lower[k], best[k]), f"{name}_upper": max(upper[k], best[k])}
-    pga, pgv = (np.array([getattr(one, name) for one in motions]) for name in ("peak_acceleration", "peak_velocity"))
-    for suffix, rules in (("", overturns), ("_pga", _above(pga)), ("_pgv", _above(pgv))):
-        found[f"validated{suffix}"] = _validated(rules, fell, parts)
-    return xr.Dataset({name: ((), float(value)) for name, value in found.items()}, attrs={"confidence": level})
+        results[name] = best[k]
+        results[f"{name}_lower"] = min(lower[k], best[k])
+        results[f"{name}_upper"] = max(upper[k], best[k])
+    pga = np.array([motion.peak_acceleration for motion in motions])
+    pgv = np.array([motion.peak_velocity for motion in motions])
+    results["validated"] = _validated(overturns, overturned, parts)
+    results["validated_pga"] = _validated(_above(pga), overturned, parts)
+    results["validated_pgv"] = _validated(_above(pgv), overturned, parts)
+    return xr.Dataset({name: float(value) for name, value in results.items()}, attrs={"confidence": level})
 
 
 def _ends(name: str, value: tuple[float, float], low: float, high: float) -> Array:
@@ -117,28 +120,23 @@ def _ends(name: str, value: tuple[float, float], low: float, high: float) -> Arr
 
 
 def _grid(axes: list[Array]) -> Array:
-    return np.stack([one.ravel() for one in np.meshgrid(*axes, indexing="ij")], axis=1)
+    return np.stack([coordinate.ravel() for coordinate in np.meshgrid(*axes, indexing="ij")], axis=1)
 
 
 def _predicted(motions: Sequence[Record], blocks: Array) -> Flags:
-    """Whether each block (blocks, 3) overturns under each motion: (blocks, tests)."""
+    """True where a block (blocks, 3) overturns under a motion: (blocks, tests)."""
     alpha, half_diagonal, eta = blocks.T
     p = np.sqrt(0.75 * STANDARD_GRAVITY / half_diagonal)
-    found = [
-        record_response(
-            motion,
-            frequency_parameter=p,
-            slenderness=STANDARD_GRAVITY * np.tan(alpha) / motion.peak_acceleration,
-            restitution=eta,
-            alpha=alpha,
-        ).overturned
-        for motion in motions
-    ]
-    return np.stack(found, axis=1).astype(bool)
+    columns = []
+    for motion in motions:
+        slenderness = STANDARD_GRAVITY * np.tan(alpha) / motion.peak_acceleration
+        response = record_response(motion, frequency_parameter=p, slenderness=slenderness, restitution=eta, alpha=alpha)
+        columns.append(response.overturned)
+    return np.stack(columns, axis=1).astype(bool)
 
 
 def _middle(blocks: Array, share: Array) -> Array:
-    """Of the blocks with the largest share of right outcomes the one next to their mean, over the spread of all."""
+    """The block next to the mean of those with the largest share of right outcomes, over the spread of all."""
     equal = blocks[share == share.max()]
     distance = (((equal - equal.mean(axis=0)) / np.ptp(blocks, axis=0)) ** 2).sum(axis=1)
     return np.asarray(equal[distance.argmin()])
@@ -151,8 +149,8 @@ def _ends_of_best(blocks: Array, right: Flags, level: float) -> tuple[Array, Arr
     scores = right.astype(np.float32) @ counts.T.astype(np.float32)  # integers, exact
     equal = [blocks[score == score.max()] for score in scores.T]
     tail = 0.5 * (1.0 - level)
-    low = np.quantile([one.min(axis=0) for one in equal], tail, axis=0, method="inverted_cdf")
-    high = np.quantile([one.max(axis=0) for one in equal], 1.0 - tail, axis=0, method="inverted_cdf")
+    low = np.quantile([best.min(axis=0) for best in equal], tail, axis=0, method="inverted_cdf")
+    high = np.quantile([best.max(axis=0) for best in equal], 1.0 - tail, axis=0, method="inverted_cdf")
     return low, high
 
 
@@ -161,13 +159,13 @@ def _above(values: Array) -> Flags:
     return np.asarray(values >= np.append(np.sort(values), np.inf)[:, None])
 
 
-def _validated(rules: Flags, fell: Flags, folds: int) -> float:
+def _validated(rules: Flags, overturned: Flags, folds: int) -> float:
     """Share of right predictions of the tests of each fold by the middle one of the best rules on the others."""
-    fold = np.random.default_rng(SEED).permutation(fell.size) % folds
-    right = rules == fell
+    fold = np.random.default_rng(SEED).permutation(overturned.size) % folds
+    right = rules == overturned
     count = 0
     for k in range(folds):
         score = right[:, fold != k].sum(axis=1)
         best = np.flatnonzero(score == score.max())
         count += right[best[best.size // 2], fold == k].sum()
-    return float(count / fell.size)
+    return float(count / overturned.size)

@@ -8,18 +8,17 @@ pendulum near its upper equilibrium. With the peak at time t_c,
 dn the elliptic function of Jacobi. An impact multiplies the velocity by eta, so that the peaks obey
 cos(alpha - theta_n) - cos(alpha) = eta^2 (cos(alpha - theta_(n-1)) - cos(alpha)) (Housner 1963), with the factor
 (p/p')^2 where the edges differ. The whole trace therefore follows from the time of the first impact, the energy before
-it, which that of a push at the release may be a part of, and eta, alpha, p. These are fitted to all samples by least
+it, to which a push at the release may have added, and eta, alpha, p. These are fitted to all samples by least
 squares, with an offset and a drift of the sensor. The start is from peaks and impacts, which are located by a parabola
 in each flight.
 
 The residual is tested. Where flights differ by more than errors explain, because the ground moves, restitution varies
 or the body is not quite rigid, ln alpha of each flight and ln eta of each impact are fitted with a random change, and
-the intervals count the unknown sizes of the changes (`rocking_assessment._evidence.variance_components`). Where
-errors of one
-sample tell those of the next, as after a filter, the samples count as fewer independent ones (N/tau, with tau the sum
-of the correlations of the residual over the lags), and the rotation is fitted as averaged over an unknown duration, the
-effect of any filter without delay in lowest order. Where too few independent samples are left, or flights differ by
-too much, or the residual is too large, the trace is refused.
+the intervals count the unknown sizes of the changes (`rocking_assessment._evidence.variance_components`). Where errors
+of successive samples are correlated, as after a filter, the samples count as fewer independent ones (N/tau, with tau
+the sum of the correlations of the residual over the lags), and the rotation is fitted as averaged over an unknown
+duration, the effect of any filter without delay in lowest order. Where too few independent samples are left, or flights
+differ by too much, or the residual is too large, the trace is refused.
 
 References
 ----------
@@ -61,7 +60,7 @@ LOWEST_FREQUENCY = 0.1
 
 
 START_SHARES = 0.3, 0.5, 0.7, 0.85, 0.95
-"""Shares of alpha that the first peak is tried at [-]: of 200 traces one start in alpha left three at wrong minima."""
+"""Ratios of the first peak to alpha from which fits start [-]: of 200 traces one start left three at wrong minima."""
 
 FIRST_EDGE = 4  # unknowns before those of the edges [-]
 HIGHEST_FLIGHT = 1.0 - 1e-8  # highest energy of a flight over that of alpha [-]: at alpha a flight has no end
@@ -92,7 +91,7 @@ LEAST_FREEDOM = 10.0  # fewest independent samples less unknowns of a trace that
 MAX_LOG = 700.0  # largest logarithm of the end of an interval [-]: e^710 is infinite
 ROUNDS = 8  # most steps of a fit with changes, each with the sizes of changes that the one before it gave [-]
 SETTLED = 0.05  # largest last step over the standard deviation of an unknown [-]
-SHARES = 1.0, 0.5, 0.25, 0.1, 0.02  # of a step that are tried [-]
+STEP_LENGTHS = 1.0, 0.5, 0.25, 0.1, 0.02  # lengths of a step that are tried, over its full length [-]
 SIGNIFICANT = 4.0  # standard deviations beyond which a sum of correlations of the residual is no chance [-]
 HELD_SHARE = 0.95  # share of the first peak below which the body is taken as released [-]: a hand holds it before
 
@@ -133,8 +132,8 @@ def identify_free_rocking(
     InvalidArgumentError
         If an argument is not as described, the rotation seems to be in degrees, the trace has fewer than three
         impacts, for two edges fewer than six, or it is no free rocking: an oscillation, flights that differ by more
-        than `LARGEST_DEPARTURE`, or errors from the best block that last so long that fewer than `LEAST_FREEDOM` more
-        independent samples than unknowns are left.
+        than `LARGEST_DEPARTURE`, or errors that are correlated over so many samples that fewer than `LEAST_FREEDOM`
+        more independent samples than unknowns are left.
 
     Notes
     -----
@@ -154,13 +153,13 @@ def identify_free_rocking(
     first = t[flights[0][held[-1]]]
     sign = float(np.sign(peaks[0]))
     starts = _starts(offset, impacts, peaks, sides)
-    _check_seconds(t, math.exp(max(one[FIRST_EDGE + sides] for one in starts)))
+    _check_seconds(t, math.exp(max(start[FIRST_EDGE + sides] for start in starts)))
     count, fewer = needed + 1, False
     while True:  # a few flights first: a wrong period would shift the later ones by whole flights
         used = (t > first) & (t <= t[flights[count - 1][-1]])
         misfit = partial(_misfit, t[used], theta[used], sign, sides, count, stop)
-        fits = (_fitted(misfit, start, sides, jac="2-point", tolerance=1e-8) for start in starts)
-        fit = min(fits, key=lambda one: float(one.cost))
+        fits = [_fitted(misfit, start, sides, jac="2-point", tolerance=1e-8) for start in starts]
+        fit = min(fits, key=lambda candidate: float(candidate.cost))
         starts = [fit.x]
         # the first offset is inaccurate, and errors that follow each other hardly differ from sample to sample
         residual = math.sqrt(2.0 * fit.cost / np.count_nonzero(used))
@@ -179,7 +178,8 @@ def identify_free_rocking(
         raise InvalidArgumentError("rotation", peak_text(theta), oscillation_text(impacts, peaks) or allowed)
     bodies = _Bodies(t[used], theta[used], sign, sides, count, stop)
     state = bodies.state(fit.x, np.zeros(2 * count - 1))
-    best = _estimated(state)._replace(departure=0.0) if residual < EXACT * largest else _with_changes(bodies, state)
+    is_exact = residual < EXACT * largest
+    best = _estimated(state)._replace(departure=0.0) if is_exact else _with_changes(bodies, state)
     model, impacts = bodies.trace(best.state.x, best.state.w)
     step = float(np.ptp(t[used])) / np.count_nonzero(used)
     if best.freedom < LEAST_FREEDOM and residual > NEGLIGIBLE * largest:
@@ -199,8 +199,7 @@ def identify_free_rocking(
             "free rocking of a rigid body on ground at rest, whose flights differ by at most "
             f"{largest_alpha:.0%} in alpha and {largest_eta:.0%} in restitution",
         )
-    found = _Found(t, theta, used, model, impacts, best, sides, level, noise)
-    result = _described(found)
+    result = _described(_Fit(t, theta, used, model, impacts, best, sides, level, noise))
     _check_seconds(t, float(result["frequency_parameter_upper"].max()))
     return result
 
@@ -230,25 +229,25 @@ class _Bodies(NamedTuple):
     stop: StopFlag | None
 
     def trace(self, x: Array, w: Array) -> tuple[Array, Array]:
-        """Rotation and impacts."""
+        """Rotation at the samples, and times of the impacts."""
         if self.stop is not None:
             self.stop.check()
         return _trace(self.t, x, self.sign, self.sides, self.flights, w)
 
     def state(self, x: Array, w: Array) -> _State:
         """The state at unknowns and changes, with derivatives by differences."""
-        here = self.trace(x, w)[0]
-        jacobian = np.empty((here.size, x.size))
+        theta = self.trace(x, w)[0]
+        jacobian = np.empty((theta.size, x.size))
         for k, step in enumerate(_steps(x)):
             unit = np.zeros(x.size)
             unit[k] = step
-            jacobian[:, k] = (self.trace(x + unit, w)[0] - here) / step
-        changes = np.empty((here.size, w.size))
+            jacobian[:, k] = (self.trace(x + unit, w)[0] - theta) / step
+        changes = np.empty((theta.size, w.size))
         for k in range(w.size):
             unit = np.zeros(w.size)
             unit[k] = STEP
-            changes[:, k] = (self.trace(x, w + unit)[0] - here) / STEP
-        return _State(x, w, here - self.theta, jacobian, changes)
+            changes[:, k] = (self.trace(x, w + unit)[0] - theta) / STEP
+        return _State(x, w, theta - self.theta, jacobian, changes)
 
 
 def _steps(x: Array) -> Array:
@@ -265,8 +264,8 @@ def _steps(x: Array) -> Array:
 class _Best(NamedTuple):
     """The fit, its intervals, and what widens them.
 
-    `freedom`: of the errors [-]; `correlated`: samples over which they follow each other [-]; `departure`: by how much
-    alpha and eta change from flight to flight, as a share of them [-], 0 where independent errors explain as much.
+    `freedom`: of the errors [-]; `correlated`: samples over which they are correlated [-]; `departure`: relative change
+    of alpha and eta from flight to flight [-], 0 where independent errors explain as much.
     """
 
     state: _State
@@ -307,28 +306,28 @@ def _estimated(state: _State) -> _Best:
     y = state.changes @ state.w - state.error
     unknowns, flights = state.x.size, (state.w.size + 1) // 2
     basis, triangle = np.linalg.qr(np.hstack([state.jacobian, state.changes]))
-    seen = basis.T @ y
-    unseen = y - basis @ seen  # what neither unknowns nor changes explain
-    correlated = _correlated(unseen)
+    explained = basis.T @ y
+    residual = y - basis @ explained  # what neither unknowns nor changes explain
+    correlated = _correlated(residual)
     left = y.size - triangle.shape[1]
     freedom = max(left / correlated, 1.0)
-    variance = correlated * float(unseen @ unseen) / max(left, 1)
+    variance = correlated * float(residual @ residual) / max(left, 1)
     fixed, changes = triangle[:, :unknowns], triangle[:, unknowns:]
     groups = changes[:, :flights], changes[:, flights:]
-    found = mixture(seen, fixed, groups, max(variance, 1e-30), freedom)
+    estimate = mixture(explained, fixed, groups, max(variance, 1e-30), freedom)
     departure = 0.0
-    if _differs(seen, fixed, changes, variance, freedom):
-        departure = float(found.typical_sizes().max())
-    return _Best(state, found, variance, freedom, correlated, departure)
+    if _differs(explained, fixed, changes, variance, freedom):
+        departure = float(estimate.typical_sizes().max())
+    return _Best(state, estimate, variance, freedom, correlated, departure)
 
 
-def _differs(seen: Array, fixed: Array, changes: Array, variance: float, freedom: float) -> bool:
+def _differs(y: Array, fixed: Array, changes: Array, variance: float, freedom: float) -> bool:
     """True if changes from flight to flight explain more than errors do in one of 100 traces."""
     fitted = np.linalg.qr(fixed / np.maximum(np.linalg.norm(fixed, axis=0), 1e-300))[0]
     beside = changes - fitted @ (fitted.T @ changes)
     basis, sizes, _ = np.linalg.svd(beside)
     basis = basis[:, : np.count_nonzero(sizes > 1e-6 * sizes[0])]
-    explained = float(np.sum((basis.T @ (seen - fitted @ (fitted.T @ seen))) ** 2))
+    explained = float(np.sum((basis.T @ (y - fitted @ (fitted.T @ y))) ** 2))
     rank = basis.shape[1]
     return bool(explained > rank * variance * float(fdtri(rank, freedom, 0.99)))
 
@@ -339,19 +338,19 @@ def _improved(bodies: _Bodies, state: _State, sizes: Array, scale: float) -> _St
     Halved until the cost falls; the state itself if none of the steps lowers it.
     """
     unknowns = state.x.size
-    lengths = np.maximum(np.linalg.norm(state.jacobian, axis=0), 1e-300)
-    top = np.hstack([state.jacobian / lengths, state.changes * sizes]) / scale
+    norms = np.maximum(np.linalg.norm(state.jacobian, axis=0), 1e-300)
+    top = np.hstack([state.jacobian / norms, state.changes * sizes]) / scale
     bottom = np.hstack([np.zeros((sizes.size, unknowns)), np.eye(sizes.size)])
-    wanted = -np.concatenate([state.error / scale, state.w / sizes])
-    step = np.linalg.lstsq(np.vstack([top, bottom]), wanted)[0]
+    residual = np.concatenate([state.error / scale, state.w / sizes])
+    step = np.linalg.lstsq(np.vstack([top, bottom]), -residual)[0]
     smoothed = unknowns > FIRST_EDGE + 3 * bodies.sides
     low, high = _ends(bodies.sides, smoothed)
     if smoothed:
         low[-1] = (SHORTEST_AVERAGE * float(np.median(np.diff(bodies.t)))) ** 2
     cost = state.cost(scale, sizes)
-    for share in SHARES:
-        x = np.clip(state.x + share * step[:unknowns] / lengths, low, high)
-        w = state.w + share * step[unknowns:] * sizes
+    for length in STEP_LENGTHS:
+        x = np.clip(state.x + length * step[:unknowns] / norms, low, high)
+        w = state.w + length * step[unknowns:] * sizes
         error = bodies.trace(x, w)[0] - bodies.theta
         if state._replace(w=w, error=error).cost(scale, sizes) < cost:
             return bodies.state(x, w)
@@ -365,8 +364,8 @@ def _check_seconds(t: Array, p: float) -> None:
         raise InvalidArgumentError("time", f"steps of {np.median(np.diff(t)):.3g} s", allowed)
 
 
-class _Found(NamedTuple):
-    """A fit and what it was made from."""
+class _Fit(NamedTuple):
+    """A fit with the trace and the choices that it was made from."""
 
     t: Array
     theta: Array
@@ -385,7 +384,7 @@ def _level(t: Array, x: Array) -> Array:
 
 
 def _correlated(residual: Array) -> float:
-    """Samples over which errors follow each other [-], 1 for independent ones: 1 + 2 times the sum of correlations.
+    """Samples over which errors are correlated [-], 1 for independent ones: 1 + 2 times the sum of correlations.
 
     The sum is over 1, 2, 4, ... lags, the largest of those that stand out from what independent errors have.
     """
@@ -398,21 +397,21 @@ def _correlated(residual: Array) -> float:
 
 
 def _starts(offset: float, impacts: Array, peaks: Array, sides: int) -> list[Array]:
-    """First values of all unknowns, one set for each share of alpha that the first peak may be.
+    """First values of all unknowns, a set for each of `START_SHARES`.
 
     p is from peaks and times of flight, in the slender limit (2/p) arccosh(1/(1 - theta_n/alpha)); eta from the peaks,
     and with it the energy before the first impact from the peak after it: a push may have added to the first flight.
     """
     size, duration = np.abs(peaks), np.diff(impacts)
-    found = []
+    starts = []
     for share in START_SHARES:
         alpha = size.max() / share
         rates = 2.0 * np.arccosh(1.0 / (1.0 - size[1:-1] / alpha)) / duration
         barrier = 1.0 - (1.0 - size / alpha) ** 2
         eta = float(np.clip(np.sqrt(np.median(barrier[2:] / barrier[1:-1])), 0.3, 0.99))
         edges = np.repeat([math.log(alpha), math.log(np.median(rates)), eta], sides)
-        found.append(np.concatenate([[offset, 0.0, impacts[0], barrier[1] / eta**2], edges]))
-    return found
+        starts.append(np.concatenate([[offset, 0.0, impacts[0], barrier[1] / eta**2], edges]))
+    return starts
 
 
 def _misfit(
@@ -525,11 +524,11 @@ def _rotation(t: Array, shape: _Shape) -> Array:
     return np.asarray(theta)
 
 
-def _described(found: _Found) -> xr.Dataset:
+def _described(fit: _Fit) -> xr.Dataset:
     """The result, with intervals, and texts for what widens them."""
-    t, theta, used, model, impacts, best, sides, level, noise = found
+    t, theta, used, model, impacts, best, sides, level, noise = fit
     x = best.state.x
-    reach = best.mixture.half_widths(level)
+    half_width = best.mixture.half_widths(level)
     freedom = model.size - x.size
     residual = math.sqrt(float(best.state.error @ best.state.error) / freedom)
     texts = []
@@ -542,13 +541,13 @@ def _described(found: _Found) -> xr.Dataset:
     alone = np.sqrt((np.linalg.pinv(best.state.jacobian) ** 2).sum(axis=1))
     if texts:
         plain = float(stdtrit(freedom, 0.5 * (1.0 + level))) * residual * alone  # 0 at a confidence of almost 0
-        wider = float(np.max(np.divide(reach, plain, out=np.ones_like(reach), where=plain > 0.0)))
+        wider = float(np.max(np.divide(half_width, plain, out=np.ones_like(plain), where=plain > 0.0)))
         texts = [f"{' and '.join(texts)}: the intervals are up to {wider:.2g} times wider for it"]
     if abs(x[1]) > SIGNIFICANT * math.sqrt(best.variance) * alone[1]:
         texts.append(f"the sensor drifts by {x[1]:.3g} rad/s, which is taken off")
     fitted = np.full(t.shape, np.nan)
     fitted[used] = model
-    about = "drift of the sensor"
+    drift_end = "drift of the sensor, end of the interval"
     result = xr.Dataset(
         {
             "rotation": variable("time", theta, "rad", "measured rotation"),
@@ -556,9 +555,9 @@ def _described(found: _Found) -> xr.Dataset:
             "residual": variable("time", theta - fitted, "rad", "measured less fitted rotation"),
             "impact_time": variable("impact", impacts, "s", "times of the impacts"),
             "offset": variable((), x[0], "rad", "rotation of the body at rest, at the first impact"),
-            "drift": variable((), x[1], "rad s-1", about),
-            "drift_lower": variable((), x[1] - reach[1], "rad s-1", f"{about}, end of the interval"),
-            "drift_upper": variable((), x[1] + reach[1], "rad s-1", f"{about}, end of the interval"),
+            "drift": variable((), x[1], "rad s-1", "drift of the sensor"),
+            "drift_lower": variable((), x[1] - half_width[1], "rad s-1", drift_end),
+            "drift_upper": variable((), x[1] + half_width[1], "rad s-1", drift_end),
             "noise": variable((), residual, "rad", "standard deviation of the residual"),
             "sample_noise": variable((), noise, "rad", "standard deviation of independent errors of the samples"),
         },
@@ -568,17 +567,19 @@ def _described(found: _Found) -> xr.Dataset:
         },
         {"confidence": level, "samples": int(used.sum()), "warnings": "; ".join(texts)},
     )
-    for k, (name, unit, meaning) in enumerate(
-        [("alpha", "rad", "slenderness angle"), ("frequency_parameter", "rad s-1", "frequency parameter p"),
-         ("restitution", "1", "coefficient of restitution eta of impacts after which it turns on the edge")]
-    ):  # fmt: skip
-        own = slice(FIRST_EDGE + k * sides, FIRST_EDGE + (k + 1) * sides)
-        for suffix, shift in (("", 0.0), ("_lower", -reach[own]), ("_upper", reach[own])):
-            values = x[own] + shift
-            attributes = {"units": unit, "long_name": meaning + (", end of the interval" if suffix else "")}
-            result[name + suffix] = (
-                "edge",
-                values if name == "restitution" else np.exp(np.minimum(values, MAX_LOG)),
-                attributes,
-            )
+    parameters = (
+        ("alpha", "rad", "slenderness angle"),
+        ("frequency_parameter", "rad s-1", "frequency parameter p"),
+        ("restitution", "1", "coefficient of restitution eta of impacts after which it turns on the edge"),
+    )
+    for k, (name, unit, meaning) in enumerate(parameters):
+        edges = slice(FIRST_EDGE + k * sides, FIRST_EDGE + (k + 1) * sides)
+        estimate, width = x[edges], half_width[edges]
+        values = np.stack([estimate, estimate - width, estimate + width])
+        if name != "restitution":  # fitted as logarithms
+            values = np.exp(np.minimum(values, MAX_LOG))
+        end = f"{meaning}, end of the interval"
+        result[name] = variable("edge", values[0], unit, meaning)
+        result[f"{name}_lower"] = variable("edge", values[1], unit, end)
+        result[f"{name}_upper"] = variable("edge", values[2], unit, end)
     return result

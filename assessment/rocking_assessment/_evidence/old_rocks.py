@@ -1,4 +1,4 @@
-"""What rocks that still stand say about the hazard: probabilities of survival, and motions that they have not seen."""
+"""Constraints on hazard from rocks that still stand: probabilities of survival, and unexceeded ground motions."""
 
 from __future__ import annotations
 
@@ -78,13 +78,13 @@ def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str
     """
     time = number("years", years, 0.0, MAX_YEARS, unit="year")
     branches, several = _branches(hazard)
-    found = xr.concat([annual_rate(fragility, one) for one in branches], "branch")
+    rates = xr.concat([annual_rate(fragility, branch) for branch in branches], "branch")
     result = xr.Dataset(
         {
-            "annual_rate": found["annual_rate"],
-            "survival": np.exp(-time * found["annual_rate"]),
-            "survival_lower": np.exp(-time * found["annual_rate_upper"]),
-            "survival_upper": np.exp(-time * found["annual_rate_lower"]),
+            "annual_rate": rates["annual_rate"],
+            "survival": np.exp(-time * rates["annual_rate"]),
+            "survival_lower": np.exp(-time * rates["annual_rate_upper"]),
+            "survival_upper": np.exp(-time * rates["annual_rate_lower"]),
         },
         attrs={"years": time, "measure": fragility.attrs.get("measure", "")},
     )
@@ -94,14 +94,16 @@ def survival(fragility: xr.Dataset, hazard: Hazard | Sequence[str | PathLike[str
 
 
 def _branches(hazard: Any) -> tuple[list[Any], bool]:
-    """The hazard curve of each branch, and whether there are several."""
-    if isinstance(hazard, (list, tuple)) and hazard and all(isinstance(one, str | PathLike) for one in hazard):
+    """The hazard curve of each branch, and True if the argument is a list of branches."""
+    if isinstance(hazard, (list, tuple)) and hazard and all(isinstance(path, str | PathLike) for path in hazard):
         return [*hazard], True
     if not isinstance(hazard, (list, tuple, np.ndarray)):
         return [hazard], False
     intensity, rates = hazard_arrays(hazard)
     checked = float_array("hazard rate", rates, unit="1/year")
-    return ([(intensity, branch) for branch in checked], True) if checked.ndim == 2 else ([hazard], False)
+    if checked.ndim != 2:
+        return [hazard], False
+    return [(intensity, branch) for branch in checked], True
 
 
 def unexceeded(
@@ -175,21 +177,27 @@ def unexceeded(
     outcomes = _outcomes(body, motions, checked_resolution(resolution), stop)
     line = _line(ratio, outcomes, share)
     level = line.intercept + line.slope * ratio + line.margin
-    level = np.where(level <= outcomes.highest, np.exp(level), np.nan)
-    names = {
-        "overturning_acceleration": ("m s-2", lowest * pga, "PGA of the record at the lowest factor that overturns"),
-        "overturning_velocity": ("m s-1", lowest * pgv, "PGV of the record at the lowest factor that overturns"),
-        "unexceeded_acceleration": ("m s-2", level, "PGA that overturns with the probability"),
-        "unexceeded_velocity": ("m s-1", level * pgv / pga, "PGV that overturns with the probability"),
-    }
-    doubts = offset_doubts(motions)
-    return xr.Dataset(
-        {name: variable("record", values, unit, text) for name, (unit, values, text) in names.items()}
-        | {name: ((), value) for name, value in line._asdict().items()},
-        {"record": ("record", [motion.name for motion in motions])},
-        {"probability": share, "resolution": checked_resolution(resolution)}
-        | ({"warnings": "; ".join(doubts)} if doubts else {}),
+    unexceeded_pga = np.where(level <= outcomes.highest, np.exp(level), np.nan)
+    unexceeded_pgv = unexceeded_pga * pgv / pga
+    at_lowest, with_probability = (
+        "of the record at the lowest factor that overturns",
+        "that overturns with the probability",
     )
+    result = xr.Dataset(
+        {
+            "overturning_acceleration": variable("record", lowest * pga, "m s-2", f"PGA {at_lowest}"),
+            "overturning_velocity": variable("record", lowest * pgv, "m s-1", f"PGV {at_lowest}"),
+            "unexceeded_acceleration": variable("record", unexceeded_pga, "m s-2", f"PGA {with_probability}"),
+            "unexceeded_velocity": variable("record", unexceeded_pgv, "m s-1", f"PGV {with_probability}"),
+            **line._asdict(),
+        },
+        {"record": [motion.name for motion in motions]},
+        {"probability": share, "resolution": checked_resolution(resolution)},
+    )
+    doubts = offset_doubts(motions)
+    if doubts:
+        result.attrs["warnings"] = "; ".join(doubts)
+    return result
 
 
 class _Outcomes(NamedTuple):
@@ -205,9 +213,9 @@ class _Outcomes(NamedTuple):
 
     def at(self, level: Array) -> Flags:
         """Outcome of each record at ln PGA (records,), or at the next higher one that was tried."""
-        place = np.ceil((level - self.level[:, 0]) / self.step - 1e-9).astype(np.intp)
+        column = np.ceil((level - self.level[:, 0]) / self.step - 1e-9).astype(np.intp)
         rows = np.arange(level.size)
-        return np.asarray(self.overturned[rows, np.clip(place, 0, self.overturned.shape[1] - 1)])
+        return np.asarray(self.overturned[rows, np.clip(column, 0, self.overturned.shape[1] - 1)])
 
 
 def _outcomes(body: AbstractBlock, motions: Sequence[Record], resolution: float, stop: StopFlag | None) -> _Outcomes:
@@ -247,7 +255,7 @@ def _line(ratio: Array, outcomes: _Outcomes, share: float) -> _Line:
     sign = np.where(outcomes.overturned[tried], 1.0, -1.0)
 
     def misfit(unknowns: Array) -> tuple[float, Array]:
-        """Less the logarithm of the likelihood, and its derivatives."""
+        """Minus the logarithm of the likelihood, and its derivatives."""
         at_middle, slope, spread = unknowns
         z = sign * (y - at_middle - slope * x) * math.exp(-spread)
         logarithm = log_ndtr(z)
@@ -267,13 +275,14 @@ def _line(ratio: Array, outcomes: _Outcomes, share: float) -> _Line:
     dispersion = math.exp(spread)
     margin = dispersion * float(stdtrit(n - 2, share)) * prediction
     margin = max(margin, SKEWNESS * margin)
-    return _Line(intercept, slope, dispersion, _shown(outcomes, intercept + slope * ratio, margin, share))
+    margin = _confirmed_margin(outcomes, intercept + slope * ratio, margin, share)
+    return _Line(intercept, slope, dispersion, margin)
 
 
-def _shown(outcomes: _Outcomes, line: Array, margin: float, share: float) -> float:
-    """The smallest margin from this one on at which so many records overturn as the share of one more would need.
+def _confirmed_margin(outcomes: _Outcomes, line: Array, margin: float, share: float) -> float:
+    """The smallest margin, from this one on, at which P (m + 1) of the m records overturn, P the share.
 
-    Records that were not tried so high do not count; where those that do are too few to show the share, the margin.
+    Records that were not tried so high do not count. Where those that count are too few, the margin is returned.
     """
     while True:
         level = line + margin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -23,7 +24,10 @@ MIN_SAMPLES = 5  # fewest samples of a flight that is used [-]
 
 
 def oscillation_text(impacts: Array, peaks: Array) -> str | None:
-    """A text if the flights last as long whatever their peak: those of a block last as its power 1/2 and more."""
+    """Text about an oscillation, whose periods do not depend on the peaks; None for free rocking.
+
+    Flights of a block last as the power 1/2, and more, of their peaks.
+    """
     duration = np.diff(impacts)
     peak = np.abs(peaks[1 : duration.size + 1])
     if np.ptp(np.log(peak)) == 0.0 or np.polyfit(np.log(peak), np.log(duration), 1)[0] > 0.25:
@@ -57,7 +61,7 @@ def checked_trace(time: ArrayLike, rotation: ArrayLike, edges: int) -> tuple[Arr
 
 
 def rest_of(theta: Array) -> tuple[float, float, bool]:
-    """Rotation at rest, the median at the end or the middle if the body rocks on; noise; whether it comes to rest."""
+    """Rotation at rest, the median at the end or the middle if the body rocks on; noise; True if it comes to rest."""
     noise = float(np.median(np.abs(np.diff(theta, 3))) / (0.6745 * math.sqrt(20.0)))  # of normal errors
     end, half = theta[-max(theta.size // 10, 3) :], theta[theta.size // 2 :]
     rests = bool(np.std(end) <= LEVEL * noise)
@@ -75,12 +79,21 @@ def flights_of(t: Array, theta: Array, noise: float) -> tuple[list[Index], Array
     runs = np.split(above, np.flatnonzero(np.diff(np.sign(theta[above]))) + 1)
     stands_out = [run.size >= MIN_SAMPLES and bool(np.abs(theta[run]).max() > threshold) for run in runs]
     first = stands_out.index(True) if any(stands_out) else len(runs)
-    count = next((k for k, one in enumerate(stands_out[first:]) if not one), len(runs) - first)
-    flights = runs[first : first + min(count, MAX_FLIGHTS)]
-    if len(flights) < 2:
-        return flights, np.empty(0)
-    roots = [np.sort(np.roots(np.polyfit(t[run] - t[run[0]], theta[run], 2)).real) + t[run[0]] for run in flights]
-    before = [t[flights[0][-1]], *(ends[-1] for ends in roots[1:-1])]
-    between = [0.5 * (end + ends[0]) for end, ends in zip(before, roots[1:], strict=True)]
-    low, high = ([t[run[place]] for run in part] for place, part in ((-1, flights[:-1]), (0, flights[1:])))
-    return flights, np.clip(between, low, high)
+    flights: list[Index] = []
+    for run, is_flight in zip(runs[first:], stands_out[first:], strict=True):
+        if not is_flight or len(flights) == MAX_FLIGHTS:
+            break
+        flights.append(run)
+    impacts: list[float] = []
+    for flight, following in itertools.pairwise(flights):
+        end = _roots(t, theta, flight)[-1] if impacts else t[flight[-1]]
+        between = 0.5 * (end + _roots(t, theta, following)[0])
+        impacts.append(float(np.clip(between, t[flight[-1]], t[following[0]])))
+    return flights, np.array(impacts)
+
+
+def _roots(t: Array, theta: Array, flight: Index) -> Array:
+    """Times at which the parabola through a flight is zero, ascending."""
+    start = t[flight[0]]
+    coefficients = np.polyfit(t[flight] - start, theta[flight], 2)
+    return np.asarray(np.sort(np.roots(coefficients).real) + start)

@@ -30,9 +30,9 @@ TYPES = {"PGA": ("pga", "m s-2", STANDARD_GRAVITY), "PGV": ("pgv", "m s-1", 0.01
 """Measure of this package, its unit, and the unit of the files in it, by the type of measure in the files."""
 
 LABELS = {"Peak Ground Acceleration": "PGA", "Peak Ground Velocity": "PGV"}
-"""What the Unified Hazard Tool calls the types."""
+"""Types by their names in the Unified Hazard Tool."""
 
-OWN = "two columns with the header `pga [g],annual rate [1/year]`"
+TWO_COLUMNS = "two columns with the header `pga [g],annual rate [1/year]`"
 
 MAX_BYTES = 10_000_000  # largest file that is read
 
@@ -75,10 +75,10 @@ def read_hazard(path: str | PathLike[str]) -> xr.DataArray:
     if levels.shape != rates.shape:
         raise _refused(file, f"{levels.size} levels and {rates.size} rates", "as many")
     measure, unit, factor = TYPES[kind]
-    kept = (rates > 0.0) & np.isfinite(rates)
-    x, annual = check_hazard_curve((levels[kept] * factor, rates[kept]))
-    about = {"units": "year-1", "long_name": "annual rate of exceedance", "measure": measure, "source": file.name}
-    return xr.DataArray(annual, {"intensity": ("intensity", x, {"units": unit})}, "intensity", "hazard", about)
+    inside = (rates > 0.0) & np.isfinite(rates)  # rates of 0 and of probability 1 say nothing
+    x, annual = check_hazard_curve((levels[inside] * factor, rates[inside]))
+    attributes = {"units": "year-1", "long_name": "annual rate of exceedance", "measure": measure, "source": file.name}
+    return xr.DataArray(annual, {"intensity": ("intensity", x, {"units": unit})}, "intensity", "hazard", attributes)
 
 
 def hazard_arrays(hazard: Any, measure: str | None = None) -> tuple[ArrayLike, ArrayLike]:
@@ -105,32 +105,33 @@ def hazard_arrays(hazard: Any, measure: str | None = None) -> tuple[ArrayLike, A
 def _curve(file: Path, rows: list[list[str]], text: str) -> tuple[str, Array, Array]:
     """Type of measure, levels and annual rates, in the units of the file."""
     if text.startswith("#"):
-        about = dict(re.findall(r"(\w+)='?([^',\"]*)", ",".join(rows[0])))
-        if not {"imt", "investigation_time"} <= about.keys():
+        comment = dict(re.findall(r"(\w+)='?([^',\"]*)", ",".join(rows[0])))
+        if not {"imt", "investigation_time"} <= comment.keys():
             raise _refused(file, "a comment without imt and investigation_time", "a file of hazard curves of OpenQuake")
         levels, poes = _site(file, rows[1:], "poe-")
-        years = positive("hazard", float(about["investigation_time"]), "year")
+        years = positive("hazard", float(comment["investigation_time"]), "year")
         with np.errstate(divide="ignore"):
-            return _known(file, about["imt"]), levels, -np.log1p(-in_range("hazard", poes, 0.0, 1.0)) / years
-    if rows and {"lon", "lat"} <= set(rows[0]):
-        return _known(file, file.resolve().parent.name), *_site(file, rows, "")
-    own = re.fullmatch(r"(pg[av]) *\[(.+)\],annual[ _]rate( *\[1/year\])?", ",".join(rows[0]), re.I) if rows else None
-    if own is not None:
-        kind = own[1].upper()
-        texts = [f"{level} {own[2]}" for level, _ in rows[1:]]
+            return _checked_type(file, comment["imt"]), levels, -np.log1p(-in_range("hazard", poes, 0.0, 1.0)) / years
+    header = rows[0] if rows else []
+    if {"lon", "lat"} <= set(header):
+        return _checked_type(file, file.resolve().parent.name), *_site(file, rows, "")
+    columns = re.fullmatch(r"(pg[av]) *\[(.+)\],annual[ _]rate( *\[1/year\])?", ",".join(header), re.I)
+    if columns is not None:
+        kind = columns[1].upper()
+        texts = [f"{level} {columns[2]}" for level, _ in rows[1:]]
         unit = {"PGA": "m/s2", "PGV": "m/s"}[kind]
-        found = in_range("hazard", texts, 0.0, np.inf, closed="neither", unit=unit)
-        return kind, found / TYPES[kind][2], np.array([float(rate) for _, rate in rows[1:]])
+        levels = in_range("hazard", texts, 0.0, np.inf, closed="neither", unit=unit)
+        return kind, levels / TYPES[kind][2], np.array([float(rate) for _, rate in rows[1:]])
     lines = iter(text.splitlines())
     label = next((line.strip() for line in lines if line.strip() in LABELS), None)
     if label is None:
         raise _refused(
-            file, "its content", "a hazard curve of OpenQuake, nshmp-haz or the Unified Hazard Tool, or " + OWN
+            file, "its content", "a hazard curve of OpenQuake, nshmp-haz or the Unified Hazard Tool, or " + TWO_COLUMNS
         )
     return LABELS[label], _numbers(lines), _numbers(lines)
 
 
-def _known(file: Path, kind: str) -> str:
+def _checked_type(file: Path, kind: str) -> str:
     if kind not in TYPES:
         raise _refused(file, f"measure {kind}", f"{' or '.join(TYPES)}; curves.csv is in a folder of that name")
     return kind
@@ -152,5 +153,5 @@ def _numbers(lines: Iterator[str]) -> Array:
     return np.array(next(lines, "").split(), dtype=np.float64)
 
 
-def _refused(file: Path, found: str, allowed: str) -> InvalidArgumentError:
-    return InvalidArgumentError("hazard", f"{file}: {found}", allowed)
+def _refused(file: Path, value: str, allowed: str) -> InvalidArgumentError:
+    return InvalidArgumentError("hazard", f"{file}: {value}", allowed)

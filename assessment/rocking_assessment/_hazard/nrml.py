@@ -90,7 +90,8 @@ def write_nrml(
         else:
             low, high = (f"{level / unit:.9g}" for level in (levels[0], levels[-1]))
             ET.SubElement(function, "imls", imt=name, noDamageLimit=low, minIML=low, maxIML=high)
-        for state, reached in ((state, of_blocks[k]) for state, of_blocks in reached_by.items()):
+        for state, of_blocks in reached_by.items():
+            reached = of_blocks[k]
             if format == "discrete":
                 ET.SubElement(function, "poes", ls=state).text = _numbers(reached.mean(axis=1))
                 continue
@@ -113,33 +114,32 @@ def write_nrml(
         path.write(content)
 
 
-def checked_measure(fragility: xr.Dataset, known: Mapping[str, object]) -> str:
-    """The measure of a fragility, which is one of those known."""
+def checked_measure(fragility: xr.Dataset, measures: Mapping[str, object]) -> str:
+    """The measure of a fragility, one of `measures`."""
     measure = str(fragility.attrs.get("measure", ""))
-    if measure not in known:
-        raise InvalidArgumentError("fragility", measure, f"a fragility with the measure {' or '.join(known)}")
+    if measure not in measures:
+        raise InvalidArgumentError("fragility", measure, f"a fragility with the measure {' or '.join(measures)}")
     return measure
 
 
 def reached_states(fragility: xr.Dataset) -> tuple[Array, dict[str, Flags]]:
-    """The levels, and by limit state whether it is reached, (blocks, levels, records)."""
+    """The levels, and by limit state True where it is reached, (blocks, levels, records)."""
     data = with_block(fragility)
     levels = data["intensity"].values
     if levels.size < 2:
         raise InvalidArgumentError("fragility", f"{levels.size} level", "two levels at least")
     outcomes = data[["overturned", "peak_rotation"]].transpose("block", "intensity", "record")
     overturns = outcomes["overturned"].values.astype(bool)
-    return levels, dict(
-        zip(LIMIT_STATES, (overturns | (outcomes["peak_rotation"].values > 0.0), overturns), strict=True)
-    )
+    rocks = overturns | (outcomes["peak_rotation"].values > 0.0)
+    return levels, {"rocks": rocks, "overturns": overturns}
 
 
-def lognormal_of(reached: Flags, levels: Array, what: str, argument: tuple[str, object, str]) -> tuple[float, float]:
+def lognormal_of(reached: Flags, levels: Array, curve: str, argument: tuple[str, object, str]) -> tuple[float, float]:
     """Median and dispersion of the lognormal fit to (levels, records); without a fit, an error of `argument`."""
     fit = fit_curve(reached, levels, model="lognormal")
     if fit.status not in (FitStatus.FITTED, FitStatus.SEPARATED):
         name, value, allowed = argument
-        raise InvalidArgumentError(name, value, f"{allowed}: {what}: {fit.status.sentence}")
+        raise InvalidArgumentError(name, value, f"{allowed}: {curve}: {fit.status.sentence}")
     return fit.median, max(fit.dispersion, STEP_DISPERSION)
 
 

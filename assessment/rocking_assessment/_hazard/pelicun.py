@@ -1,7 +1,7 @@
 """Fragility curves for pelicun: the CSV of components that it reads for FEMA P-58.
 
 Columns and units are those of the files of pelicun 3.10: an identity, the demand with its unit, floor offset and
-whether it is taken along a direction, and for each limit state the family, median and dispersion of its curve.
+a flag for one along a direction, and for each limit state the family, median and dispersion of its curve.
 """
 
 from __future__ import annotations
@@ -44,13 +44,14 @@ def write_pelicun(fragility: xr.Dataset, path: str | PathLike[str]) -> None:
         "ID": blocks,
         "Incomplete": [0] * len(blocks),
         "Demand-Type": [demand] * len(blocks),
+        "Demand-Unit": [unit] * len(blocks),
+        "Demand-Offset": [0] * len(blocks),
+        "Demand-Directional": [1] * len(blocks),
     }
-    columns |= {"Demand-Unit": [unit] * len(blocks), "Demand-Offset": [0] * len(blocks)}
-    columns |= {"Demand-Directional": [1] * len(blocks)}
     argument = "fragility", "levels", "levels between which it changes"
     for k, (state, reached) in enumerate(reached_by.items(), start=1):
-        each = zip(blocks, reached, strict=True)
-        fits = [lognormal_of(own, levels, f"{block} {state}", argument) for block, own in each]
+        pairs = zip(blocks, reached, strict=True)
+        fits = [lognormal_of(of_block, levels, f"{block} {state}", argument) for block, of_block in pairs]
         columns[f"LS{k}-Family"] = ["lognormal"] * len(blocks)
         columns[f"LS{k}-Theta_0"] = [median / in_si for median, _ in fits]
         columns[f"LS{k}-Theta_1"] = [dispersion for _, dispersion in fits]

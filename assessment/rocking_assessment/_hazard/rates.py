@@ -12,7 +12,7 @@ Cornell C. A. (1968), Engineering seismic risk analysis, Bulletin of the Seismol
 
 import math
 from os import PathLike
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -66,57 +66,60 @@ def annual_rate(fragility: xr.Dataset, hazard: Hazard) -> xr.Dataset:
         raise InvalidArgumentError("fragility", sorted(map(str, fragility.variables)), "a result of rocking.fragility")
     x, rates = check_hazard_curve(hazard_arrays(hazard, fragility.attrs.get("measure")))
     shape = fragility["median_intensity"]
-    lower, upper = (xr.full_like(shape, np.nan) for _ in range(2))
-    levels = fragility["intensity"].values[[0, -1]] if "intensity" in fragility.coords else np.array([np.nan, np.nan])
-    for name in fragility["model"].values.tolist():
-        own = {"model": name}
-        median, dispersion = (fragility[part].sel(own).values for part in ("median_intensity", "dispersion"))
-        bounds: Any = curve_rates(name, x, rates, median, dispersion)
-        if "fit_status" in fragility:
-            status = fragility["fit_status"].sel(own).values
-            bounds = [
-                np.where(status == FitStatus.NONE_REACHES, none, np.where(status == FitStatus.ALL_REACH, every, each))
-                for none, every, each in zip(*outcome_rates(x, rates, levels), bounds, strict=True)
-            ]
-        lower.loc[own], upper.loc[own] = bounds
+    lower, upper = xr.full_like(shape, np.nan), xr.full_like(shape, np.nan)
+    levels = np.full(2, np.nan)
+    if "intensity" in fragility.coords:
+        levels = fragility["intensity"].values[[0, -1]]
+    for model in fragility["model"].values.tolist():
+        curves = fragility.sel(model=model)
+        bounds = [*curve_rates(model, x, rates, curves["median_intensity"].values, curves["dispersion"].values)]
+        if "fit_status" in curves:
+            status = curves["fit_status"].values
+            none_reaches, all_reach = outcome_rates(x, rates, levels)
+            for k in range(2):
+                bounds[k] = np.where(status == FitStatus.ALL_REACH, all_reach[k], bounds[k])
+                bounds[k] = np.where(status == FitStatus.NONE_REACHES, none_reaches[k], bounds[k])
+        lower.loc[{"model": model}], upper.loc[{"model": model}] = bounds
     estimate = lower.where(np.isfinite(shape))
-    about = {"units": "year-1", "comment": f"hazard curve from {x[0]:g} to {x[-1]:g}"}
+    attributes = {"units": "year-1", "comment": f"hazard curve from {x[0]:g} to {x[-1]:g}"}
     meaning = "annual rate of reaching the limit state"
     return xr.Dataset(
         {
-            "annual_rate": estimate.assign_attrs(about, long_name=f"{meaning}, above the hazard curve as at its end"),
-            "annual_rate_lower": lower.assign_attrs(about, long_name=f"{meaning}, at least"),
-            "annual_rate_upper": upper.assign_attrs(about, long_name=f"{meaning}, at most; infinite: not bounded"),
+            "annual_rate": estimate.assign_attrs(
+                attributes, long_name=f"{meaning}, above the hazard curve as at its end"
+            ),
+            "annual_rate_lower": lower.assign_attrs(attributes, long_name=f"{meaning}, at least"),
+            "annual_rate_upper": upper.assign_attrs(attributes, long_name=f"{meaning}, at most; infinite: not bounded"),
         },
         attrs={"measure": fragility.attrs.get("measure", "")},
     )
 
 
 def curve_rates(model: str, x: Array, rates: Array, median: Array, dispersion: Array) -> tuple[Array, Array]:
-    """Bounds of the annual rate at which curves reach their limit states, at least and at most, nan without a curve
-    [1/year].
+    """Lower and upper bounds of the annual rate at which curves reach limit states, nan without a curve [1/year].
 
     `x`, `rates`: the hazard curve; `median`, `dispersion` (...): of the curves of kind `model`. See `annual_rate`.
     """
     weights, nodes = hazard_quadrature(x, rates)
-    found = np.asarray(curve_probability(model, nodes, median[..., None], dispersion[..., None]) @ weights)
-    for k in np.argwhere(np.abs(dispersion) < NARROW):
-        at, width = float(median[tuple(k)]), abs(float(dispersion[tuple(k)]))
-        inner = np.unique(at * np.exp(width * PARTS))
+    integral = np.asarray(curve_probability(model, nodes, median[..., None], dispersion[..., None]) @ weights)
+    for k in map(tuple, np.argwhere(np.abs(dispersion) < NARROW)):
+        inner = np.unique(median[k] * np.exp(np.abs(dispersion[k]) * PARTS))
         parts = np.union1d(x, inner[(inner > x[0]) & (inner < x[-1])])
-        own, finer = hazard_quadrature(parts, np.exp(np.interp(np.log(parts), np.log(x), np.log(rates))))
-        found[tuple(k)] = curve_probability(model, finer, at, dispersion[tuple(k)]) @ own
-    at_start, at_end = (curve_probability(model, end, median, dispersion) for end in (x[0], x[-1]))
-    lower = found + at_end * rates[-1]
+        weights, nodes = hazard_quadrature(parts, exceedance_rates(x, rates, parts))
+        integral[k] = curve_probability(model, nodes, median[k], dispersion[k]) @ weights
+    at_start = curve_probability(model, x[0], median, dispersion)
+    at_end = curve_probability(model, x[-1], median, dispersion)
+    lower = integral + at_end * rates[-1]
     unbounded = at_start * rates[0] > NEGLIGIBLE * lower
-    return lower, np.where(unbounded, np.inf, found + rates[-1])
+    return lower, np.where(unbounded, np.inf, integral + rates[-1])
 
 
 def outcome_rates(x: Array, rates: Array, levels: Array) -> tuple[tuple[float, float], tuple[float, float]]:
     """Bounds of the annual rate if no record reaches a limit state up to the last level, or all from the first on."""
     first, last = levels[0], levels[-1]
-    at_most = np.inf if last < x[0] else float(exceedance_rates(x, rates, last))
-    return (0.0, at_most), (0.0 if first > x[-1] else float(exceedance_rates(x, rates, first)), np.inf)
+    upper = np.inf if last < x[0] else float(exceedance_rates(x, rates, last))
+    lower = 0.0 if first > x[-1] else float(exceedance_rates(x, rates, first))
+    return (0.0, upper), (lower, np.inf)
 
 
 def exceedance_rates(x: Array, rates: Array, intensity: Array) -> Array:

@@ -71,7 +71,7 @@ round base, are rounded.
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A closed surface in metres, z upwards, and what a user should know of its file."""
+    """A closed surface in metres, z upwards, and remarks on its file."""
 
     path: str
     surface: trimesh.Trimesh
@@ -327,11 +327,8 @@ def _repaired(mesh: trimesh.Trimesh) -> Surface:
         volumes = np.bincount(surface, np.einsum("ij,ij->i", corners[0], np.cross(corners[1], corners[2])) / 6.0)
         empty = int((np.abs(volumes) <= EMPTY * mesh.volume).sum())
         if empty:
-            return (
-                mesh,
-                [],
-                f"has {empty} surface{'s' if empty > 1 else ''} that enclose{'' if empty > 1 else 's'} nothing",
-            )
+            text = f"has {empty} surfaces that enclose nothing" if empty > 1 else "has 1 surface that encloses nothing"
+            return mesh, [], text
         remarks.append(
             f"has {mesh.body_count} separate surfaces, which are treated as one body; those whose faces point inwards "
             "are cavities"

@@ -19,14 +19,14 @@ def with_few_parts(content: bytes, kind: str) -> bytes:
     """The content of a mesh file of a kind such as "obj", without its materials, which divide a mesh at their seams."""
     if kind == "obj":
         return _MATERIAL.sub(b"", content)
-    for what, count in _parts(content, kind):
+    for part, count in _parts(content, kind):
         if count > MAX_PARTS:
-            raise ValueError(f"{count} {what}, of at most {MAX_PARTS}")
+            raise ValueError(f"{count} {part}, of at most {MAX_PARTS}")
     return content
 
 
 def _parts(content: bytes, kind: str) -> Iterator[tuple[str, int]]:
-    """What a file has several of, and how many."""
+    """Names of the parts of a file, with their numbers."""
     if kind == "ply":
         yield "elements and properties", len(_PLY_ELEMENT.findall(content.partition(b"end_header")[0]))
     elif kind == "stl" and content.lstrip()[:5].lower() == b"solid":
@@ -36,5 +36,5 @@ def _parts(content: bytes, kind: str) -> Iterator[tuple[str, int]]:
         for name, listed in tree.items():
             if isinstance(listed, list):
                 yield name, len(listed)
-        yield "primitives", sum(len(one.get("primitives", ())) for one in tree.get("meshes", ()))
-        yield "children", sum(len(one.get("children", ())) for one in tree.get("nodes", ()))
+        yield "primitives", sum(len(mesh.get("primitives", ())) for mesh in tree.get("meshes", ()))
+        yield "children", sum(len(node.get("children", ())) for node in tree.get("nodes", ()))

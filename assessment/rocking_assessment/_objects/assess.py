@@ -1,4 +1,4 @@
-"""`assess`: which objects the motions of a site overturn, at which lowest factor, and how far others rock."""
+"""`assess`: objects that the motions of a site overturn, the lowest factors that do so, and rotations of the others."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from rocking_assessment._objects.columns import (
     RESTS_AT_FULL_STRENGTH,
     digits_apart,
 )
-from rocking_assessment._objects.motions import first_exceedances
+from rocking_assessment._objects.motions import first_exceedances, frictions
 from rocking_assessment._objects.objects import Bodies, BodyArray, MeshObject, Object
 from rocking_assessment._objects.result import Assessment
 from rocking_assessment._objects.search import (
@@ -79,7 +79,7 @@ def assess(
     stop: StopFlag | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
-    """Which objects the motions of a site overturn, at which lowest factor, and how far the others rock.
+    """Find the objects that the motions of a site overturn, the lowest factors, and how far the other objects rock.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def assess(
     site : Site
         The ground motions. Horizontal ones act from both sides.
     sensitivity : bool
-        Whether to compute the smallest width, the largest height and the factors of changed objects, and when an object
+        True to compute the smallest width, the largest height and the factors of changed objects, and when an object
         with a coefficient of friction needs more friction while it rocks. This takes most of the time.
     samples : int
         Number of quasi-random variants of each object, 0 to 100,000: dimensions within its tolerance, restitution
@@ -133,8 +133,8 @@ def assess(
     those a 25th of `resolution` apart. Its bounds are without and with the ground motions that are stronger than those
     of the hazard curve or not computed, and the rate is given where they differ by at most 10 %.
     """
-    given = (objects,) if isinstance(objects, Object) else tuple(objects)
-    if not given or not all(isinstance(one, Object) for one in given):
+    assessed = (objects,) if isinstance(objects, Object) else tuple(objects)
+    if not assessed or not all(isinstance(obj, Object) for obj in assessed):
         raise InvalidArgumentError("objects", objects, "one or more objects of rocking_assessment.Object")
     variants = integer("samples", samples, 0, MAX_SAMPLES)
     chosen_seed = integer("seed", seed, 0, 2**53)
@@ -146,8 +146,13 @@ def assess(
         if progress is not None:
             progress(share / parts)
 
-    motions, bodies = site.find_motions(stop), Bodies.of(given)
+    motions, bodies = site.find_motions(stop), Bodies.of(assessed)
     body = bodies.scaled()
+    object_of_row: list[Object] = []
+    directions: list[str] = []
+    for obj in assessed:
+        object_of_row += [obj] * len(obj.planes)
+        directions += obj.planes
     factors = factors_of(body, motions, stop, advance, resolution=share_apart)
     at_full_strength, rotation, displacement = responses_of(body, motions, stop)
     factors = np.fmin(factors, np.where(at_full_strength, 1.0, np.nan))  # of an object beyond the range of the search
@@ -157,23 +162,23 @@ def assess(
     events, full_events = _by_event(overturned, motions), _by_event(at_full_strength, motions)
     share = events.mean(axis=1)
     uplifts = (np.nan_to_num(rotation) > 0.0).any(axis=1) | (share > 0.0)
-    no_depth = np.array([one.depth_is_missing for one in given for _ in one.planes])
+    no_depth = np.array([obj.depth_is_missing for obj in object_of_row])
     factor = least(factors)
     unknown = np.full(factor.size, np.nan)
-    low, high = binomial_interval(events.sum(axis=1), events.shape[1], CONFIDENCE) if site.records else (unknown,) * 2
+    low = high = unknown
+    if site.records:
+        low, high = binomial_interval(events.sum(axis=1), events.shape[1], CONFIDENCE)
     names = np.array([motion.name for motion in motions])
+    governing = names[np.nan_to_num(factors, nan=np.inf).argmin(axis=1)]
     columns: dict[str, Any] = {
-        "object": [one.name for one in given for _ in one.planes],
-        "direction": [direction for one in given for direction in one.planes],
+        "object": [obj.name for obj in object_of_row],
+        "direction": directions,
         "verdict": _verdicts(share, uplifts, no_depth),
         "uplifts": uplifts,
         "uplift_acceleration": uplift,
         "factor": factor,
-        "governing": [
-            names[int(np.nanargmin(own))] if np.isfinite(lowest) else ""
-            for own, lowest in zip(factors, factor, strict=True)
-        ],
-        "overturned_by": ["; ".join(names[own]) for own in overturned],
+        "governing": np.where(np.isfinite(factor), governing, ""),
+        "overturned_by": ["; ".join(names[hits]) for hits in overturned],
         "overturned_at_full_strength": ["; ".join(names[hits]) for hits in at_full_strength],
         "share": share,
         "share_at_full_strength": full_events.mean(axis=1),
@@ -184,40 +189,43 @@ def assess(
         **_annual_rate(bodies, factors, site, motions, share_apart, stop),
         "friction_needed": uplift / STANDARD_GRAVITY,
     }
-    columns |= _sliding(given, body, motions, sensitivity, stop)
-    ratios = demand_over_capacity(body, motions, clauses, stop)
-    columns |= {f"{name}_ratio": -least(-each) for name, each in ratios.items()}
-    contact = [one.contact_height if isinstance(one, MeshObject) else math.nan for one in given for _ in one.planes]
+    columns |= _sliding(object_of_row, body, motions, sensitivity, stop)
+    for name, ratio in demand_over_capacity(body, motions, clauses, stop).items():
+        columns[f"{name}_ratio"] = -least(-ratio)
+    contact = [obj.contact_height if isinstance(obj, MeshObject) else math.nan for obj in object_of_row]
     columns["contact_tolerance"] = np.array(contact)
-    columns |= {one.name: unknown for one in OUTPUTS if one.name not in columns}
     if sensitivity:
         columns |= changed_objects(
-            given, bodies, factors, motions, share_apart, stop, lambda share: advance(1.0 + share)
+            object_of_row, bodies, factors, motions, share_apart, stop, lambda share: advance(1.0 + share)
         )
     if variants:
         columns["sampled_share"] = sampled_share(
-            given, bodies, factors, motions, variants, chosen_seed, share_apart, stop
+            object_of_row, bodies, factors, motions, variants, chosen_seed, share_apart, stop
         )
-    columns["warnings"] = _warnings(given, columns, motions, record_doubts(site))
+    columns = {quantity.name: columns.get(quantity.name, unknown) for quantity in OUTPUTS}
+    columns["warnings"] = _warnings(object_of_row, bodies, columns, motions, record_doubts(site))
     order = np.lexsort((-np.nan_to_num(columns["rotation"]), np.nan_to_num(factor, nan=np.inf), ~no_depth, -share))
-    kept = {one.name: np.asarray(columns[one.name])[order] for one in OUTPUTS}
-    each = [one for one in given for _ in one.planes]
-    ordered = tuple(each[k] for k in order)
-    apart = share_apart if any(motion.motion.is_scanned for motion in motions) else 0.0
     return Assessment(
-        kept, tuple(names.tolist()), searched_factor(motions), ordered, factors[order], rotation[order], site, apart
+        {name: np.asarray(values)[order] for name, values in columns.items()},
+        tuple(names.tolist()),
+        searched_factor(motions),
+        tuple(object_of_row[k] for k in order),
+        factors[order],
+        rotation[order],
+        site,
+        share_apart if any(motion.motion.is_scanned for motion in motions) else 0.0,
     )
 
 
 def _verdicts(share: Array, uplifts: Flags, no_depth: Flags) -> NDArray[np.str_]:
-    """The verdict of each row: of `VERDICTS`, from the share of the motions that overturn it."""
+    """Verdict of each row, one of `VERDICTS`, from the share of the motions that overturn it."""
     survives = np.where(no_depth, DEPTH_MISSING, np.where(uplifts, "rocks", "stays"))
     overturns = np.where(share > 0.5, "overturns in most", "overturns in some motions")
     return np.where(share > 0.0, overturns, survives)
 
 
 def _by_event(overturned: Flags, motions: Sequence[Motion]) -> Flags:
-    """Whether a motion of each group overturns: arrays (..., motions) become (..., groups)."""
+    """True where a motion of a group overturns: arrays (..., motions) become (..., groups)."""
     groups = np.array([motion.group for motion in motions])
     return np.stack([overturned[..., groups == group].any(axis=-1) for group in range(groups.max() + 1)], axis=-1)
 
@@ -227,20 +235,21 @@ def _annual_rate(
 ) -> dict[str, Array]:
     """Annual rate of overturning and its bounds: the mean over the events of the site, each equally likely.
 
-    `factors`: lowest ones that overturn each body (bodies, motions), below which none does. See `_event_rates`.
+    `factors`: lowest ones that overturn each body (bodies, motions), below which none does. See `_event_rates`. Empty
+    without a hazard curve.
     """
-    rate, lower, upper = (np.full(bodies.base.size, np.nan) for _ in range(3))
-    if site.hazard is not None:
-        groups = np.array([motion.group for motion in motions])
-        bounds = []
-        for group in range(int(groups.max()) + 1):
-            chosen = np.flatnonzero(groups == group)
-            event = [motions[k] for k in chosen.tolist()]
-            lowest = np.nan_to_num(least(factors[:, chosen]), nan=HIGHEST_FACTOR)
-            parts = np.array_split(np.arange(lowest.size), math.ceil(lowest.size / AT_ONCE))
-            rates = [_event_rates(bodies.take(rows), event, lowest[rows], site, resolution, stop) for rows in parts]
-            bounds.append(np.concatenate(rates, axis=1))
-        rate, lower, upper = np.mean(bounds, axis=0)
+    if site.hazard is None:
+        return {}
+    groups = np.array([motion.group for motion in motions])
+    bounds = []
+    for group in range(int(groups.max()) + 1):
+        columns = np.flatnonzero(groups == group)
+        event = [motions[k] for k in columns.tolist()]
+        lowest = np.nan_to_num(least(factors[:, columns]), nan=HIGHEST_FACTOR)
+        parts = np.array_split(np.arange(lowest.size), math.ceil(lowest.size / AT_ONCE))
+        rates = [_event_rates(bodies.take(rows), event, lowest[rows], site, resolution, stop) for rows in parts]
+        bounds.append(np.concatenate(rates, axis=1))
+    rate, lower, upper = np.mean(bounds, axis=0)
     reaches = upper <= lower * (1.0 + WIDE)
     return {
         "annual_rate": np.where(reaches, rate, np.nan),
@@ -252,12 +261,12 @@ def _annual_rate(
 def _event_rates(
     bodies: Bodies, event: Sequence[Motion], lowest: Array, site: Site, resolution: float, stop: StopFlag | None
 ) -> Array:
-    """Annual rate at which an event overturns bodies: estimated, at least, and at most; array (3, bodies).
+    """Annual rate at which an event overturns bodies, its lower and its upper bound; array (3, bodies).
 
     It is the sum over the ranges of peak ground accelerations in which one of its records overturns the body of the
     difference of the rates at which their ends are exceeded. An end lies between two accelerations that are computed.
-    At least: the range begins and ends inside of them, and ground motions beyond the ends of the hazard curve do not
-    overturn the body. At most: it begins and ends outside of them, and all ground motions stronger than the curve
+    Lower bound: the range begins and ends inside of them, and ground motions beyond the ends of the hazard curve do not
+    overturn the body. Upper: it begins and ends outside of them, and all ground motions stronger than the curve
     overturn the body, as do those that are not computed because a vertical component reaches -g; there is no bound
     where a weaker one than the curve overturns it. `lowest`: factors below which none does (bodies,).
     """
@@ -268,46 +277,45 @@ def _event_rates(
     begin = lowest * event[0].ground
     end = min(intensity[-1], event[0].ground * min(strongest_factor(motion) for motion in event))
     if end <= intensity[0]:
-        nothing = np.zeros(lowest.size)
-        return np.stack([nothing, nothing, np.full(lowest.size, np.inf)])
+        zeros = np.zeros(lowest.size)
+        return np.stack([zeros, zeros, np.full(lowest.size, np.inf)])
     count = math.ceil(math.log(end / intensity[0]) / math.log1p(RATE_SHARE * resolution))
     levels: Array = np.geomspace(intensity[0], end, count + 1)
     exceeded = exceedance_rates(intensity, rates, levels)
     body = bodies.scaled()
 
-    def outcomes(line: Index, ground: Array) -> Flags:
-        computed = ground >= begin[line]
-        overturned = np.zeros(line.size, dtype=np.bool_)
-        overturned[computed] = estimated_outcomes(body, event, line[computed], ground[computed], stop)
+    def outcomes(row: Index, ground: Array) -> Flags:
+        computed = ground >= begin[row]
+        overturned = np.zeros(row.size, dtype=np.bool_)
+        overturned[computed] = estimated_outcomes(body, event, row[computed], ground[computed], stop)
         return overturned
 
-    line, level = (part.ravel() for part in np.indices((lowest.size, levels.size)))
-    overturned = outcomes(line, levels[level]).reshape(lowest.size, levels.size)
+    row, level = (part.ravel() for part in np.indices((lowest.size, levels.size)))
+    overturned = outcomes(row, levels[level]).reshape(lowest.size, levels.size)
     certain = (overturned[:, :-1] & overturned[:, 1:]) @ -np.diff(exceeded)
     # the ends of the ranges, between a level below and one above
-    line, level = np.nonzero(overturned[:, :-1] != overturned[:, 1:])
-    begins = overturned[line, level + 1]
+    row, level = np.nonzero(overturned[:, :-1] != overturned[:, 1:])
+    begins = overturned[row, level + 1]
     below, above = levels[level], levels[level + 1]
     for _ in range(RATE_BISECTIONS):
         middle = np.sqrt(below * above)
-        is_beyond = outcomes(line, middle) == begins
+        is_beyond = outcomes(row, middle) == begins
         below, above = np.where(is_beyond, below, middle), np.where(is_beyond, middle, above)
     within = exceedance_rates(intensity, rates, np.stack([below, above]))
     beside = np.where(begins, within[1] - exceeded[level + 1], exceeded[level] - within[0])
-    inside = certain + np.bincount(line, beside, lowest.size)
-    unknown = np.bincount(line, within[0] - within[1], lowest.size)
-    most = np.where(begin >= intensity[0], inside + unknown + exceeded[-1], np.inf)
-    return np.stack([inside + 0.5 * unknown, inside, most])
+    lower = certain + np.bincount(row, beside, lowest.size)
+    uncertain = np.bincount(row, within[0] - within[1], lowest.size)
+    upper = np.where(begin >= intensity[0], lower + uncertain + exceeded[-1], np.inf)
+    return np.stack([lower + 0.5 * uncertain, lower, upper])
 
 
 def _sliding(
     objects: Sequence[Object], body: BodyArray, motions: Sequence[Motion], rocking: bool, stop: StopFlag | None
 ) -> dict[str, Any]:
-    """Whether each body slides before it rocks (None: not known), under which motions, from what time, and how far."""
-    given: list[Any] = [None if plane.side else one.friction for one in objects for plane in one.planes.values()]
-    friction = np.array([math.nan if mu is None else mu for mu in given], dtype=np.float64)
-    needed = np.asarray(body.uplift_acceleration) / STANDARD_GRAVITY
-    first = [None if mu is None else bool(mu < need) for mu, need in zip(given, needed, strict=True)]
+    """Columns on sliding before rocking (None: not known): the motions that do so, the earliest time, the distance."""
+    friction = np.where(body.side == 0.0, frictions(objects), math.nan)
+    is_known = ~np.isnan(friction)
+    slides = friction < np.asarray(body.uplift_acceleration) / STANDARD_GRAVITY
     times = first_exceedances(body, friction, motions, stop, rocking=rocking)
 
     @cache
@@ -315,27 +323,34 @@ def _sliding(
         check_stop(stop)
         return max(sliding_displacement(motion, mu) for motion in motions)
 
-    def under(row: Array) -> str:
-        listed = (f"{one.name} from {t:.3g} s" for one, t in zip(motions, row.tolist(), strict=True) if t == t)
-        return "; ".join(listed) or "none"
-
-    known = [slides or (slides is not None and rocking) for slides in first]
+    slides_first = slides.astype(object)
+    slides_first[~is_known] = None
+    slides_under, sliding = [""] * len(objects), np.full(len(objects), math.nan)
+    for row in np.flatnonzero(slides | (is_known & rocking)).tolist():
+        pairs = zip(motions, times[row].tolist(), strict=True)
+        listed = [f"{motion.name} from {time:.3g} s" for motion, time in pairs if not math.isnan(time)]
+        slides_under[row] = "; ".join(listed) or "none"
+        if slides[row]:
+            sliding[row] = slip(float(friction[row]))
     return {
-        "slides_first": np.array(first, dtype=object),
-        "slides_under": [under(row) if own else "" for row, own in zip(times, known, strict=True)],
+        "slides_first": slides_first,
+        "slides_under": slides_under,
         "slides_at": least(times),
-        "sliding": np.array([slip(mu) if slides else math.nan for mu, slides in zip(given, first, strict=True)]),
+        "sliding": sliding,
     }
 
 
 def _warnings(
-    objects: Sequence[Object], columns: dict[str, Any], motions: Sequence[Motion], doubts: Sequence[str]
+    objects: Sequence[Object],
+    bodies: Bodies,
+    columns: dict[str, Any],
+    motions: Sequence[Motion],
+    doubts: Sequence[str],
 ) -> list[str]:
     """Warnings of each row, in words; `doubts` are the warnings of the motions."""
     weakest, searched = min(motions, key=strongest_factor), searched_factor(motions)
-    given = [(one, plane) for one in objects for plane in one.planes.values()]
-    found = []
-    for k, (one, plane) in enumerate(given):
+    warnings = []
+    for k, obj in enumerate(objects):
         factor, texts = columns["factor"][k], []
         if abs(factor - 1.0) < CLOSE:
             side = "unsafe side: overturned from" if factor <= 1.0 else "safe side: not overturned below"
@@ -346,26 +361,25 @@ def _warnings(
             lifts = f"from there on the vertical acceleration of {weakest.name} reaches -g"
             texts.append(f"not all motions are searched above factor {searched:g}: {lifts}")
         if math.isfinite(columns["slides_at"][k]):
-            when = f"its friction of {one.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
+            when = f"its friction of {obj.friction:.3g} does not suffice from {columns['slides_at'][k]:.3g} s on"
             how = "slides before it rocks" if columns["slides_first"][k] else "may slide while it rocks"
             texts.append(f"{how}: {when}")
-        if plane.side:
+        if bodies.side[k]:
             texts.append("against a wall, whose forces are not part of the model: sliding is not assessed")
         elif columns["slides_first"][k] is None:
             texts.append("no coefficient of friction is given: sliding is not assessed")
-        if one.depth_is_missing:
+        if obj.depth_is_missing:
             texts.append("no depth is given: only rocking along the width is assessed, measure the depth")
-        if one.diameter is not None:
+        if obj.diameter is not None:
             texts.append("round base: the plane model leaves out wobbling and rolling")
         if (columns["factor_slenderer"][k] <= 1.0) != (columns["factor_stockier"][k] <= 1.0):
             texts.append("the answer changes within the tolerance of the dimensions")
-        least_rate, most = columns["annual_rate_lower"][k], columns["annual_rate_upper"][k]
-        if not math.isnan(least_rate) and not most <= least_rate * (1.0 + WIDE):
-            bound = "without an upper bound" if math.isnan(most) else f"at most {most:.3g}"
+        lower, upper = columns["annual_rate_lower"][k], columns["annual_rate_upper"][k]
+        if not math.isnan(lower) and not upper <= lower * (1.0 + WIDE):
+            bound = "without an upper bound" if math.isnan(upper) else f"at most {upper:.3g}"
             text = "the hazard curve does not reach far enough: the annual rate of overturning is at least"
-            texts.append(f"{text} {least_rate:.3g}, {bound}")
-        less, more = columns["factor_less_restitution"][k], columns["factor_more_restitution"][k]
-        if (less <= 1.0) != (more <= 1.0):
+            texts.append(f"{text} {lower:.3g}, {bound}")
+        if (columns["factor_less_restitution"][k] <= 1.0) != (columns["factor_more_restitution"][k] <= 1.0):
             texts.append(f"the answer changes within {ETA_CHANGE:g} of the coefficient of restitution")
-        found.append("; ".join([*texts, *doubts]))
-    return found
+        warnings.append("; ".join([*texts, *doubts]))
+    return warnings

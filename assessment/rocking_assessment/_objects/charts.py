@@ -81,7 +81,7 @@ def line_of(name: str, axes: tuple[Axis, Axis], x: Array, y: Array, style: int =
     breaks = np.flatnonzero(np.diff(inside.astype(int))) + 1
     runs = [run for run in np.split(np.arange(x.size), breaks) if run.size and inside[run[0]]]
     drawn = [np.stack([across.at(x[run]), -up.at(y[run])], axis=1) for run in runs]
-    parts = [" ".join(f"{a:.1f},{b:.1f}" for a, b in one.tolist()) for one in drawn]
+    parts = [" ".join(f"{a:.1f},{b:.1f}" for a, b in points.tolist()) for points in drawn]
     return Line(name, parts, *STYLES[style % len(STYLES)])
 
 
@@ -90,5 +90,7 @@ def thinned(x: Array, y: Array) -> tuple[Array, Array]:
     if x.size <= MOST_POINTS:
         return x, y
     groups: Sequence[Array] = np.array_split(np.arange(x.size), MOST_POINTS // 2)
-    kept = np.unique([index for g in groups for index in (g[y[g].argmin()], g[y[g].argmax()])])
-    return x[kept], y[kept]
+    lowest = [group[y[group].argmin()] for group in groups]
+    highest = [group[y[group].argmax()] for group in groups]
+    extremes = np.unique([*lowest, *highest])
+    return x[extremes], y[extremes]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.extension import RESOLUTION, Outcome, Scalar, StopFlag
+from rocking.extension import RESOLUTION, Outcome, Scalar, StopFlag, variable
 from rocking_assessment._objects.objects import STEP, Bodies, Plane
 from rocking_assessment._objects.search import HIGHEST_FACTOR, factor_from_one_side, problem_of
 from rocking_assessment._objects.site import Motion
@@ -59,25 +59,20 @@ def factors_by_direction(
             acceleration = motion.peak_acceleration * component[counted]
             full = problem_of(bodies.take(side).scaled(), motion, acceleration).solve(stop=stop)[0]["outcome"]
             at_full_strength[direction[full.ravel() >= Outcome.OVERTURNED_DIRECTLY]] = True
-    own = np.nan_to_num(np.stack(columns, axis=1), nan=np.inf)
-    by_side = np.where(ahead, own.min(axis=1) / np.where(ahead, component, 1.0), np.inf)
+    factors = np.nan_to_num(np.stack(columns, axis=1), nan=np.inf)
+    by_side = np.where(ahead, factors.min(axis=1) / np.where(ahead, component, 1.0), np.inf)
     side, factor = by_side.argmin(axis=1), by_side.min(axis=1)
-    known = factor <= HIGHEST_FACTOR
-    names = np.array([motion.name for motion in motions])
-    variables = {
-        "factor": (
-            np.where(known, factor, np.nan),
-            "1",
-            "lowest factor tried on the motions at which one of them overturns the object",
-        ),
-        "along": (np.where(known, across[side], np.nan), "degrees", "direction along which their component does so"),
-        "at_full_strength": (at_full_strength, "", "whether a motion overturns it at full strength, a factor of 1"),
-        "governing": (np.where(known, names[own[side].argmin(axis=1)], ""), "", "the motion that does so"),
-    }
+    overturns = factor <= HIGHEST_FACTOR
+    governing = np.array([motion.name for motion in motions])[factors[side].argmin(axis=1)]
+    factor_meaning = "lowest factor tried on the motions at which one of them overturns the object"
+    along_meaning = "direction along which their component does so"
+    full_meaning = "whether a motion overturns it at full strength, a factor of 1"
     return xr.Dataset(
         {
-            name: ("direction", values, {"long_name": meaning} | ({"units": unit} if unit else {}))
-            for name, (values, unit, meaning) in variables.items()
+            "factor": variable("direction", np.where(overturns, factor, np.nan), "1", factor_meaning),
+            "along": variable("direction", np.where(overturns, across[side], np.nan), "degrees", along_meaning),
+            "at_full_strength": variable("direction", at_full_strength, "", full_meaning),
+            "governing": variable("direction", np.where(overturns, governing, ""), "", "the motion that does so"),
         },
-        {"direction": ("direction", directions, {"units": "degrees", "long_name": "of the ground acceleration"})},
+        {"direction": variable("direction", directions, "degrees", "of the ground acceleration")},
     )

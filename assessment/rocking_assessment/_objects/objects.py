@@ -104,9 +104,9 @@ class Object:
             raise InvalidArgumentError("width", None, "a width, with or without a depth; or a diameter")
         if self.height is None:
             raise InvalidArgumentError("height", None, "a height")
-        for name, other in (("width", self.width), ("depth", self.depth)):
-            if self.diameter is not None and other is not None:
-                raise InvalidArgumentError(name, other, "none beside a diameter; a base is a rectangle or round")
+        for name, side in (("width", self.width), ("depth", self.depth)):
+            if self.diameter is not None and side is not None:
+                raise InvalidArgumentError(name, side, "none beside a diameter; a base is a rectangle or round")
         self._check_texts()
         checked: dict[str, float] = {}
         for name in ("width", "height", "depth", "diameter", "mass_height"):
@@ -124,15 +124,15 @@ class Object:
         if checked.get("mass_height", 0.0) > checked["height"]:
             raise InvalidArgumentError("mass_height", self.mass_height, f"(0, {checked['height']:g}] [m], the height")
         vars(self).update(checked)  # a frozen dataclass
-        self._check_others()
+        self._check_values()
 
     def _check_texts(self) -> None:
         for name in ("name", "pedestal", "notes"):
             if not isinstance(getattr(self, name), str):
                 raise InvalidArgumentError(name, getattr(self, name), "a text")
         details: Any = self.details
-        pairs = details.items() if isinstance(details, Mapping) else [(None, details)]
-        if not all(isinstance(one, str) for pair in pairs for one in pair):
+        is_mapping = isinstance(details, Mapping)
+        if not is_mapping or not all(isinstance(text, str) for text in [*details, *details.values()]):
             raise InvalidArgumentError("details", details, "texts by name")
 
     def _check_described(self, description: str) -> None:
@@ -144,21 +144,23 @@ class Object:
             if getattr(self, name) != 0.0:
                 raise InvalidArgumentError(name, getattr(self, name), f"0 beside {description}, which has it")
         self._check_texts()
-        self._check_others()
+        self._check_values()
 
-    def _check_others(self) -> None:
+    def _check_values(self) -> None:
         """Check the values that are not dimensions."""
         checked: dict[str, float] = {}
-        for one in (MASS, FRICTION):
-            if getattr(self, one.name) is not None:
-                checked[one.name] = one.number(getattr(self, one.name))
+        for quantity in (MASS, FRICTION):
+            value = getattr(self, quantity.name)
+            if value is not None:
+                checked[quantity.name] = quantity.number(value)
+        planes = self.planes.values()
         share = impact_share(self.restitution)
-        if share is not None and share < 1.0 and any(plane.offset or plane.side for plane in self.planes.values()):
-            allowed = "momentum or a number for an object against a wall, or whose centre of mass is not in the middle"
-            raise InvalidArgumentError("restitution", self.restitution, allowed)
         if share is None:
             checked["restitution"] = RESTITUTION.number(self.restitution)
-        half = 0.5 * min(size for plane in self.planes.values() for size in (plane.base, plane.height))
+        elif share < 1.0 and any(plane.offset or plane.side for plane in planes):
+            allowed = "momentum or a number for an object against a wall, or whose centre of mass is not in the middle"
+            raise InvalidArgumentError("restitution", self.restitution, allowed)
+        half = 0.5 * min(min(plane.base, plane.height) for plane in planes)
         checked["tolerance"] = number("tolerance", self.tolerance, 0.0, half, closed="left", unit="m")
         vars(self).update(checked)
 
@@ -169,7 +171,7 @@ class Object:
         unit: str | None = None,
         up: str | None = None,
         name: str | None = None,
-        **others: Any,
+        **properties: Any,
     ) -> MeshObject:
         """An object of uniform density from a surface mesh, as of `rocking_assessment.body_from_mesh`.
 
@@ -186,7 +188,7 @@ class Object:
             Axis of the file that points upwards, "x", "y" or "z"; by default "z", of glTF "y".
         name : str, optional
             For output; the name of the file by default.
-        others
+        properties
             mass, friction, restitution, tolerance, pedestal and notes, as above, and `contact_tolerance`: height above
             the lowest point up to which vertices are in contact with the ground, over the height of the mesh [-],
             [0, 0.1], by default 1e-4. The column `contact_tolerance` of an assessment names it in metres.
@@ -199,17 +201,18 @@ class Object:
         ImportError
             If trimesh is not installed.
         """
-        return MeshObject(Path(path).stem if name is None else name, path=str(path), unit=unit, up=up, **others)
+        stem = Path(path).stem
+        return MeshObject(stem if name is None else name, path=str(path), unit=unit, up=up, **properties)
 
     @staticmethod
-    def from_outline(vertices: ArrayLike, *, name: str = "outline", **others: Any) -> OutlineObject:
+    def from_outline(vertices: ArrayLike, *, name: str = "outline", **properties: Any) -> OutlineObject:
         """An object of uniform density from its outline, which rocks in the plane of this outline.
 
         Parameters
         ----------
         vertices : array_like (vertices, 2)
             Corners x, y [m], y upwards, as of `rocking.RigidBody.from_polygon`.
-        name, others
+        name, properties
             As for `from_mesh`.
 
         Raises
@@ -218,11 +221,11 @@ class Object:
             If the outline crosses itself, encloses no area, or does not stand; as for an object.
         """
         corners = tuple((float(x), float(y)) for x, y in checked_vertices(vertices))
-        return OutlineObject(name, vertices=corners, **others)
+        return OutlineObject(name, vertices=corners, **properties)
 
     @staticmethod
     def from_body(
-        body: RespondingBody | str | Mapping[str, Any], *, name: str = "body", **others: Any
+        body: RespondingBody | str | Mapping[str, Any], *, name: str = "body", **properties: Any
     ) -> DescribedObject:
         """An object from a rigid body or its description, as of `rocking.body`; it rocks in the plane of this body.
 
@@ -230,11 +233,12 @@ class Object:
         ----------
         body : Block, RigidBody, str or mapping
             The body, or what describes it, such as "hollow(width=40cm, height=1.6m, wall=2cm)".
-        name, others
+        name, properties
             As for `from_mesh`.
         """
-        made = body if isinstance(body, RespondingBody) else describe(body)
-        return DescribedObject(name, described=made, **others)
+        if not isinstance(body, RespondingBody):
+            body = describe(body)
+        return DescribedObject(name, described=body, **properties)
 
     @property
     def depth_is_missing(self) -> bool:
@@ -244,26 +248,28 @@ class Object:
     @property
     def planes(self) -> dict[str, Plane]:
         """The planes in which it can rock, by name of the direction."""
-        given: dict[str, Any] = vars(self)
-        height = given["height"]
-        centre = 0.5 * height if self.mass_height is None else given["mass_height"]
+        sizes: dict[str, Any] = vars(self)
+        height = sizes["height"]
+        centre = 0.5 * height if self.mass_height is None else sizes["mass_height"]
         if self.diameter is not None:
-            offset = math.hypot(given["offset_width"], given["offset_depth"])
-            return {"any": Plane(given["diameter"], offset, height, centre, CYLINDER, 1.0)}
+            offset = math.hypot(sizes["offset_width"], sizes["offset_depth"])
+            return {"any": Plane(sizes["diameter"], offset, height, centre, CYLINDER, 1.0)}
         names = ("width",) if self.depth is None else ("width", "depth")
-        return {name: Plane(given[name], given[f"offset_{name}"], height, centre, 1.0, 1.0) for name in names}
+        return {name: Plane(sizes[name], sizes[f"offset_{name}"], height, centre, 1.0, 1.0) for name in names}
 
     @property
     def body(self) -> RigidBody:
         """The body in each plane, over the dimension `direction`."""
         import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 
-        rigid, names = Bodies.of([self]).scaled().rigid, {"direction": list(self.planes)}
-        given = rigid.parameters
-        made = rigid.changed(
-            **{key: xr.DataArray(value, names, "direction") if value.ndim else value for key, value in given.items()}
-        )
-        return next(iter(self.planes.values())).against_wall(made)
+        rigid = Bodies.of([self]).scaled().rigid
+        directions = {"direction": list(self.planes)}
+        parameters: dict[str, Any] = dict(rigid.parameters)
+        for name, values in parameters.items():
+            if values.ndim:
+                parameters[name] = xr.DataArray(values, directions, "direction")
+        plane = next(iter(self.planes.values()))
+        return plane.against_wall(rigid.changed(**parameters))
 
     @property
     def planes_around(self) -> dict[float, Plane]:
@@ -271,23 +277,24 @@ class Object:
         planes = self.planes
         if self.diameter is None:
             return dict(zip((0.0, 90.0), planes.values(), strict=False))
-        given: dict[str, Any] = vars(self)
-        angles = np.radians(np.arange(0.0, 180.0, STEP))
-        offsets = given["offset_width"] * np.cos(angles) + given["offset_depth"] * np.sin(angles)
-        around = zip(range(0, 180, STEP), offsets.tolist(), strict=True)
-        return {float(angle): replace(planes["any"], offset=offset) for angle, offset in around}
+        sizes: dict[str, Any] = vars(self)
+        degrees = np.arange(0.0, 180.0, STEP)
+        angles = np.radians(degrees)
+        offsets = sizes["offset_width"] * np.cos(angles) + sizes["offset_depth"] * np.sin(angles)
+        around = zip(degrees.tolist(), offsets.tolist(), strict=True)
+        return {angle: replace(planes["any"], offset=offset) for angle, offset in around}
 
     @property
     def footprint(self) -> Array:
         """Corners of the base, along the width and along the depth from the centre of mass [m]; array (points, 2)."""
-        given: dict[str, Any] = vars(self)
+        sizes: dict[str, Any] = vars(self)
         if self.diameter is not None:
             angle = np.radians(np.arange(0.0, 360.0, 5.0))
-            corners = 0.5 * given["diameter"] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            corners = 0.5 * sizes["diameter"] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         else:
             signs = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-            corners = 0.5 * signs * (given["width"], given["depth"] or 0.0)
-        return np.asarray(corners - (given["offset_width"], given["offset_depth"]))
+            corners = 0.5 * signs * (sizes["width"], sizes["depth"] or 0.0)
+        return np.asarray(corners - (sizes["offset_width"], sizes["offset_depth"]))
 
     def outline(self, direction: str) -> Array:
         """Outline from the side, x from the middle of the base and heights [m]; array (points, 2)."""
@@ -304,40 +311,43 @@ class Plane:
     offset: float  # distance of the centre of mass from the middle of the base, towards the right edge [m]
     height: float  # of the object [m]
     mass_height: float  # of its centre of mass [m]
-    base_share: float  # 12 k^2 = inertia (base_share base^2 + height^2), k the radius of gyration [-]
-    inertia: float  # likewise [-]
+    base_share: float  # share of base^2 in k^2, k the radius of gyration: 1 of a box, 3/4 of a cylinder [-]
+    inertia: float  # 12 k^2 over (base_share base^2 + height^2) [-]
     side: float = 0.0  # 1, -1: it rocks about its right or left edge only, since a wall stops it at the other side
     rebound: float = math.nan  # from this wall; nan: from the angular momentum [-]
 
     @classmethod
-    def of(cls, found: PolygonProperties, side: float = 0.0, rebound: float = math.nan) -> Plane:
+    def of(cls, outline: PolygonProperties, side: float = 0.0, rebound: float = math.nan) -> Plane:
         """The plane of a body with these edges and this radius of gyration."""
-        base = found.left + found.right
-        for name, size in (("base", base), ("height", found.top)):
-            number(name, size, *LENGTHS, unit="m")
-        inertia = 12.0 * found.gyration**2 / (base**2 + found.top**2)
-        return cls(base, 0.5 * (found.left - found.right), found.top, found.height, 1.0, inertia, side, rebound)
+        base = outline.left + outline.right
+        number("base", base, *LENGTHS, unit="m")
+        number("height", outline.top, *LENGTHS, unit="m")
+        offset = 0.5 * (outline.left - outline.right)
+        inertia = 12.0 * outline.gyration**2 / (base**2 + outline.top**2)
+        return cls(base, offset, outline.top, outline.height, 1.0, inertia, side, rebound)
 
     @property
     def mirrored(self) -> Plane:
-        """The same seen from the other side."""
+        """The plane seen from the other side."""
         return replace(self, offset=-self.offset, side=-self.side)
 
     def against_wall(self, body: RigidBody) -> RigidBody:
         """A body with the wall of this plane, if it has one."""
+        if not self.side:
+            return body
         rebound = None if math.isnan(self.rebound) else self.rebound
-        return body.one_sided("right" if self.side > 0.0 else "left", rebound) if self.side else body
+        return body.one_sided("right" if self.side > 0.0 else "left", rebound)
 
 
 @dataclass(frozen=True)
 class MeshObject(Object):
-    """What `Object.from_mesh` makes."""
+    """An object from a surface mesh, see `Object.from_mesh`."""
 
     path: str = ""  # the file
     unit: str | None = None  # of its lengths
     up: str | None = None  # its axis that points upwards
     contact_tolerance: float = 1e-4  # of vertices in contact with the ground, over the height of the mesh [-]
-    allow_unusual: bool = False  # whether any size is accepted
+    allow_unusual: bool = False  # True: any size is accepted
 
     def __post_init__(self) -> None:
         self._check_described("a mesh")
@@ -361,10 +371,11 @@ class MeshObject(Object):
         mesh = self.mesh
         for remark in mesh.remarks:
             warnings.warn(f"{Path(self.path).name} {remark}", UserWarning, 2)
-        angles = directions_around(self.footprint, STEP)
-        return {
-            f"{angle:g} deg": Plane.of(mesh.properties(math.radians(angle), self.contact_tolerance)) for angle in angles
-        }
+        planes = {}
+        for angle in directions_around(self.footprint, STEP):
+            outline = mesh.properties(math.radians(angle), self.contact_tolerance)
+            planes[f"{angle:g} deg"] = Plane.of(outline)
+        return planes
 
     @property
     def planes_around(self) -> dict[float, Plane]:
@@ -382,7 +393,7 @@ class MeshObject(Object):
 
 @dataclass(frozen=True)
 class DescribedObject(Object):
-    """What `Object.from_body` makes."""
+    """An object from a rigid body, see `Object.from_body`."""
 
     described: Any = None  # the body in the plane in which it rocks
 
@@ -405,7 +416,7 @@ class DescribedObject(Object):
 
 @dataclass(frozen=True)
 class OutlineObject(DescribedObject):
-    """What `Object.from_outline` makes."""
+    """An object from its outline, see `Object.from_outline`."""
 
     vertices: tuple[tuple[float, float], ...] = ()  # corners x, y of the outline [m]
 
@@ -425,26 +436,24 @@ class OutlineObject(DescribedObject):
 
 
 def plane_of(body: RespondingBody) -> Plane:
-    """A rigid body as a plane of an object."""
+    """Plane of an object that is a rigid body."""
     if body.shape or not isinstance(body, RigidBody | RectangularBlock):
         raise InvalidArgumentError("body", body.description, "one rigid body, such as rocking.RigidBody")
     if float(body.tilt) or float(body.gravity) != STANDARD_GRAVITY:
         raise InvalidArgumentError("body", body.description, "on level ground under standard gravity")
     if isinstance(body, RectangularBlock):
-        return Plane.of(
-            PolygonProperties(
-                body.half_width, body.half_width, body.half_height, body.half_diagonal / math.sqrt(3.0), body.height
-            )
-        )
-    given = body.parameters
-    values = given["left"], given["right"], body.height, body.gyration, body.top_height
+        half, gyration = body.half_width, body.half_diagonal / math.sqrt(3.0)
+        return Plane.of(PolygonProperties(half, half, body.half_height, gyration, body.height))
+    parameters = body.parameters
+    values = parameters["left"], parameters["right"], body.height, body.gyration, body.top_height
     side = {"both": 0.0, "right": 1.0, "left": -1.0}[body.sides]
-    return Plane.of(PolygonProperties(*map(float, values)), side, float(given.get("rebound", math.nan)))
+    rebound = float(parameters.get("rebound", math.nan))
+    return Plane.of(PolygonProperties(*map(float, values)), side, rebound)
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """One body for each object and direction: the values of `Plane`, and `own` of `BodyArray`, as arrays (bodies,)."""
+    """A body for each object and direction: arrays (bodies,) of the values of `Plane`, `restitution` of `BodyArray`."""
 
     base: Array
     offset: Array
@@ -459,16 +468,19 @@ class Bodies:
     @classmethod
     def of(cls, objects: Iterable[Object]) -> Bodies:
         """The bodies of some objects, those of one object in a row."""
-        return cls.of_planes((plane, one.restitution) for one in objects for plane in one.planes.values())
+        planes: list[tuple[Plane, Scalar]] = []
+        for obj in objects:
+            planes += [(plane, obj.restitution) for plane in obj.planes.values()]
+        return cls.of_planes(planes)
 
     @classmethod
     def of_planes(cls, planes: Iterable[tuple[Plane, Scalar]]) -> Bodies:
         """The bodies of some planes and their restitutions."""
-        rows = [(*astuple(plane), eta if (share := impact_share(eta)) is None else -share) for plane, eta in planes]
+        rows = [(*astuple(plane), signed_restitution(eta)) for plane, eta in planes]
         return cls(*np.array(rows, dtype=np.float64).reshape(-1, 9).T)
 
     def take(self, rows: Index) -> Bodies:
-        """Some of them."""
+        """The bodies of some rows."""
         return Bodies(**{name: column[rows] for name, column in vars(self).items()})
 
     def scaled(self, base: Array | float = 1.0, height: Array | float = 1.0, change: Array | float = 0.0) -> BodyArray:
@@ -479,13 +491,19 @@ class Bodies:
         return BodyArray(body, self.restitution, np.broadcast_to(change, b.shape), self.side, self.rebound)
 
 
+def signed_restitution(restitution: Scalar) -> Any:
+    """Restitution as of `BodyArray.restitution`: a number [-], or -k for a way to compute it."""
+    share = impact_share(restitution)
+    return restitution if share is None else -share
+
+
 @dataclass(frozen=True, eq=False)
 class BodyArray(AbstractBody):
-    """Rigid bodies, some with their own coefficient of restitution."""
+    """Rigid bodies with their coefficients of restitution."""
 
     rigid: RigidBody  # the bodies, arrays (bodies,) or (bodies, 1)
-    # restitution of each; -k: from the angular momentum of an impact at the share k of the half base, of each edge [-]
-    own: Array
+    # of each; -k: from the angular momentum of an impact at the share k of the half base, of each edge [-]
+    restitution: Array
     change: Array  # added to the restitution, which stays in [0, 1] [-]
     side: Array  # as of `Plane`
     rebound: Array  # as of `Plane`
@@ -498,23 +516,26 @@ class BodyArray(AbstractBody):
     def left(self) -> Edge:
         return self._edge("left", "right", self.side > 0.0)
 
-    def _edge(self, own: str, other: str, blocked: Flags) -> Edge:
-        edge = self._changed(own, other)
+    def _edge(self, name: str, opposite: str, blocked: Flags) -> Edge:
+        """An edge; where a wall blocks it, the values of the opposite one."""
+        edge = self._with_restitution(name, opposite)
         if not blocked.any():
             return edge
-        behind = self._changed(other, own)
-        values = {name: (getattr(behind, name), getattr(edge, name)) for name in vars(edge) if name != "blocked"}
-        return Edge(**{name: np.where(blocked, *pair) for name, pair in values.items()}, blocked=blocked)
+        behind = vars(self._with_restitution(opposite, name))
+        values = {key: np.where(blocked, behind[key], value) for key, value in vars(edge).items()}
+        return Edge(**values | {"blocked": blocked})
 
-    def _changed(self, own: str, other: str) -> Edge:
+    def _with_restitution(self, name: str, opposite: str) -> Edge:
         """An edge with its restitution; of a body against a wall that of its rebound."""
-        edge: Edge = getattr(self.rigid, own)
-        given, share = self.rigid.parameters, np.square(np.minimum(self.own, 0.0))  # k^2
-        square = given["gyration"] ** 2 + given["height"] ** 2
-        spread = (square - share * given[own] * given[other]) / (square + share * given[other] ** 2)  # (2.4) for k = 1
+        edge: Edge = getattr(self.rigid, name)
+        parameters = self.rigid.parameters
+        b, other_b = parameters[name], parameters[opposite]
+        share = np.square(np.minimum(self.restitution, 0.0))  # k^2
+        square = parameters["gyration"] ** 2 + parameters["height"] ** 2
+        momentum = (square - share * b * other_b) / (square + share * other_b**2)  # (2.4) for k = 1
         rebound = np.where(np.isnan(self.rebound), rebound_of(edge.alpha), self.rebound)
-        stated = np.where(self.side == 0.0, np.maximum(spread, 0.0), rebound)
-        eta = np.where(self.own < 0.0, stated, self.own) + self.change
+        computed = np.where(self.side == 0.0, np.maximum(momentum, 0.0), rebound)
+        eta = np.where(self.restitution < 0.0, computed, self.restitution) + self.change
         return replace(edge, restitution=np.clip(eta, 0.0, 1.0))
 
     @property
@@ -534,22 +555,26 @@ class BodyArray(AbstractBody):
         """The bodies, and their mirror images unless all are like these."""
         if not self.is_lopsided.any():
             return [self]
-        given = self.rigid.parameters
-        mirrored = self.rigid.changed(**{**given, "left": given["right"], "right": given["left"]})
-        return [self, replace(self, rigid=mirrored, side=-self.side)]
+        return [self, replace(self, rigid=mirror_image(self.rigid), side=-self.side)]
 
     @property
     def is_lopsided(self) -> Flags:
-        """Whether each has its centre of mass not in the middle, or a wall at one side."""
-        given = self.rigid.parameters
-        return np.asarray((given["left"] != given["right"]) | (self.side != 0.0))
+        """True for a body with its centre of mass not in the middle, or a wall at one side."""
+        parameters = self.rigid.parameters
+        return np.asarray((parameters["left"] != parameters["right"]) | (self.side != 0.0))
 
     @property
     def column(self) -> BodyArray:
         """The bodies along the first of two axes."""
-        given = {name: value[..., None] if value.ndim else value for name, value in self.rigid.parameters.items()}
-        others = {name: value[:, None] for name, value in vars(self).items() if name in _OF_EACH}
-        return BodyArray(self.rigid.changed(**given), **others)
+        parameters: dict[str, Any] = dict(self.rigid.parameters)
+        for name, values in parameters.items():
+            if values.ndim:
+                parameters[name] = values[..., None]
+        columns = [values[:, None] for values in (self.restitution, self.change, self.side, self.rebound)]
+        return BodyArray(self.rigid.changed(**parameters), *columns)
 
 
-_OF_EACH = "own", "change", "side", "rebound"
+def mirror_image(rigid: RigidBody) -> RigidBody:
+    """Rigid bodies with left and right exchanged."""
+    parameters = rigid.parameters
+    return rigid.changed(**{**parameters, "left": parameters["right"], "right": parameters["left"]})

@@ -1,9 +1,10 @@
-"""The report of an assessment: one HTML file without requests to others, which prints on A4 with page numbers."""
+"""The report of an assessment: one HTML file without requests, which prints on A4 with page numbers."""
 
 from __future__ import annotations
 
 import math
 import platform
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata, resources
@@ -14,7 +15,7 @@ import numpy as np
 from rocking.extension import STANDARD_GRAVITY, BadRow, __version__
 from rocking_assessment._objects.charts import HEIGHT, WIDTH, Axis, Chart, line_of, thinned
 from rocking_assessment._objects.columns import CLAUSES, VERDICTS
-from rocking_assessment._objects.motions import envelope_of, frictions_of
+from rocking_assessment._objects.motions import envelope_of, friction_needed
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.result import Assessment
 from rocking_assessment._objects.site import Motion, Site
@@ -54,7 +55,12 @@ class Project:
 
 
 def report_html(
-    found: Assessment, project: Project, bad_rows: Sequence[BadRow] = (), reading: str = "", *, detailed: bool = False
+    assessment: Assessment,
+    project: Project,
+    bad_rows: Sequence[BadRow] = (),
+    reading: str = "",
+    *,
+    detailed: bool = False,
 ) -> str:
     """The report as text; `reading` says what the columns of the table of objects were read as.
 
@@ -68,29 +74,23 @@ def report_html(
     template = environment.from_string(
         resources.files("rocking_assessment._objects").joinpath(TEMPLATE).read_text("utf-8")
     )
-    lines = lines_of(found)
-    concerned = [one for one in lines if detailed or one.concerns][:MOST_DETAILED]
-    chosen = [
-        one for line in concerned for one in (lines_of(found, directions=True, only=line) if detailed else [line])
-    ]
-    numbers: dict[int, int] = {}  # of an object in the part on objects, by its first row
-    for line in chosen:
-        numbers.setdefault(line.rows[0], len(numbers) + 1)
+    lines = lines_of(assessment)
+    verdicts = Counter(line.values["verdict"] for line in lines)
+    concerned = [line for line in lines if detailed or line.concerns][:MOST_DETAILED]
     return template.render(
         project=project,
-        site=found.site,
-        found=found,
+        site=assessment.site,
+        assessment=assessment,
         lines=lines,
         clauses=CLAUSES,
-        counts={verdict: sum(one.values["verdict"] == verdict for one in lines) for verdict in reversed(VERDICTS)},
+        counts={verdict: verdicts[verdict] for verdict in reversed(VERDICTS)},
         full_strength=counts_of(lines),
         worst=_worst(lines),
-        blocks=_blocks(found, chosen, detailed),
-        all_concerned=sum(one.concerns for one in lines),
+        blocks=_blocks(assessment, concerned, detailed),
         detailed=detailed,
-        numbers=numbers,
-        motions=_motion_texts(found.site),
-        warnings=[(text, len(names), names_in_short(names)) for text, names in warnings_of(found)],
+        numbers={line.rows[0]: number for number, line in enumerate(concerned, start=1)},
+        motions=_motion_texts(assessment.site),
+        warnings=[(text, len(names), names_in_short(names)) for text, names in warnings_of(assessment)],
         colours=dict(zip(VERDICTS, COLOURS, strict=True)),
         bad_rows=bad_rows,
         reading=reading,
@@ -101,18 +101,21 @@ def report_html(
 
 def css_text(text: str) -> str:
     """A text between the quotes of a style sheet."""
-    return "".join(one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
+    return "".join(char if char.isascii() and char.isalnum() else f"\\{ord(char):x} " for char in text)
 
 
 def _motion_texts(site: Site) -> list[str]:
     """The motions of the site in words: records, shapes on a floor, or shapes with their periods."""
     if site.records:
+        groups: dict[int, list[Motion]] = {}
+        for motion in site.motions:
+            groups.setdefault(motion.group, []).append(motion)
         texts = []
-        for motions in _by_group(site.motions):
-            first = motions[0].name.removesuffix(", 0 deg")
-            texts.append(
-                first if len(motions) == 1 else f"{first}, a pair at angles every {180 // len(motions)} degrees"
-            )
+        for motions in groups.values():
+            text = motions[0].name.removesuffix(", 0 deg")
+            if len(motions) > 1:
+                text += f", a pair at angles every {180 // len(motions)} degrees"
+            texts.append(text)
         return texts
     if site.floor_periods is not None:
         return [motion.name for motion in site.motions]
@@ -125,121 +128,122 @@ def _motion_texts(site: Site) -> list[str]:
     return [f"{', '.join(names)} of {numbers} s" for numbers, names in shapes.items()]
 
 
-def _by_group(motions: Sequence[Motion]) -> list[list[Motion]]:
-    """The motions of each group, those of a pair of components together."""
-    groups: dict[int, list[Motion]] = {}
-    for motion in motions:
-        groups.setdefault(motion.group, []).append(motion)
-    return list(groups.values())
-
-
 def _worst(lines: Sequence[Line]) -> list[dict[str, Any]]:
     """The worst objects with their drawings, which have one scale."""
-    chosen = lines[:WORST]
-    outlines = [one.object.outline(one.values["direction"]) for one in chosen]
-    sizes = [(2.0 * np.abs(outline[:, 0]).max(), outline[:, 1].max()) for outline in outlines]
-    scale = min(room / max(size) for room, size in zip(LARGEST, zip(*sizes, strict=True), strict=True))
-    return [{"line": one, "drawing": _drawing(one.object, one.values["direction"], scale)} for one in chosen]
+    worst = lines[:WORST]
+    outlines = [line.object.outline(line.values["direction"]) for line in worst]
+    width = max(2.0 * np.abs(outline[:, 0]).max() for outline in outlines)
+    height = max(outline[:, 1].max() for outline in outlines)
+    scale = min(LARGEST[0] / width, LARGEST[1] / height)
+    return [{"line": line, "drawing": _drawing(line.object, line.values["direction"], scale)} for line in worst]
 
 
-def _blocks(found: Assessment, chosen: Sequence[Line], detailed: bool) -> list[dict[str, Any]]:
-    """The contents of the report for some rows."""
-    given = [(one.object, str(one.values["direction"])) for one in chosen]
-    if not given:
+def _blocks(assessment: Assessment, concerned: Sequence[Line], detailed: bool) -> list[dict[str, Any]]:
+    """The contents of the report for some objects, in each direction or in the worse one."""
+    lines = list(concerned)
+    if detailed:
+        lines = []
+        for line in concerned:
+            lines += lines_of(assessment, directions=True, only=line)
+    if not lines:
         return []
-    needed, exceeded = frictions_of(given, found.site.motions)
-    envelopes = _envelopes(found, given)
+    objects = [(line.object, str(line.values["direction"])) for line in lines]
+    needed = friction_needed(objects, assessment.site.motions)
+    envelopes = _envelopes(assessment, objects)
     blocks = []
-    for k, (line, (one, direction)) in enumerate(zip(chosen, given, strict=True)):
+    for k, (line, (obj, direction)) in enumerate(zip(lines, objects, strict=True)):
         row = line.row
-        names = "name", "ground", "period", "factor", "rotation", "friction", "exceeded_at"
+        factors, rotations = assessment.factors[row], assessment.rotations[row]
+        order = np.lexsort((-np.nan_to_num(rotations), np.nan_to_num(factors, nan=np.inf))).tolist()
         motions = [
-            dict(zip(names, (motion.name, motion.ground, motion.period, *values), strict=True))
-            | {"is_record": motion.motion.is_scanned}
-            for motion, *values in zip(
-                *(found.site.motions, found.factors[row].tolist(), found.rotations[row].tolist()),
-                *(needed[k].tolist(), exceeded[k].tolist()),
-                strict=True,
-            )
+            {
+                "name": assessment.motions[m],
+                "factor": float(factors[m]),
+                "rotation": float(rotations[m]),
+                "friction": float(needed[k, m]),
+            }
+            for m in order
         ]
-        order = np.lexsort((-np.nan_to_num(found.rotations[row]), np.nan_to_num(found.factors[row], nan=np.inf)))
-        largest = max((each for each in one.planes), key=lambda each: one.planes[each].base)
-        drawn = [direction] if len(one.planes) > 2 or direction == largest else [direction, largest]
-        outlines = [one.outline(each) for each in drawn]
-        wide = sum(2.0 * float(np.abs(outline[:, 0]).max()) for outline in outlines)
-        scale = DRAWING / max(wide, *(float(outline[:, 1].max()) for outline in outlines))
-        histories = _histories(found, row)
+        bases = {name: plane.base for name, plane in obj.planes.items()}
+        largest = max(bases, key=bases.__getitem__)
+        drawn = [direction] if len(bases) > 2 or direction == largest else [direction, largest]
+        outlines = [obj.outline(name) for name in drawn]
+        width = sum(2.0 * float(np.abs(outline[:, 0]).max()) for outline in outlines)
+        scale = DRAWING / max(width, *(float(outline[:, 1].max()) for outline in outlines))
+        histories = _histories(assessment, row)
         blocks.append(
             {
                 "line": line,
-                "plane": one.planes[direction],
-                "drawings": [(each, _drawing(one, each, scale)) for each in drawn],
-                "motions": [motions[m] for m in order[: None if detailed else MOST_MOTIONS]],
+                "plane": obj.planes[direction],
+                "drawings": [(name, _drawing(obj, name, scale)) for name in drawn],
+                "motions": motions if detailed else motions[:MOST_MOTIONS],
                 "friction": float(np.max(needed[k])),
-                "others": [] if detailed else lines_of(found, directions=True, only=line)[1:],
+                "other_directions": [] if detailed else lines_of(assessment, directions=True, only=line)[1:],
                 "charts": [*(histories if detailed else histories[1:]), *envelopes[k : k + 1]],
-                "worst": found.worst_motion(row),
-                "strength": found.strength(row),
             }
         )
     return blocks
 
 
-def _envelopes(found: Assessment, given: Sequence[tuple[Object, str]]) -> list[Chart]:
+def _envelopes(assessment: Assessment, objects: Sequence[tuple[Object, str]]) -> list[Chart]:
     """Thresholds over shapes and periods, of objects and directions; none for records."""
-    motions = found.site.motions
-    top = STRONGEST * max(motion.peak_acceleration for motion in motions)
-    periods, lowest = envelope_of(given, motions, top)
-    top, lowest = top / STANDARD_GRAVITY, {name: values / STANDARD_GRAVITY for name, values in lowest.items()}
+    motions = assessment.site.motions
+    highest = STRONGEST * max(motion.peak_acceleration for motion in motions)
+    periods, thresholds = envelope_of(objects, motions, highest)
+    if not thresholds:
+        return []
+    axes = (
+        Axis("period of the pulse [s]", float(periods[0]), float(periods[-1]), WIDTH, logarithmic=True),
+        Axis("peak acceleration [g]", 0.0, highest / STANDARD_GRAVITY, HEIGHT),
+    )
     charts = []
-    for k in range(len(given) if lowest else 0):
-        axes = (
-            Axis("period of the pulse [s]", float(periods[0]), float(periods[-1]), WIDTH, logarithmic=True),
-            Axis("peak acceleration [g]", 0.0, top, HEIGHT),
-        )
-        lines = [line_of(name, axes, periods, values[k], style) for style, (name, values) in enumerate(lowest.items())]
+    for k in range(len(objects)):
+        lines = {
+            name: line_of(name, axes, periods, values[k] / STANDARD_GRAVITY, style)
+            for style, (name, values) in enumerate(thresholds.items())
+        }
         colours: dict[tuple[float, float], str] = {}
         for motion in motions:
-            place, own = (
-                (motion.period, motion.peak_acceleration / STANDARD_GRAVITY),
-                lines[list(lowest).index(motion.motion.name)].colour,
-            )
-            colours[place] = "black" if colours.get(place, own) != own else own  # of several shapes
-        marked = [(float(axes[0].at(t)), -float(axes[1].at(a)), colour) for (t, a), colour in colours.items()]
-        charts.append(Chart("Lowest peak acceleration that overturns it; rings: the site", *axes, lines, marked))
+            colour = lines[motion.motion.name].colour
+            point = motion.period, motion.peak_acceleration / STANDARD_GRAVITY
+            is_shared = colours.setdefault(point, colour) != colour
+            if is_shared:
+                colours[point] = "black"  # of several shapes
+        marks = [(float(axes[0].at(t)), -float(axes[1].at(a)), colour) for (t, a), colour in colours.items()]
+        title = "Lowest peak acceleration that overturns it; rings: the site"
+        charts.append(Chart(title, *axes, [*lines.values()], marks))
     return charts
 
 
-def _histories(found: Assessment, k: int) -> list[Chart]:
+def _histories(assessment: Assessment, row: int) -> list[Chart]:
     """Ground acceleration and rotation under the worst motion."""
-    history = found.history(k)
+    history = assessment.history(row)
     time = history["time"].values
     limits = math.degrees(history.attrs["alpha"]), math.degrees(history.attrs["alpha_left"])
     rotation = np.degrees(history["rotation"].values)
-    end = float(time[-1])
-    fallen = np.flatnonzero(np.abs(rotation) >= 2.0 * max(limits))
-    if fallen.size:
-        end = float(time[fallen[0]])
-    strength = f", {found.strength(k):.3g} times the site" if found.strength(k) < 1.0 else ""
+    overturned = np.flatnonzero(np.abs(rotation) >= 2.0 * max(limits))
+    end = float(time[overturned[0]] if overturned.size else time[-1])
+    title = f"Rotation under {assessment.worst_motion(row).name.replace('_', ' ')}"
+    if assessment.strength(row) < 1.0:
+        title += f", {assessment.strength(row):.3g} times the site"
+    acceleration = history["ground_acceleration"].values / STANDARD_GRAVITY
     charts = []
-    for title, values, label in (
-        ("Ground acceleration", history["ground_acceleration"].values / STANDARD_GRAVITY, "acceleration [g]"),
-        (f"Rotation under {found.worst_motion(k).name.replace('_', ' ')}{strength}", rotation, "rotation [deg]"),
+    for name, values, label, edges in (
+        ("Ground acceleration", acceleration, "acceleration [g]", ()),
+        (title, rotation, "rotation [deg]", (limits[0], -limits[1])),
     ):
-        shown = values[time <= end]
-        half = 1.1 * max(float(np.abs(shown).max()), 1e-9)
-        edges = [limits[0], -limits[1]] if values is rotation else []
-        half = max([half, *(1.1 * abs(edge) for edge in edges)])
+        drawn = values[time <= end]
+        half = 1.1 * max([float(np.abs(drawn).max()), 1e-9, *np.abs(edges)])
         axes = Axis("time [s]", 0.0, end, WIDTH), Axis(label, -half, half, HEIGHT)
-        lines = [line_of("", axes, *thinned(time[time <= end], shown))]
+        lines = [line_of("", axes, *thinned(time[time <= end], drawn))]
         lines += [line_of("", axes, np.array([0.0, end]), np.full(2, edge), 11) for edge in edges]
-        charts.append(Chart(title, *axes, lines, []))
+        charts.append(Chart(name, *axes, lines, []))
     return charts
 
 
-def _drawing(one: Object, direction: str, scale: float) -> dict[str, Any]:
+def _drawing(obj: Object, direction: str, scale: float) -> dict[str, Any]:
     """Sizes of the drawing of an object from the side [pixels] at a scale [pixels/m], and of its scale bar."""
-    plane, outline = one.planes[direction], one.outline(direction)
+    plane, outline = obj.planes[direction], obj.outline(direction)
     width = 2.0 * float(max(np.abs(outline[:, 0]).max(), 0.5 * plane.base))
     largest = 35.0 / scale
     unit = 10.0 ** math.floor(math.log10(largest))

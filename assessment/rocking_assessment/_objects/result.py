@@ -20,11 +20,12 @@ from rocking.extension import (
     StopFlag,
     csv_text,
     integer,
+    variable,
     write_output,
 )
 from rocking_assessment._objects.columns import OUTPUTS, VERDICTS, digits_apart
 from rocking_assessment._objects.directions import factors_by_direction
-from rocking_assessment._objects.motions import frictions_of, history_of
+from rocking_assessment._objects.motions import bodies_of, first_exceedances, friction_needed, frictions, history_of
 from rocking_assessment._objects.objects import Object
 from rocking_assessment._objects.site import Motion, Site
 from rocking_assessment._objects.xlsx import xlsx_bytes
@@ -75,20 +76,23 @@ class Assessment(EqualByValue):
     @property
     def rows(self) -> list[dict[str, Any]]:
         """The rows, each by the names of the columns; a number or answer that is not known is None."""
-        columns = [[None if value != value else value for value in column.tolist()] for column in self.columns.values()]
-        return [dict(zip(self.columns, row, strict=True)) for row in zip(*columns, strict=True)]
+        columns = {name: [_known(value) for value in values.tolist()] for name, values in self.columns.items()}
+        return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
     @property
     def details(self) -> dict[str, list[Cell]]:
-        """What the table of objects has of the object of each row, by its headers and in their order.
+        """Cells of the table of objects for the object of each row, by its headers and in their order.
 
         Of objects that were not read from a table their `details`.
         """
         rows = [obj.cells or obj.details for obj in self.objects]
         names = [obj.name for obj in self.objects]
-        outputs = {name for column in OUTPUTS for name in (column.name, column.header)}
+        outputs = {quantity.name for quantity in OUTPUTS} | {quantity.header for quantity in OUTPUTS}
         details: dict[str, list[Cell]] = {}
-        for label in dict.fromkeys(label for row in rows for label in row):
+        labels: dict[str, None] = {}
+        for row in rows:
+            labels |= dict.fromkeys(row)
+        for label in labels:
             cells = [row.get(label, "") for row in rows]
             is_output = label in outputs and not (label == "object" and cells == names)
             details[f"{label} (given)" if is_output else label] = cells
@@ -96,12 +100,13 @@ class Assessment(EqualByValue):
 
     def with_details(self, columns: Mapping[str, Any], added: Sequence[Mapping[str, Cell]] = ()) -> dict[str, Any]:
         """Columns of the table behind the `details` of its rows, and of rows that are added at the end."""
-        (name, names), *others = columns.items()
-        details = {label: [*cells, *(row.get(label, "") for row in added)] for label, cells in self.details.items()}
-        in_place = name in details or any(obj.cells for obj in self.objects)
-        if name in details:
-            details[name] = names
-        return (details | {name: names} if in_place else {name: names} | details) | dict(others)
+        details = self.details
+        for label, cells in details.items():
+            cells += [row.get(label, "") for row in added]
+        name = next(iter(columns))
+        if name not in details and not any(obj.cells for obj in self.objects):
+            details = {name: [], **details}  # objects that are not from a table: their names come first
+        return {**details, **columns}
 
     def worst_motion(self, row: int) -> Motion:
         """The motion with the lowest factor that overturns a row, or else the one that rotates it most."""
@@ -135,12 +140,13 @@ class Assessment(EqualByValue):
         import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 
         row = integer("row", row, 0, len(self.objects) - 1)
-        given = self.objects[row], str(self.columns["direction"][row])
-        (needed,), (exceeded,) = frictions_of([given], self.site.motions)
-        about = "largest coefficient of friction needed", "time at which that of the object is exceeded"
+        obj, direction = self.objects[row], str(self.columns["direction"][row])
+        motions = self.site.motions
+        (needed,) = friction_needed([(obj, direction)], motions)
+        (exceeded,) = first_exceedances(bodies_of([(obj, direction)]), frictions([obj]), motions)
         variables = {
-            "friction_needed": ("motion", needed, {"units": "1", "long_name": about[0]}),
-            "exceeded_at": ("motion", exceeded, {"units": "s", "long_name": about[1]}),
+            "friction_needed": variable("motion", needed, "1", "largest coefficient of friction needed"),
+            "exceeded_at": variable("motion", exceeded, "s", "time at which that of the object is exceeded"),
         }
         return xr.Dataset(variables, {"motion": [*self.motions]})
 
@@ -171,9 +177,9 @@ class Assessment(EqualByValue):
             `at_full_strength`, whether a motion overturns it at a factor of 1.
         """
         row = integer("row", row, 0, len(self.objects) - 1)
-        one = self.objects[row]
-        apart = self.resolution or RESOLUTION
-        return factors_by_direction(one.planes_around, one.restitution, self.site.motions, stop, apart)
+        obj = self.objects[row]
+        resolution = self.resolution or RESOLUTION
+        return factors_by_direction(obj.planes_around, obj.restitution, self.site.motions, stop, resolution)
 
     def to_pandas(self) -> pd.DataFrame:
         """The table as a data frame."""
@@ -185,12 +191,13 @@ class Assessment(EqualByValue):
         """The table as a labelled data set over `row`, with units and meanings."""
         import xarray as xr  # noqa: PLC0415  (takes longer to load than the package)
 
-        about = {one.name: {"long_name": one.meaning} | ({"units": one.unit} if one.unit else {}) for one in OUTPUTS}
-        columns = {
-            name: column.astype(np.float64) if name == "slides_first" else column
-            for name, column in self.columns.items()
-        }
-        return xr.Dataset({name: ("row", column, about[name]) for name, column in columns.items()})
+        variables = {}
+        for quantity in OUTPUTS:
+            values = self.columns[quantity.name]
+            if quantity.name == "slides_first":
+                values = values.astype(np.float64)
+            variables[quantity.name] = variable("row", values, quantity.unit, quantity.meaning)
+        return xr.Dataset(variables)
 
     def to_csv(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> str:
         """The table as CSV with units in its header, written to a file if a path is given.
@@ -205,35 +212,40 @@ class Assessment(EqualByValue):
         return text
 
     def to_xlsx(self, path: str | PathLike[str] | None = None, *, bad_rows: Sequence[BadRow] = ()) -> bytes:
-        """The same table as an .xlsx workbook; numbers of a workbook with objects are numbers."""
+        """The table of `to_csv` as an .xlsx workbook; numbers of a workbook with objects are numbers."""
         raw = xlsx_bytes(self._columns_with(bad_rows))
         if path is not None:
             write_output(path, raw)
         return raw
 
     def _columns_with(self, bad_rows: Sequence[BadRow]) -> dict[str, Any]:
-        added = [{"object": f"row {one.row}", "verdict": "not read", "warnings": str(one)} for one in bad_rows]
-        rows: list[dict[str, Any]] = [*self.rows, *added]
-        columns = {one.header: [row.get(one.name) for row in rows] for one in OUTPUTS}
-        return self.with_details(columns, [one.cells for one in bad_rows])
+        rows = self.rows
+        for bad_row in bad_rows:
+            rows.append({"object": f"row {bad_row.row}", "verdict": "not read", "warnings": str(bad_row)})
+        columns = {quantity.header: [row.get(quantity.name) for row in rows] for quantity in OUTPUTS}
+        return self.with_details(columns, [bad_row.cells for bad_row in bad_rows])
 
     def __repr__(self) -> str:
         """The number of rows with each verdict, and the worst row."""
         count = Counter(self.columns["verdict"].tolist())
-        counted = ", ".join(f"{count[verdict]} {verdict}" for verdict in reversed(VERDICTS) if count[verdict])
-        rows = sum(count.values())
-        head = f"<rocking_assessment.Assessment of {rows} objects and directions under {len(self.motions)} motions: "
-        worst = next(iter(self.rows), None)
-        if worst is None:
-            return f"{head}none>"
-        margin = (
-            f"up to {self.highest_factor:g}"
-            if worst["factor"] is None
-            else f"from {worst['factor']:.{digits_apart(worst['factor'])}g}"
-        )
-        how = "not overturned" if worst["factor"] is None else "overturned"
-        rests = worst["share"] > worst["share_at_full_strength"] == 0.0
-        full = ", at full strength it comes to rest" if rests else ""
-        apart = f"; factors at most {100.0 * self.resolution:g} % apart were tried" if self.resolution else ""
-        named = f"{worst['object']}, {worst['direction']}"
-        return f"{head}{counted};\nworst: {named}, {how} {margin} times these motions{full}{apart}>"
+        rows = len(self.objects)
+        text = f"<rocking_assessment.Assessment of {rows} objects and directions under {len(self.motions)} motions: "
+        if not rows:
+            return f"{text}none>"
+        worst = self.rows[0]
+        text += ", ".join(f"{count[verdict]} {verdict}" for verdict in reversed(VERDICTS) if count[verdict])
+        text += f";\nworst: {worst['object']}, {worst['direction']}, "
+        factor = worst["factor"]
+        if factor is None:
+            text += f"not overturned up to {self.highest_factor:g} times these motions"
+        else:
+            text += f"overturned from {factor:.{digits_apart(factor)}g} times these motions"
+        if worst["share"] > worst["share_at_full_strength"] == 0.0:
+            text += ", at full strength it comes to rest"
+        if self.resolution:
+            text += f"; factors at most {100.0 * self.resolution:g} % apart were tried"
+        return f"{text}>"
+
+
+def _known(value: Any) -> Any:
+    return None if value != value else value

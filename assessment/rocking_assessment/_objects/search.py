@@ -30,9 +30,7 @@ HIGHEST_FACTOR = 10.0  # highest factor on the motions of a site that is searche
 
 def least(values: Array) -> Array:
     """Smallest of each row, nan where all are."""
-    return np.asarray(
-        np.where(np.isnan(values).all(axis=1), np.nan, np.nanmin(np.nan_to_num(values, nan=np.inf), axis=1))
-    )
+    return np.asarray(np.fmin.reduce(values, axis=1))
 
 
 def factors_of(
@@ -53,10 +51,11 @@ def factors_of(
     for k, motion in enumerate(motions):
         if progress is not None:
             progress(k / len(motions))
-        found = [
-            factor_from_one_side(one, motion, stop, resolution, highest, enough) for one in problems_of(body, motion)
+        factors = [
+            factor_from_one_side(problem, motion, stop, resolution, highest, enough)
+            for problem in problems_of(body, motion)
         ]
-        columns.append(least(np.stack(found, axis=1)))
+        columns.append(np.fmin.reduce(factors))
     return np.stack(columns, axis=1)
 
 
@@ -77,15 +76,15 @@ def lowest_factor(
     body: BodyArray, motion: Motion, stop: StopFlag | None, resolution: float, highest: float = HIGHEST_FACTOR
 ) -> Array:
     """A factor up to 1 that overturns, or the lowest above; 1 where the search finds none but the motion does; inf."""
-    found = factors_of(body, [motion], stop, resolution=resolution, highest=highest, enough=1.0)[:, 0]
-    known = np.fmin(found, np.where(overturned_by(body, motion, stop), 1.0, np.nan))
-    return np.asarray(np.nan_to_num(known, nan=np.inf))
+    factor = factors_of(body, [motion], stop, resolution=resolution, highest=highest, enough=1.0)[:, 0]
+    factor = np.fmin(factor, np.where(overturned_by(body, motion, stop), 1.0, np.nan))
+    return np.asarray(np.nan_to_num(factor, nan=np.inf))
 
 
 def overturned_by(
     body: BodyArray, motion: Motion, stop: StopFlag | None = None, acceleration: Array | float | None = None
 ) -> Flags:
-    """Whether a motion overturns each body from either side, at the strength of the site or at another one.
+    """True where a motion overturns a body from either side, at the strength of the site or at another one.
 
     Refused where its vertical acceleration reaches -g, from `strongest_factor` on.
     """
@@ -97,14 +96,13 @@ def overturned_by(
 def responses_of(
     body: BodyArray, motions: Sequence[Motion], stop: StopFlag | None = None
 ) -> tuple[Flags, Array, Array]:
-    """Whether each motion overturns each body, and otherwise its largest rotation [rad] and movement of the top [m]."""
+    """True where a motion overturns a body; and largest rotations [rad] and movements of the top [m]."""
     overturned, rotation, displacement = [], [], []
     for motion in motions:
-        problems = problems_of(body, motion)
-        found = [respond(problem, stop=stop) for problem in problems]
-        overturned.append(np.logical_or.reduce([one.overturned for one in found]))
-        rotation.append(np.fmax.reduce([one.rotation for one in found]))
-        displacement.append(np.fmax.reduce([one.displacement for one in found]))
+        responses = [respond(problem, stop=stop) for problem in problems_of(body, motion)]
+        overturned.append(np.logical_or.reduce([response.overturned for response in responses]))
+        rotation.append(np.fmax.reduce([response.rotation for response in responses]))
+        displacement.append(np.fmax.reduce([response.displacement for response in responses]))
     return np.stack(overturned, 1), np.stack(rotation, 1), np.stack(displacement, 1)
 
 
@@ -136,23 +134,23 @@ def searched_factor(motions: Sequence[Motion]) -> float:
 
 
 def estimated_outcomes(
-    body: BodyArray, records: Sequence[Motion], line: Index, ground: Array, stop: StopFlag | None = None
+    body: BodyArray, records: Sequence[Motion], row: Index, ground: Array, stop: StopFlag | None = None
 ) -> Flags:
-    """Whether one of some records overturns a body from either side, by the estimate of the search under records.
+    """True where one of some records overturns a body from either side, by the estimate of the search under records.
 
     The estimate (`rocking._solver.records.estimate`) takes a fifth of the time of a response.
 
     Parameters
     ----------
-    line : int array (strengths,)
+    row : int array (strengths,)
         The body of each strength.
     ground : float array (strengths,)
         Peak ground accelerations [m/s2].
     """
-    overturned = np.zeros(line.size, dtype=np.bool_)
+    overturned = np.zeros(row.size, dtype=np.bool_)
     for motion in records:
         record: Any = motion.motion
         factor = ground * (motion.peak_acceleration / motion.ground / record.peak_acceleration)
         for problem in problems_of(body, motion, np.full(body.shape, record.peak_acceleration)):
-            overturned |= record_lines(problem, stop).estimated(line, factor)[0]
+            overturned |= record_lines(problem, stop).estimated(row, factor)[0]
     return overturned

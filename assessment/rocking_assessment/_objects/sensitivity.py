@@ -1,14 +1,15 @@
-"""How an assessment changes with dimensions and restitution, and the sizes that a site does not overturn."""
+"""Factors of changed objects, shares of sampled ones, and the sizes that a site does not overturn."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from rocking.extension import Array, Flags, Index, StopFlag
-from rocking_assessment._objects.objects import Bodies, BodyArray, Object
+from rocking_assessment._objects.objects import Bodies, Object
 from rocking_assessment._objects.search import (
     HIGHEST_FACTOR,
     Progress,
@@ -56,7 +57,7 @@ def changed_objects(
     stop: StopFlag | None,
     progress: Progress,
 ) -> dict[str, Array]:
-    """Columns of changed objects: factors, and sizes that the motions do not overturn."""
+    """Columns of changed objects, `objects` of each row: factors, and sizes that the motions do not overturn."""
     wider, higher = _tolerances(objects, bodies)
     changed = {
         "factor_less_restitution": bodies.scaled(change=-ETA_CHANGE),
@@ -64,13 +65,13 @@ def changed_objects(
         "factor_slenderer": bodies.scaled(1.0 - wider, 1.0 + higher),
         "factor_stockier": bodies.scaled(1.0 + wider, 1.0 - higher),
     }
-    found = {}
+    columns: dict[str, Array] = {}
     coarser = CHANGED_RESOLUTION * resolution
-    for done, (name, body) in enumerate(changed.items()):
-        progress(float(done))
-        found[name] = least(factors_of(body, motions, stop, resolution=coarser))
-    progress(float(len(changed)))
-    return found | _limiting_sizes(bodies, factors, motions, resolution, stop)
+    for name, body in changed.items():
+        progress(float(len(columns)))
+        columns[name] = least(factors_of(body, motions, stop, resolution=coarser))
+    progress(float(len(columns)))
+    return columns | _limiting_sizes(bodies, factors, motions, resolution, stop)
 
 
 def sampled_share(
@@ -95,14 +96,14 @@ def sampled_share(
     wider, higher = _tolerances(objects, bodies)
     coarser = CHANGED_RESOLUTION * resolution
     for k in range(share.size):
-        same = bodies.take(np.full(samples, k))
-        found = np.zeros(samples, dtype=np.bool_)
+        overturned = np.zeros(samples, dtype=np.bool_)
         for m in np.argsort(np.nan_to_num(factors[k], nan=np.inf), kind="stable").tolist():
-            left = np.flatnonzero(~found)
+            left = np.flatnonzero(~overturned)
             if left.size:
+                copies = bodies.take(np.full(left.size, k))
                 changed = 1.0 + wider[k] * b[left], 1.0 + higher[k] * h[left], ETA_CHANGE * eta[left]
-                found[left] = _overturns_like(same.take(left), changed, motions[m], float(factors[k, m]), coarser, stop)
-        share[k] = found.mean()
+                overturned[left] = _overturns_like(copies, changed, motions[m], float(factors[k, m]), coarser, stop)
+        share[k] = overturned.mean()
     return share
 
 
@@ -114,26 +115,26 @@ def _overturns_like(
     resolution: float,
     stop: StopFlag | None,
 ) -> Flags:
-    """Whether a motion overturns changed bodies at its strength or below, of a body that it overturns at a factor.
+    """True where a motion overturns a changed body at its strength or below; `factor` is that of the unchanged body.
 
     The strength, and some just above that factor, are tried before the search, which then is for few.
     """
-    found = np.zeros(bodies.base.size, dtype=np.bool_)
+    overturned = np.zeros(bodies.base.size, dtype=np.bool_)
     for share in (1.0, *(factor * SHARES)):
-        left = np.flatnonzero(~found)
+        left = np.flatnonzero(~overturned)
         if left.size and share <= 1.0:
-            body = bodies.take(left).scaled(*(one[left] for one in changed))
-            found[left] = overturned_by(body, motion, stop, share * motion.peak_acceleration)
-    left = np.flatnonzero(~found)
+            body = bodies.take(left).scaled(*(change[left] for change in changed))
+            overturned[left] = overturned_by(body, motion, stop, share * motion.peak_acceleration)
+    left = np.flatnonzero(~overturned)
     if left.size:
-        body = bodies.take(left).scaled(*(one[left] for one in changed))
-        found[left] = lowest_factor(body, motion, stop, resolution, 1.0) <= 1.0
-    return found
+        body = bodies.take(left).scaled(*(change[left] for change in changed))
+        overturned[left] = lowest_factor(body, motion, stop, resolution, 1.0) <= 1.0
+    return overturned
 
 
 def _tolerances(objects: Sequence[Object], bodies: Bodies) -> tuple[Array, Array]:
-    """Of base and height of each body, relative."""
-    tolerance = np.array([one.tolerance for one in objects for _ in one.planes], dtype=np.float64)
+    """Tolerances of base and height of each body, relative [-]."""
+    tolerance = np.array([obj.tolerance for obj in objects], dtype=np.float64)
     return tolerance / bodies.base, tolerance / bodies.height
 
 
@@ -147,55 +148,58 @@ def _limiting_sizes(
     strongest = max(static_acceleration(motion) for motion in motions)
     still = strongest / np.asarray(bodies.scaled().uplift_acceleration)  # on a base larger by this it does not uplift
     worst = np.argsort(np.nan_to_num(factors, nan=2.0 * HIGHEST_FACTOR).mean(axis=0), kind="stable")
-    found = {}
-    for name, narrower in (("smallest_width", True), ("largest_height", False)):
+    by_severity = [motions[k] for k in worst.tolist()]
 
-        def lowest(
-            rows: Index, size: Array, motion: Motion, highest: float, share: float = 1.0, narrower: bool = narrower
-        ) -> Array:
-            one = np.ones(rows.size)
-            base, height = (still[rows] / size, one) if narrower else (one, size / still[rows])
-            found, searched = _probed(bodies.take(rows).scaled(base, height), motion, stop)
-            if searched.size:
-                body = bodies.take(rows[searched]).scaled(base[searched], height[searched])
-                found[searched] = lowest_factor(body, motion, stop, share * resolution, highest)
-            return found
+    def lowest(
+        base: Array, height: Array, rows: Index, motion: Motion, highest: float, coarseness: float = 1.0
+    ) -> Array:
+        """Lowest factor that overturns each scaled body; any factor up to 1 suffices."""
+        over = overturned_by(
+            bodies.take(rows).scaled(base, height).column, motion, stop, PROBES * motion.peak_acceleration
+        )
+        factor: Array = PROBES[over.argmax(axis=1)]
+        survives = np.flatnonzero(~over.any(axis=1))
+        if survives.size:
+            body = bodies.take(rows[survives]).scaled(base[survives], height[survives])
+            factor[survives] = lowest_factor(body, motion, stop, coarseness * resolution, highest)
+        return factor
 
-        size = _outermost(lowest, still.size, [motions[k] for k in worst.tolist()])
-        found[name] = bodies.base * still / size if narrower else bodies.height * size / still
-    return found
+    def narrower(rows: Index, size: Array, *search: Any) -> Array:
+        return lowest(still[rows] / size, np.ones(rows.size), rows, *search)
 
+    def higher(rows: Index, size: Array, *search: Any) -> Array:
+        return lowest(np.ones(rows.size), size / still[rows], rows, *search)
 
-def _probed(body: BodyArray, motion: Motion, stop: StopFlag | None) -> tuple[Array, Index]:
-    """A factor up to 1 at which each body overturns, inf where none was met; and which bodies are to be searched."""
-    over = overturned_by(body.column, motion, stop, motion.peak_acceleration * PROBES)
-    known = over.any(axis=1)
-    found = np.where(known, PROBES[over.argmax(axis=1)], np.inf)
-    return found, np.flatnonzero(~known)
+    return {
+        "smallest_width": bodies.base * still / _outermost(narrower, still.size, by_severity),
+        "largest_height": bodies.height * _outermost(higher, still.size, by_severity) / still,
+    }
 
 
 def _outermost(lowest: Callable[..., Array], count: int, motions: Sequence[Motion]) -> Array:
-    """The largest size of each body (count,) up to which none that was tried is overturned at a factor up to 1."""
-    rows = np.arange(count)
+    """The largest size of each body (count,) up to which none that was tried is overturned at a factor up to 1.
+
+    `lowest` finds factors: rows, their sizes, motion, highest factor, and the multiple of the resolution.
+    """
     first, by = np.full(count, SIZES.size), np.zeros(count, dtype=np.intp)  # the first that overturns, and its motion
-    starts = np.arange(SIZES.size)
     for k, motion in enumerate(motions):
         factor = np.full((count, SIZES.size), np.nan)  # nan: not tried
         step = 2**HALVINGS
-        row, place = (each.ravel() for each in np.broadcast_arrays(rows[:, None], starts[None, ::step]))
+        row, index = (part.ravel() for part in np.indices((count, COARSE + 1)))
+        index = step * index
         while True:
-            tried = place < first[row]
-            row, place = row[tried], place[tried]
+            smaller = index < first[row]
+            row, index = row[smaller], index[smaller]
             near = 1.0 + NEAR * step * math.log(SIZES[1])
-            factor[row, place] = lowest(row, SIZES[place], motion, near, CHANGED_RESOLUTION) if row.size else math.nan
-            hit = factor <= 1.0
-            own = np.where(hit.any(axis=1), hit.argmax(axis=1), SIZES.size)
-            by, first = np.where(own < first, k, by), np.minimum(own, first)
+            if row.size:
+                factor[row, index] = lowest(row, SIZES[index], motion, near, CHANGED_RESOLUTION)
+            overturned = factor <= 1.0
+            smallest = np.where(overturned.any(axis=1), overturned.argmax(axis=1), SIZES.size)
+            by, first = np.where(smallest < first, k, by), np.minimum(smallest, first)
             if step == 1:
                 break
-            refined = np.fmin(factor[:, :-1:step], factor[:, step::step]) <= near
-            row, place = np.nonzero(refined)
-            place, step = step * place + step // 2, step // 2
+            row, index = np.nonzero(np.fmin(factor[:, :-1:step], factor[:, step::step]) <= near)
+            index, step = step * index + step // 2, step // 2
     size: Array = SIZES[first - 1]
     high = SIZES[np.minimum(first, SIZES.size - 1)]
     left = np.flatnonzero(first < SIZES.size)
@@ -203,10 +207,11 @@ def _outermost(lowest: Callable[..., Array], count: int, motions: Sequence[Motio
         while (wide := left[high[left] / size[left] - 1.0 > SIZE_ERROR]).size:
             middle = np.sqrt(size[wide] * high[wide])
             for k in np.unique(by[wide]).tolist():
-                own = by[wide] == k
-                over = lowest(wide[own], middle[own], motions[k], ABOVE, CHANGED_RESOLUTION) <= 1.0
-                high[wide[own]] = np.where(over, middle[own], high[wide[own]])
-                size[wide[own]] = np.where(over, size[wide[own]], middle[own])
+                is_governed = by[wide] == k
+                rows, tried = wide[is_governed], middle[is_governed]
+                over = lowest(rows, tried, motions[k], ABOVE, CHANGED_RESOLUTION) <= 1.0
+                high[rows] = np.where(over, tried, high[rows])
+                size[rows] = np.where(over, size[rows], tried)
         confirmed = np.ones(left.size, dtype=np.bool_)
         for k, motion in enumerate(motions):
             over = lowest(left, size[left], motion, ABOVE) <= 1.0

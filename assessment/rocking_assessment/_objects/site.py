@@ -88,7 +88,7 @@ class Site:
     shapes : sequence of str or AbstractPulse, optional
         Pulse shapes; by default all pulses by name that leave the ground at rest.
     moving_ground : bool
-        Whether the default shapes include those that leave the ground moving: half sine, rectangular.
+        True: the default shapes include those that leave the ground moving, half sine and rectangular.
     floor_periods, floor_damping, floor_participation : float or sequence of float
         Modes of a building of which the objects are on a floor, as `periods`, `damping` and `participation` of
         `rocking.floor_motion`; without periods they are on the ground. Factors are on the motion of the ground.
@@ -113,23 +113,24 @@ class Site:
         records = self.records if isinstance(self.records, Iterable) else (self.records,)
         vars(self)["records"] = tuple(map(checked_pair, records))
         ways = {"pgv": self.pgv is not None, "periods": self.periods is not None, "records": bool(self.records)}
-        stated = [name for name, there in ways.items() if there]
-        if len(stated) != 1:
-            raise InvalidArgumentError("site", " and ".join(stated) or None, "one of pgv, periods and records")
+        descriptions = [name for name, is_given in ways.items() if is_given]
+        if len(descriptions) != 1:
+            raise InvalidArgumentError("site", " and ".join(descriptions) or None, "one of pgv, periods and records")
         if not self.records and self.pga is None:
             raise InvalidArgumentError("pga", None, "a peak ground acceleration, with pgv or periods")
         if self.floor_periods is not None:
-            given = self.floor_periods if isinstance(self.floor_periods, (list, tuple)) else (self.floor_periods,)
-            periods = tuple(number("floor_periods", one, *MODE_PERIODS, unit="s") for one in given)
+            values = self.floor_periods if isinstance(self.floor_periods, (list, tuple)) else (self.floor_periods,)
+            periods = [number("floor_periods", period, *MODE_PERIODS, unit="s") for period in values]
             damping = in_range("floor_damping", self.floor_damping, 0.0, 1.0, closed="left")
             participation = in_range("floor_participation", self.floor_participation, -100.0, 100.0)
             modes: dict[str, Any] = {
-                "floor_periods": periods,
+                "floor_periods": tuple(periods),
                 "floor_damping": damping,
                 "floor_participation": participation,
             }
             modal = broadcast(modes, [np.array(periods), damping, participation])
-            vars(self).update(zip(modes, (tuple(one.tolist()) for one in modal), strict=True))
+            for name, of_modes in zip(modes, modal, strict=True):
+                vars(self)[name] = tuple(of_modes.tolist())
         if self.hazard is not None:
             if not self.records:
                 raise InvalidArgumentError("hazard", "no records", "a suite of records with a hazard curve")
@@ -137,8 +138,8 @@ class Site:
 
             vars(self)["hazard"] = check_hazard_curve(hazard_arrays(self.hazard, "pga"))
         if self.periods is not None:
-            given_periods: Any = self.periods
-            ends = in_range("periods", given_periods, *LENGTH, unit="s")
+            shortest_longest: Any = self.periods
+            ends = in_range("periods", shortest_longest, *LENGTH, unit="s")
             if ends.shape != (2,) or ends[0] > ends[1]:
                 raise InvalidArgumentError("periods", self.periods, "the shortest and the longest period")
             vars(self)["periods"] = tuple(ends.tolist())
@@ -155,71 +156,80 @@ class Site:
         return self.find_motions(None)
 
     def find_motions(self, stop: StopFlag | None) -> list[Motion]:
-        """`motions`, which are found once; `stop` cancels the work, which is long on a floor."""
-        if "_motions" not in self.__dict__:
-            vars(self)["_motions"] = self._found(stop)
-        found: list[Motion] = self.__dict__["_motions"]
-        return found
-
-    def _found(self, stop: StopFlag | None) -> list[Motion]:
-        found = self._records() if self.records else self._pulses()
-        if self.floor_periods is None:
-            return found
-        floors, size = [], 0
-        for one in found:
-            floors.append(self._on_floor(one, stop))
-            size += floors[-1].motion.samples  # type: ignore[operator]
-            if size > MOST_SAMPLES:
-                allowed = f"periods at which all motions together have at most {MOST_SAMPLES} samples"
-                raise InvalidArgumentError("floor_periods", self.floor_periods, allowed)
-        return floors
+        """`motions`, which are computed once; `stop` cancels the work, which is long on a floor."""
+        motions: list[Motion] | None = vars(self).get("_motions")
+        if motions is not None:
+            return motions
+        motions = self._records() if self.records else self._pulses()
+        if self.floor_periods is not None:
+            size = 0
+            for k, motion in enumerate(motions):
+                motions[k] = self._on_floor(motion, stop)
+                size += motions[k].motion.samples  # type: ignore[operator]
+                if size > MOST_SAMPLES:
+                    allowed = f"periods at which all motions together have at most {MOST_SAMPLES} samples"
+                    raise InvalidArgumentError("floor_periods", self.floor_periods, allowed)
+        vars(self)["_motions"] = motions
+        return motions
 
     def _records(self) -> list[Motion]:
-        found = []
-        for group, given in enumerate(vars(self)["records"]):
-            components = rotated(*given) if len(given) > 1 else [("", given[0])]
-            name = given[0].name or f"record {group + 1}"
-            peak = max(one.peak_acceleration for _, one in components[:: PAIR_ANGLES // 2])  # of the given ones
-            ground = _floats(self.pga)[0] if self.pga is not None else peak
-            found += [
-                Motion(name + angle, one, ground / peak * one.peak_acceleration, 1.0, group, ground)
-                for angle, one in components
-            ]
-        return found
+        motions = []
+        for group, pair in enumerate(vars(self)["records"]):
+            components = rotated(*pair) if len(pair) > 1 else [("", pair[0])]
+            name = pair[0].name or f"record {group + 1}"
+            measured = components[:: PAIR_ANGLES // 2]  # along the two measured components
+            peak = max(record.peak_acceleration for _, record in measured)
+            ground = peak if self.pga is None else vars(self)["pga"]
+            for angle, record in components:
+                acceleration = ground / peak * record.peak_acceleration
+                motions.append(Motion(name + angle, record, acceleration, 1.0, group, ground))
+        return motions
 
     def _pulses(self) -> list[Motion]:
-        pga, pgv, periods = (_floats(value) for value in (self.pga, self.pgv, self.periods))
-        shapes = self.shapes
-        if shapes is None:
-            named = map(as_pulse, PULSE_NAMES)
-            shapes = [shape for shape in named if self.moving_ground or impulse_of(shape).ends_at_rest]
-        pulses = [as_pulse(shape) for shape in shapes]
-        if pgv:
-            unit = 2.0 * math.pi * pgv[0] / pga[0]
-            chosen = [(one.name, one, unit / impulse_of(one).largest) for one in pulses]
-        else:
-            tried = np.geomspace(periods[0], periods[1], PERIODS if periods[0] < periods[1] else 1).tolist()
-            chosen = [(f"{one.name}, {t:.3g} s", one, t) for one in pulses for t in tried]
-        return [Motion(name, one, pga[0], t, group, pga[0]) for group, (name, one, t) in enumerate(chosen)]
+        pga, pgv, pulses = vars(self)["pga"], vars(self)["pgv"], vars(self)["shapes"]
+        if pulses is None:
+            pulses = [as_pulse(name) for name in PULSE_NAMES]
+            pulses = [pulse for pulse in pulses if self.moving_ground or impulse_of(pulse).ends_at_rest]
+        if pgv is not None:
+            period = 2.0 * math.pi * pgv / pga  # at which a pulse with an impulse of 1 has the velocity
+            periods = [period / impulse_of(pulse).largest for pulse in pulses]
+            return [
+                Motion(pulse.name, pulse, pga, t, k, pga)
+                for k, (pulse, t) in enumerate(zip(pulses, periods, strict=True))
+            ]
+        shortest, longest = vars(self)["periods"]
+        periods = np.geomspace(shortest, longest, PERIODS if shortest < longest else 1).tolist()
+        motions: list[Motion] = []
+        for pulse in pulses:
+            for t in periods:
+                motions.append(Motion(f"{pulse.name}, {t:.3g} s", pulse, pga, t, len(motions), pga))
+        return motions
 
     def _on_floor(self, motion: Motion, stop: StopFlag | None) -> Motion:
         ground = sampled(motion)
-        modes: Any = (self.floor_periods, self.floor_damping, self.floor_participation)
-        names = "periods", "damping", "participation"
-        found = floor_motion(ground, **dict(zip(names, modes, strict=True)), stop=stop)
-        scale = motion.peak_acceleration / ground.peak_acceleration
-        return replace(
-            motion, motion=found, peak_acceleration=found.peak_acceleration * scale, period=1.0, below=motion
+        site: dict[str, Any] = vars(self)
+        floor = floor_motion(
+            ground,
+            periods=site["floor_periods"],
+            damping=site["floor_damping"],
+            participation=site["floor_participation"],
+            stop=stop,
         )
+        peak = floor.peak_acceleration * (motion.peak_acceleration / ground.peak_acceleration)
+        return replace(motion, motion=floor, peak_acceleration=peak, period=1.0, below=motion)
 
 
 def record_doubts(site: Site) -> list[str]:
     """Warnings about the records, in words: their remarks, and an offset of a record that is scaled by its PGA."""
-    records = [record for pair in vars(site)["records"] for record in pair]
-    found = [f"{one.name or 'a record'}: {remark}" for one in records for remark in one.remarks]
+    records: list[Record] = []
+    doubts = []
+    for pair in vars(site)["records"]:
+        records += pair
+    for record in records:
+        doubts += [f"{record.name or 'a record'}: {remark}" for remark in record.remarks]
     if site.pga is not None or site.hazard is not None:
-        found += offset_doubts(records)
-    return [*dict.fromkeys(text.replace("; ", ", ") for text in found)]
+        doubts += offset_doubts(records)
+    return [*dict.fromkeys(text.replace("; ", ", ") for text in doubts)]
 
 
 def sampled(motion: Motion) -> Record:
@@ -234,14 +244,9 @@ def sampled(motion: Motion) -> Record:
 
 def static_acceleration(motion: Motion) -> float:
     """Acceleration that tilts a body at rest as much as the motion with its vertical component [m/s2]."""
-    given = motion.motion
-    if not isinstance(given, Record) or given.vertical is None:
+    record = motion.motion
+    if not isinstance(record, Record) or record.vertical is None:
         return motion.peak_acceleration
-    scale = motion.peak_acceleration / given.peak_acceleration
-    weight = 1.0 + scale * given.vertical / STANDARD_GRAVITY
-    return float(np.max(scale * np.abs(given.acceleration) / np.maximum(weight, 0.01)))
-
-
-def _floats(value: Any) -> list[float]:
-    """One number or several that have been checked, none for None."""
-    return [] if value is None else np.atleast_1d(value).tolist()
+    scale = motion.peak_acceleration / record.peak_acceleration
+    weight = 1.0 + scale * record.vertical / STANDARD_GRAVITY
+    return float(np.max(scale * np.abs(record.acceleration) / np.maximum(weight, 0.01)))

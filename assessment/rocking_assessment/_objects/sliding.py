@@ -47,15 +47,15 @@ def first_exceedance(motion: Motion, friction: float) -> float:
 
 def _pieces(motion: Motion) -> tuple[Array, Array, Array]:
     """Times [s], and horizontal and vertical accelerations [m/s2] that are linear between them."""
-    given = motion.motion
-    if isinstance(given, Record) or given.samples is None:
-        record = sampled(motion)
-        scale = motion.peak_acceleration / (
-            record.peak_acceleration if isinstance(given, Record) else motion.peak_acceleration
-        )
-        upwards = np.zeros(record.samples) if record.vertical is None else record.vertical * scale
-        return record.times, record.acceleration * scale, upwards
-    phases, values = given.samples
+    pulse = motion.motion
+    if isinstance(pulse, Record) or pulse.samples is None:
+        record = sampled(motion)  # of a pulse at the strength of the site
+        scale = motion.peak_acceleration / pulse.peak_acceleration if isinstance(pulse, Record) else 1.0
+        vertical = np.zeros(record.samples)
+        if record.vertical is not None:
+            vertical = record.vertical * scale
+        return record.times, record.acceleration * scale, vertical
+    phases, values = pulse.samples
     return phases * (motion.period / (2.0 * math.pi)), values * motion.peak_acceleration, np.zeros(values.size)
 
 
@@ -75,26 +75,26 @@ def largest_slip(times: Array, acceleration: Array, resistance: Array, at_end: f
             if following == len(starts):
                 break
             k = starts[following]
-        left, here, held = at[k + 1] - at[k], values[k], resisting[k]
-        rate, change = (values[k + 1] - here) / left, (resisting[k + 1] - held) / left
+        left, a, limit = at[k + 1] - at[k], values[k], resisting[k]
+        rate, change = (values[k + 1] - a) / left, (resisting[k + 1] - limit) / left
         k += 1
         while left > 0.0:
             if velocity == 0.0:
                 # |a| - resistance is the larger of two linear functions, for sliding towards - and towards +
-                waits = {-side: _time_to_excess(side * here - held, side * rate - change) for side in (1.0, -1.0)}
+                waits = {-side: _time_to_excess(side * a - limit, side * rate - change) for side in (1.0, -1.0)}
                 direction = min(waits, key=waits.__getitem__)
                 wait = waits[direction]
                 if wait >= left:
                     break
-                left, here, held = left - wait, here + rate * wait, held + change * wait
+                left, a, limit = left - wait, a + rate * wait, limit + change * wait
             else:
                 direction = math.copysign(1.0, velocity)
-            push, growth = -here - direction * held, -rate - direction * change  # v' at the start of the step, and v''
+            push, growth = -a - direction * limit, -rate - direction * change  # v' at the start of the step, and v''
             step = _time_to_stop(velocity, push, growth, left)
             stops = step < left
             slip += step * (velocity + step * (0.5 * push + growth * step / 6.0))
             velocity = 0.0 if stops else velocity + step * (push + 0.5 * growth * step)
-            here, held, left = here + rate * step, held + change * step, left - step
+            a, limit, left = a + rate * step, limit + change * step, left - step
             largest = max(largest, abs(slip))
     slip += math.copysign(velocity * velocity / (2.0 * at_end), velocity)  # after the motion
     return max(largest, abs(slip))
@@ -111,10 +111,13 @@ def _time_to_stop(velocity: float, push: float, change: float, left: float) -> f
     """First time > 0 at which velocity + push t + change t^2/2 is zero; `left` if there is none before."""
     roots = []
     if change == 0.0:
-        roots = [-velocity / push] if push != 0.0 else []
+        if push != 0.0:
+            roots.append(-velocity / push)
     else:
         square = push * push - 2.0 * change * velocity
         if square >= 0.0:
             q = -(push + math.copysign(math.sqrt(square), push))
-            roots = [q / change] + ([2.0 * velocity / q] if q != 0.0 else [])
+            roots.append(q / change)
+            if q != 0.0:
+                roots.append(2.0 * velocity / q)
     return min([left, *(root for root in roots if root > 1e-14 * left)])

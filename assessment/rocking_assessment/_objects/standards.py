@@ -20,30 +20,31 @@ PERIODS: Array = 0.05 * 1.05 ** np.arange(160, dtype=np.float64)
 
 def checked_clauses(names: object) -> tuple[str, ...]:
     """Names of clauses, in one text or several, in the order of `CLAUSES`; "all" is all of them, nothing none."""
-    given = names.split(",") if isinstance(names, str) and names else names
-    chosen = {str(one).strip() for one in given} if isinstance(given, Iterable) else {""}
-    if chosen <= {"all", *CLAUSES}:
-        return tuple(name for name in CLAUSES if name in chosen or "all" in chosen)
-    raise InvalidArgumentError("standards", names, f"all, or some of {', '.join(CLAUSES)}")
+    listed = names.split(",") if isinstance(names, str) and names else names
+    clauses = {str(name).strip() for name in listed} if isinstance(listed, Iterable) else {""}
+    if not clauses <= {"all", *CLAUSES}:
+        raise InvalidArgumentError("standards", names, f"all, or some of {', '.join(CLAUSES)}")
+    return tuple(CLAUSES) if "all" in clauses else tuple(name for name in CLAUSES if name in clauses)
 
 
 def demand_over_capacity(
     body: BodyArray, motions: Sequence[Motion], clauses: Sequence[str], stop: StopFlag | None = None
 ) -> dict[str, Array]:
     """Demand over capacity of each clause, arrays (bodies, motions); nan where a body cannot rock by a clause."""
-    given = body.rigid.parameters
+    parameters = body.rigid.parameters
     names = "left", "right", "height", "gyration"
-    left, right, h, r = np.broadcast_arrays(*(np.ravel(np.asarray(given[name], dtype=np.float64)) for name in names))
+    arrays = [np.ravel(np.asarray(parameters[name], dtype=np.float64)) for name in names]
+    left, right, h, r = np.broadcast_arrays(*arrays)
     b = np.where(body.side == 0.0, np.minimum(left, right), np.where(body.side > 0.0, right, left))
-    found = {name: np.full((b.size, len(motions)), np.nan) for name in clauses}
+    ratios = {name: np.full((b.size, len(motions)), np.nan) for name in clauses}
     for k, motion in enumerate(motions):
         for name in clauses:
             clause = DEMANDS[name]
             ratio = clause(motion, b, h, r, stop)
             if motion.below is not None and name in AT_GROUND_TOO:
                 ratio = np.maximum(ratio, clause(motion.below, b, h, r, stop))
-            found[name][:, k] = ratio
-    return found
+            ratios[name][:, k] = ratio
+    return ratios
 
 
 def _static(motion: Motion, b: Array, h: Array, _r: Array, _stop: StopFlag | None) -> Array:
@@ -97,8 +98,8 @@ def _circolare2019_nonlinear(motion: Motion, b: Array, h: Array, r: Array, stop:
 
 def _displacements(record: Record, periods: Array, stop: StopFlag | None) -> Array:
     """S_De of an unscaled record at some periods [s] and the damping ratio of SLV [m]."""
-    found = [largest_displacement(record.acceleration, record.time_step, t, DAMPING["SLV"], stop) for t in periods]
-    return np.array(found)
+    damping = DAMPING["SLV"]
+    return np.array([largest_displacement(record.acceleration, record.time_step, t, damping, stop) for t in periods])
 
 
 DEMANDS: dict[str, Callable[[Motion, Array, Array, Array, StopFlag | None], Array]] = {

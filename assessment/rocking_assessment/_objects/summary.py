@@ -46,23 +46,25 @@ class Line:
 
     @property
     def is_close(self) -> bool:
-        """Whether a change of the motion by less than 20 % changes the verdict."""
+        """True if a change of the motion by less than 20 % changes the verdict."""
         return self.values["factor"] is not None and abs(self.values["factor"] - 1.0) < CLOSE
 
     @property
     def overturns(self) -> bool:
+        """True if a motion of the site overturns it."""
         return bool(self.values["share"] > 0.0)
 
     @property
     def at_full_strength(self) -> str:
-        """How many motions overturn it at full strength, and how many only at a lower factor."""
-        names = "share_at_full_strength", "share"
-        full, counted = (round(self.events * self.values[name]) for name in names)
-        return f"{full} of {self.events}" + (f", {counted - full} only below" if counted > full else "")
+        """Number of motions that overturn it at full strength, and of those that do so only at a lower factor."""
+        full = round(self.events * self.values["share_at_full_strength"])
+        below = round(self.events * self.values["share"]) - full
+        text = f"{full} of {self.events}"
+        return f"{text}, {below} only below" if below > 0 else text
 
     @property
     def concerns(self) -> bool:
-        """Whether it rocks, overturns, or is close to overturning."""
+        """True if it rocks, overturns, or is close to overturning."""
         return self.values["verdict"] != "stays" or self.is_close
 
     @property
@@ -87,43 +89,45 @@ class Line:
 
     @property
     def first_step(self) -> str:
-        """What to do first."""
-        if not self.object.depth_is_missing:
-            return self._step_with_depth
-        return f"measure the depth, then {self._step_with_depth}" if self.overturns else "measure the depth"
-
-    @property
-    def _step_with_depth(self) -> str:
-        row = self.values
-        if self.overturns and self.wider and row["smallest_width"] <= WIDER * self.base:
-            return "widen the base, or fix it"
+        """First step to take: fix or widen what overturns, measure what is in doubt, keep clear of what moves."""
+        values = self.values
         if self.overturns:
-            return "fix it, or widen the base" if self.wider is None else "fix it"
+            if self.wider is None:
+                step = "fix it, or widen the base"
+            elif self.wider > 0.0 and values["smallest_width"] <= WIDER * self.base:
+                step = "widen the base, or fix it"
+            else:
+                step = "fix it"
+            return f"measure the depth, then {step}" if self.object.depth_is_missing else step
+        if self.object.depth_is_missing:
+            return "measure the depth"
         if self.is_close:
             return "measure it again"
-        if row["sliding"] is not None and rounded(row["sliding"], "m"):
-            return f"keep {_clearance(row['sliding'])} clear: it slides"
-        if rounded(row["displacement"], "m"):
-            return f"keep {_clearance(row['displacement'])} clear"
+        if values["sliding"] is not None and rounded(values["sliding"], "m"):
+            return f"keep {_clearance(values['sliding'])} clear: it slides"
+        if rounded(values["displacement"], "m"):
+            return f"keep {_clearance(values['displacement'])} clear"
         return "nothing"
 
 
-def lines_of(found: Assessment, *, directions: bool = False, only: Line | None = None) -> list[Line]:
-    """One line for each object, the worst first; with `directions` one for each of its rows, below each other.
+def lines_of(assessment: Assessment, *, directions: bool = False, only: Line | None = None) -> list[Line]:
+    """Lines of the objects, the worst first; with `directions` a line for each row of an object, below each other.
 
-    `only` is a line of the object that is wanted.
+    With `only`, a line of an object, those of this object.
     """
-    own: dict[int, list[int]] = {}
-    for k, one in enumerate(found.objects):
-        own.setdefault(id(one), []).append(k)
-    all_values, motions = found.rows, found.site.motions
+    rows_of_objects: dict[int, list[int]] = {}
+    for row, obj in enumerate(assessment.objects):
+        rows_of_objects.setdefault(id(obj), []).append(row)
+    all_values, motions = assessment.rows, assessment.site.motions
     lines = []
-    for rows in own.values() if only is None else (only.rows,):
-        for k in rows if directions else rows[:1]:
-            one, values = found.objects[k], all_values[k]
-            ground = None if values["factor"] is None else motions[int(np.nanargmin(found.factors[k]))].ground
-            pga = None if ground is None else ground * values["factor"]
-            lines.append(Line(one, rows, k, values, pga, one.planes[values["direction"]].base, found.events))
+    for rows in rows_of_objects.values() if only is None else (only.rows,):
+        for row in rows if directions else rows[:1]:
+            obj, values = assessment.objects[row], all_values[row]
+            pga = None
+            if values["factor"] is not None:
+                pga = motions[int(np.nanargmin(assessment.factors[row]))].ground * values["factor"]
+            base = obj.planes[values["direction"]].base
+            lines.append(Line(obj, rows, row, values, pga, base, assessment.events))
     return lines
 
 
@@ -146,91 +150,98 @@ def rounded(value: Any, unit: str = "-", digits: int = 3) -> Any:
     """
     if not isinstance(value, float):
         return value
-    shown = value / UNITS[unit][PEOPLE[unit]] if unit in PEOPLE else value
-    if abs(shown) < SMALL.get(unit, 5e-4):
+    if unit in PEOPLE:
+        value /= UNITS[unit][PEOPLE[unit]]
+    if abs(value) < SMALL.get(unit, 5e-4):
         return 0.0
     if unit == "-":
-        digits = max(digits, digits_apart(shown))
-    short = float(f"{shown:.{digits}g}")
+        digits = max(digits, digits_apart(value))
+    short = float(f"{value:.{digits}g}")
     return round(short, 2) if unit == "m" else short
 
 
 def text_of(value: Any, unit: str = "-", digits: int = 3) -> str:
-    """The same as text with its unit; a dash for what is not known."""
-    sign = {"rad": "\u00b0"}.get(unit, f" {PEOPLE.get(unit, unit)}" if unit not in ("", "-") else "")
-    return number_of(value, unit, digits) + (sign if isinstance(value, float) and value == value else "")
+    """A number, rounded, as text with its unit; a dash for what is not known."""
+    text = number_of(value, unit, digits)
+    if not isinstance(value, float) or value != value or unit in ("", "-"):
+        return text
+    return f"{text}\u00b0" if unit == "rad" else f"{text} {PEOPLE.get(unit, unit)}"
 
 
 def number_of(value: Any, unit: str = "-", digits: int = 3) -> str:
-    """The same without its unit."""
+    """A number, rounded, as text without its unit; a dash for what is not known."""
     if value is None or value != value:
         return "\u2013"
     return f"{rounded(value, unit, digits):.15g}" if isinstance(value, float) else str(value)
 
 
-def table_of(found: Assessment, *, directions: bool = False) -> dict[str, list[Any]]:
+def table_of(assessment: Assessment, *, directions: bool = False) -> dict[str, list[Any]]:
     """The lines as columns, in the order of the questions."""
-    lines = lines_of(found, directions=directions)
-    top = f"> {found.highest_factor:g}"
-
-    def column(name: str) -> list[Any]:
-        return [one.values[name] for one in lines]
-
+    lines = lines_of(assessment, directions=directions)
+    labels: dict[str, None] = {}
+    for line in lines:
+        labels |= dict.fromkeys(line.object.details)
     columns: dict[str, list[Any]] = {}
-    for label in dict.fromkeys(label for line in lines for label in line.object.details):
+    for label in labels:
         columns[label] = [_shortened(line.object.details.get(label, "")) for line in lines]
-    columns["object"] = [_shortened(name) for name in column("object")]
+
+    def values_of(name: str) -> list[Any]:
+        return [line.values[name] for line in lines]
+
+    def rounded_or(missing: str, name: str, unit: str) -> list[Any]:
+        return [missing if value is None else rounded(value, unit) for value in values_of(name)]
+
+    columns["object"] = [_shortened(name) for name in values_of("object")]
     if directions:
-        columns["direction"] = column("direction")
-    clauses = {
-        clause.replace("_", " "): [rounded(one) for one in column(f"{clause}_ratio")]
-        for clause in CLAUSES
-        if any(one.values[f"{clause}_ratio"] is not None for one in lines)
-    }
-    return columns | {
-        "verdict": column("verdict"),
-        "overturns from factor": [top if one is None else rounded(one) for one in column("factor")],
-        "at full strength by": [one.at_full_strength for one in lines],
-        "PGA [g]": [None if one.pga is None else rounded(one.pga, "m/s2", one.digits) for one in lines],
-        "governing motion": [one.replace("_", " ") or "-" for one in column("governing")],
-        "moves by [cm]": ["overturns" if one is None else rounded(one, "m") for one in column("displacement")],
-        "base needed [cm]": [rounded(one.base_needed, "m") for one in lines],
-        "wider by [cm]": [rounded(one.wider, "m") for one in lines],
-        "what to do first": [one.first_step for one in lines],
-        **clauses,
-    }
+        columns["direction"] = values_of("direction")
+    columns["verdict"] = values_of("verdict")
+    columns["overturns from factor"] = rounded_or(f"> {assessment.highest_factor:g}", "factor", "-")
+    columns["at full strength by"] = [line.at_full_strength for line in lines]
+    columns["PGA [g]"] = [rounded(line.pga, "m/s2", line.digits) for line in lines]
+    columns["governing motion"] = [name.replace("_", " ") or "-" for name in values_of("governing")]
+    columns["moves by [cm]"] = rounded_or("overturns", "displacement", "m")
+    columns["base needed [cm]"] = [rounded(line.base_needed, "m") for line in lines]
+    columns["wider by [cm]"] = [rounded(line.wider, "m") for line in lines]
+    columns["what to do first"] = [line.first_step for line in lines]
+    for clause in CLAUSES:
+        ratios = [rounded(ratio) for ratio in values_of(f"{clause}_ratio")]
+        if ratios != [None] * len(ratios):
+            columns[f"{clause} ratio".replace("_", " ")] = ratios
+    return columns
 
 
 def counts_of(lines: Sequence[Line]) -> str:
-    """How many objects the motions overturn at full strength, and how many only at a lower factor, in words."""
-    overturned = [line.values["share_at_full_strength"] > 0.0 for line in lines if line.overturns]
-    full, below = sum(overturned), len(overturned) - sum(overturned)
+    """Numbers of objects that the motions overturn at full strength, and only at a lower factor, in words."""
+    full = sum(line.values["share_at_full_strength"] > 0.0 for line in lines)
+    below = sum(line.overturns for line in lines) - full
     return f"overturned at full strength: {full} of {len(lines)} objects; only at a lower factor: {below}"
 
 
-def warnings_of(found: Assessment) -> list[tuple[str, list[str]]]:
-    """Each kind of warning with the names of its objects, the most frequent first.
+def warnings_of(assessment: Assessment) -> list[tuple[str, list[str]]]:
+    """Kinds of warnings with the names of their objects, the most frequent first.
 
-    Whether an object is within 20 % of overturning is that of its worse direction.
+    The worse direction of an object decides if it is within 20 % of overturning.
     """
     texts: dict[str, set[str]] = {}
     concerned: dict[str, dict[int, str]] = {}
-    worst = {one.row for one in lines_of(found)}
-    for k, (one, warnings) in enumerate(zip(found.objects, found.columns["warnings"].tolist(), strict=True)):
-        for text in filter(None, warnings.split("; ")):
+    worst = {line.row for line in lines_of(assessment)}
+    for row, obj in enumerate(assessment.objects):
+        for text in filter(None, assessment.columns["warnings"][row].split("; ")):
             kind = text.partition(": ")[0] if text.startswith(DETAILED) else text
-            if k in worst or not text.startswith(WITHIN):
+            if row in worst or not text.startswith(WITHIN):
                 texts.setdefault(kind, set()).add(text)
-                concerned.setdefault(kind, {})[id(one)] = one.name
-    found_kinds = [
-        (texts[kind].pop() if len(texts[kind]) == 1 else kind, [*names.values()]) for kind, names in concerned.items()
-    ]
-    return sorted(found_kinds, key=lambda pair: -len(pair[1]))
+                concerned.setdefault(kind, {})[id(obj)] = obj.name
+    warnings = []
+    for kind, names in concerned.items():
+        text = texts[kind].pop() if len(texts[kind]) == 1 else kind
+        warnings.append((text, [*names.values()]))
+    return sorted(warnings, key=lambda warning: -len(warning[1]))
 
 
-def names_in_short(names: Sequence[str], most: int = 5) -> str:
-    """The first names, and how many more there are."""
-    return "; ".join(map(_shortened, names[:most])) + (f"; and {len(names) - most} more" if len(names) > most else "")
+def names_in_short(names: Sequence[str], limit: int = 5) -> str:
+    """The first names, and the number of the others."""
+    text = "; ".join(_shortened(name) for name in names[:limit])
+    return f"{text}; and {len(names) - limit} more" if len(names) > limit else text
 
 
 def _shortened(name: str) -> str:

@@ -46,7 +46,7 @@ COMMENTS = (
     "# height: of the whole object. mass and friction (coefficient at the base) may be empty; so may notes.",
     "# The decimal sign is the point. Columns of other names are kept as they stand.",
 )
-"""Lines above it."""
+"""Lines above this header."""
 
 
 class ObjectTable(Table[Object]):
@@ -61,11 +61,11 @@ class ObjectTable(Table[Object]):
     skipped : list of str
         Headers of columns that are not read; their cells are kept in the `details` of the objects.
     columns : dict of str to str
-        What each other column was read as, by its header, such as "width [cm]"; of JSON nothing, whose keys say it.
+        Canonical header, such as "width [cm]", of each column that was read, by its header; empty for JSON.
     remarks : list of str
         Where `columns` states another unit than the header.
     reading : str
-        How each column was read, and which columns were not, in words.
+        The columns that were read, and those that were not, in words.
     """
 
     @property
@@ -131,7 +131,7 @@ def read_objects(
     return ObjectTable(**vars(read_table_file(source, SCHEMA, layout)))
 
 
-def objects_of_json(text: str, most: int | None = None, layout: TableLayout | None = None) -> ObjectTable:
+def objects_of_json(text: str, max_rows: int | None = None, layout: TableLayout | None = None) -> ObjectTable:
     """Objects from JSON: a list of objects with the names of the columns as keys; numbers are in SI units."""
     try:
         rows = json.loads(text)
@@ -140,36 +140,35 @@ def objects_of_json(text: str, most: int | None = None, layout: TableLayout | No
         raise InvalidArgumentError("objects", str(error), "JSON, with texts that UTF-8 can encode") from None
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise InvalidArgumentError("objects", type(rows).__name__, "a list of objects, one for each row")
-    if most is not None and len(rows) > most:
-        raise TooManyRowsError("objects", len(rows), f"at most {most}")
-    names = {one.name for one in fields(Object)} - {"cells"} | _SHAPES
+    if max_rows is not None and len(rows) > max_rows:
+        raise TooManyRowsError("objects", len(rows), f"at most {max_rows}")
+    names = {field.name for field in fields(Object)} - {"cells"} | _SHAPES
+    allowed = f"one of {', '.join(sorted(names))}"
     table = ObjectTable()
     for number, row in enumerate(rows, start=1):
-        errors = [
-            InvalidArgumentError(str(key), row[key], f"one of {', '.join(sorted(names))}") for key in row.keys() - names
-        ]
-        try:
-            if not errors:
-                made = object_of({"name": f"row {number}"} | row)
-                errors = unusual_sizes(vars(made), layout or TableLayout())
-        except InvalidArgumentError as error:
-            errors = [error]
+        errors = [InvalidArgumentError(str(key), row[key], allowed) for key in row.keys() - names]
+        if not errors:
+            try:
+                obj = object_of({"name": f"row {number}"} | row)
+                errors = unusual_sizes(vars(obj), layout or TableLayout())
+            except InvalidArgumentError as error:
+                errors = [error]
         if errors:
             table.bad_rows.append(BadRow(number, errors))
         else:
-            table.objects.append(made)
+            table.objects.append(obj)
     return table
 
 
 def objects_of_csv(
-    text: str, most: int | None = None, stop: StopFlag | None = None, layout: TableLayout | None = None
+    text: str, max_rows: int | None = None, stop: StopFlag | None = None, layout: TableLayout | None = None
 ) -> ObjectTable:
     """Objects from CSV text in a stated layout; the errors of `read_objects`. `stop` cancels the work.
 
-    Beyond `most` rows the table is refused by `TooManyRowsError`, before an object is made.
+    Beyond `max_rows` rows the table is refused by `TooManyRowsError`, before an object is made.
     """
     file = open_text(text, "objects", SCHEMA, layout or TableLayout(), stop)
-    return ObjectTable(**vars(read_rows(file, SCHEMA, most)))
+    return ObjectTable(**vars(read_rows(file, SCHEMA, max_rows)))
 
 
 def _object_of_row(row: Row) -> Object:
@@ -188,9 +187,9 @@ def object_of(values: dict[str, Any]) -> Object:
         return Object(**values)
     if "sides" in shapes and values.get("depth") is not None and values.keys().isdisjoint(["wall"]):
         raise InvalidArgumentError("depth", values["depth"], "none beside sides: the width is across the wall")
-    stated = {name: values.pop(name) for name in [*values] if name not in _NOT_SHAPES}
-    body, parameters = described(kind, stated)
-    return Object.from_body(body(**parameters), **values)
+    properties = {name: value for name, value in values.items() if name in _NOT_SHAPES}
+    body, parameters = described(kind, {name: value for name, value in values.items() if name not in _NOT_SHAPES})
+    return Object.from_body(body(**parameters), **properties)
 
 
 _SHAPES = {quantity.name for quantity in SHAPES}

@@ -22,7 +22,7 @@ from rocking.extension import (
     variable,
 )
 from rocking_assessment._objects.assess import CONFIDENCE
-from rocking_assessment._objects.objects import Bodies
+from rocking_assessment._objects.objects import Bodies, signed_restitution
 from rocking_assessment._objects.search import overturned_by
 from rocking_assessment._objects.site import Site
 
@@ -80,9 +80,11 @@ class OverturningProbability(EqualByValue):
     def __repr__(self) -> str:
         """The probability, its interval and the most important input."""
         low, high = self.interval
-        known = {name: value for name, value in self.first_order.items() if not math.isnan(value)}
-        most = f"; {max(known, key=known.__getitem__)} matters most" if known else ""
-        return f"<rocking.OverturningProbability {self.probability:.4g}, from {low:.4g} to {high:.4g}{most}>"
+        text = f"<rocking.OverturningProbability {self.probability:.4g}, from {low:.4g} to {high:.4g}"
+        indices = {name: index for name, index in self.first_order.items() if not math.isnan(index)}
+        if indices:
+            text += f"; {max(indices, key=indices.__getitem__)} matters most"
+        return f"{text}>"
 
 
 def overturning_probability(
@@ -123,41 +125,42 @@ def overturning_probability(
     """
     from scipy import stats  # noqa: PLC0415  (takes longer to load than the package)
 
-    given = dict(zip(NAMES, (width, height, mass_height, offset, restitution), strict=True))
-    uncertain = {name: value for name, value in given.items() if hasattr(value, "ppf")}
-    for name, value in given.items():
-        if name == "restitution" and name not in uncertain:
-            given[name] = value if impact_share(value) is not None else RESTITUTION.number(value)
-        elif name not in uncertain and value is not None:
+    inputs = dict(zip(NAMES, (width, height, mass_height, offset, restitution), strict=True))
+    uncertain = {name: value for name, value in inputs.items() if hasattr(value, "ppf")}
+    for name in inputs.keys() - uncertain.keys():
+        value = inputs[name]
+        if name == "restitution":
+            inputs[name] = value if impact_share(value) is not None else RESTITUTION.number(value)
+        elif value is not None:
             low = -math.inf if name == "offset" else 0.0
-            given[name] = number(name, value, low, math.inf, closed="neither", unit="m")
+            inputs[name] = number(name, value, low, math.inf, closed="neither", unit="m")
     if not uncertain:
         raise InvalidArgumentError("width", width, "a distribution of scipy.stats for at least one input")
-    each = 2 ** math.ceil(math.log2(integer("samples", samples, 64, 2**22) / REPLICATES))
+    size = 2 ** math.ceil(math.log2(integer("samples", samples, 64, 2**22) / REPLICATES))  # bodies of a scrambling
     motions = site.motions
 
     def share(values: Array) -> Array:
         """Share of the motions that overturns each body; values (inputs, bodies)."""
-        sampled = given | dict(zip(uncertain, values, strict=True))
+        sampled = inputs | dict(zip(uncertain, values, strict=True))
         hits = [overturned_by(_body(sampled, values.shape[1]), motion, stop) for motion in motions]
         return np.asarray(np.mean(hits, axis=0))
 
     streams = np.random.default_rng(integer("seed", seed, 0, 2**53)).spawn(REPLICATES + 1)
     means = []
     for stream in streams[1:]:
-        points = stats.qmc.Sobol(len(uncertain), rng=stream).random(each)
-        means.append(share(np.stack([one.ppf(u) for one, u in zip(uncertain.values(), points.T, strict=True)])).mean())
+        points = stats.qmc.Sobol(len(uncertain), rng=stream).random(size)
+        pairs = zip(uncertain.values(), points.T, strict=True)
+        means.append(share(np.stack([distribution.ppf(u) for distribution, u in pairs])).mean())
     middle = float(np.mean(means))
     half = float(stats.t.ppf(0.5 + 0.5 * CONFIDENCE, REPLICATES - 1) * np.std(means, ddof=1) / math.sqrt(REPLICATES))
-    half = max(half, 1.0 / each)  # one body of each scrambling, which may agree by chance
+    half = max(half, 1.0 / size)  # one body of each scrambling, which may agree by chance
     first = np.full(len(uncertain), 1.0 if 0.0 < middle < 1.0 else np.nan)  # 1: a single input explains everything
     if 0.0 < middle < 1.0 and len(uncertain) > 1:
-        found = stats.sobol_indices(func=share, n=each, dists=list(uncertain.values()), rng=streams[0])
-        first = np.ravel(found.first_order)
+        indices = stats.sobol_indices(func=share, n=size, dists=list(uncertain.values()), rng=streams[0])
+        first = np.ravel(indices.first_order)
     interval = max(middle - half, 0.0), min(middle + half, 1.0)
-    return OverturningProbability(
-        middle, interval, dict(zip(uncertain, first.tolist(), strict=True)), each * REPLICATES
-    )
+    first_order = dict(zip(uncertain, first.tolist(), strict=True))
+    return OverturningProbability(middle, interval, first_order, size * REPLICATES)
 
 
 def _body(values: Mapping[str, Any], size: int) -> Any:
@@ -165,7 +168,9 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
     width, height, offset = (
         np.broadcast_to(np.asarray(values[name], float), size) for name in ("width", "height", "offset")
     )
-    centre = 0.5 * height if values["mass_height"] is None else np.broadcast_to(np.asarray(values["mass_height"]), size)
+    centre = 0.5 * height
+    if values["mass_height"] is not None:
+        centre = np.broadcast_to(np.asarray(values["mass_height"]), size)
     possible = (width > 0.0) & (height > 0.0) & (centre > 0.0) & (np.abs(offset) < 0.5 * width)
     if not possible.all():
         k = int(np.flatnonzero(~possible)[0])
@@ -176,10 +181,19 @@ def _body(values: Mapping[str, Any], size: int) -> Any:
             "distributions that hold possible bodies only: truncate them, for instance by scipy.stats.truncnorm",
         )
     eta = values["restitution"]
-    own = (
-        np.full(size, -share)
-        if (share := impact_share(eta)) is not None
-        else np.clip(np.broadcast_to(np.asarray(eta, float), size), 0.0, 1.0)
-    )
-    one = np.ones(size)
-    return Bodies(width, offset, height, centre, one, one, 0.0 * one, math.nan * one, own).scaled()
+    if impact_share(eta) is not None:
+        restitution = np.full(size, signed_restitution(eta))
+    else:
+        restitution = np.clip(np.broadcast_to(np.asarray(eta, float), size), 0.0, 1.0)
+    ones, zeros, unknown = np.ones(size), np.zeros(size), np.full(size, np.nan)
+    return Bodies(
+        width,
+        offset,
+        height,
+        centre,
+        base_share=ones,
+        inertia=ones,
+        side=zeros,
+        rebound=unknown,
+        restitution=restitution,
+    ).scaled()

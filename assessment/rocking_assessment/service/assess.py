@@ -56,7 +56,7 @@ async def post_assess(
     format of the body, or that of `format`; CSV ends with the rows that were not read.
     """
     workbook = MEDIA_TYPES.get(request.headers.get("content-type", ""))
-    given = body_form(request, ("json", "csv")) if workbook is None else "json"
+    form_of_body = body_form(request, ("json", "csv")) if workbook is None else "json"
     is_list = isinstance(body, AssessBody) and body.model_fields_set <= {"objects"}
     params = query if is_list else stated(body, query)
     if isinstance(body, bytes) and workbook is not None:
@@ -67,7 +67,7 @@ async def post_assess(
         table = _table(body, params, stop)
         check_table(table, "objects")
         site = params.site(None if isinstance(body, bytes) else body)
-        return _assessed(params, site, table, params.format or given, url, stop)
+        return _assessed(params, site, table, params.format or form_of_body, url, stop)
 
     return await service.solve_one(work, request)
 
@@ -96,7 +96,7 @@ def check_table(table: ObjectTable, name: str) -> None:
 
 
 def _assessed(params: AssessParams, site: Site, table: ObjectTable, form: str, url: str, stop: StopFlag) -> Response:
-    size = sum(len(item.planes) for item in table.objects) * len(site.find_motions(stop))
+    size = sum(len(obj.planes) for obj in table.objects) * len(site.find_motions(stop))
     if size > MAX_PAIRS:
         raise TooLargeError("objects", f"{size} objects and directions times motions", f"at most {MAX_PAIRS}")
     options = {name: getattr(params, name) for name in ("sensitivity", "samples", "seed", "resolution", "standards")}
@@ -104,6 +104,10 @@ def _assessed(params: AssessParams, site: Site, table: ObjectTable, form: str, u
     if form == "csv":
         return text_response(assessment.to_csv(bad_rows=table.bad_rows), "assessment")
     unread = len(table.bad_rows)
+    bad_rows = [
+        {"row": bad_row.row, "columns": bad_row.columns, "reasons": bad_row.reasons, "cells": bad_row.cells}
+        for bad_row in table.bad_rows
+    ]
     return json_of(
         AssessResponse.model_validate(
             {
@@ -115,10 +119,7 @@ def _assessed(params: AssessParams, site: Site, table: ObjectTable, form: str, u
                 "motions": assessment.motions,
                 "highest_factor": assessment.highest_factor,
                 "resolution": assessment.resolution,
-                "bad_rows": [
-                    {"row": bad.row, "columns": bad.columns, "reasons": bad.reasons, "cells": bad.cells}
-                    for bad in table.bad_rows
-                ],
+                "bad_rows": bad_rows,
                 "columns": table.columns,
                 "skipped": table.skipped,
                 "remarks": table.remarks,

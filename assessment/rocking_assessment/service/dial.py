@@ -45,29 +45,27 @@ class Dial:
     rim: float
 
 
-def worst_directions(found: xr.Dataset) -> list[float]:
+def worst_directions(factors: xr.Dataset) -> list[float]:
     """The directions of the lowest factor [degrees]; none if no factor is known."""
-    factor = found["factor"].values
+    factor = factors["factor"].values
     if np.isnan(factor).all():
         return []
-    worst: list[float] = found["direction"].values[factor <= np.nanmin(factor) * (1.0 + SAME)].tolist()
+    worst: list[float] = factors["direction"].values[factor <= np.nanmin(factor) * (1.0 + SAME)].tolist()
     return worst
 
 
-def dial_of(found: xr.Dataset, footprint: Array) -> Dial:
+def dial_of(factors: xr.Dataset, footprint: Array) -> Dial:
     """The drawing of factors by direction, of which one is known, and of a footprint from the centre of mass."""
-    factor, angle = found["factor"].values, np.radians(found["direction"].values)
+    factor, angle = factors["factor"].values, np.radians(factors["direction"].values)
     rim = float(min(RIM * np.nanmin(factor), SPACE * np.nanmax(factor)))
-    radius = RADIUS * np.fmin(factor, rim) / rim
-    marks = [
-        Mark(float(r * math.cos(a)), float(-r * math.sin(a)), bool(f < rim))
-        for r, a, f in zip(np.where(np.isnan(factor), RADIUS, radius), angle.tolist(), factor, strict=True)
-    ]
-    worst = worst_directions(found)
+    radius = np.where(np.isnan(factor), RADIUS, RADIUS * np.fmin(factor, rim) / rim)
+    x, y = radius * np.cos(angle), -radius * np.sin(angle)
+    marks = [Mark(*values) for values in zip(x.tolist(), y.tolist(), (factor < rim).tolist(), strict=True)]
+    worst = worst_directions(factors)
     corners = footprint * [1.0, -1.0] * (BASE / np.hypot(*footprint.T).max())
     return Dial(
         marks,
-        [mark for mark, direction in zip(marks, found["direction"].values, strict=True) if direction in worst],
+        [mark for mark, direction in zip(marks, factors["direction"].values, strict=True) if direction in worst],
         _points([(mark.x, mark.y) for mark in marks]),
         _points(corners.tolist()),
         RADIUS / rim if rim >= 1.0 else math.nan,

@@ -47,7 +47,7 @@ Samples = Annotated[list[float], Field(max_length=MAX_SAMPLES, fail_fast=True)]
 
 
 class IdentifyParams(Params):
-    """How a trace is laid out as columns, and fitted."""
+    """Layout of a trace as columns, and options of its fit."""
 
     edges: int = between(
         1, 2, "1 for a body with equal edges, 2 for one with a right and a left edge", default=1, unit="-"
@@ -68,7 +68,7 @@ LAYOUT = IdentifyParams.model_fields.keys() - {"edges", "confidence", "format"}
 
 
 class Trace(IdentifyParams):
-    """A trace in a JSON body, and how it is fitted."""
+    """A trace in a JSON body, and options of its fit."""
 
     time: Samples = said("times, ascending", unit="s", exclude=True)  # type: ignore[assignment]  # samples in place of a column
     rotation: Samples = said("rotation; positive values turn on the right edge", unit="rad", exclude=True)  # type: ignore[assignment]
@@ -124,7 +124,7 @@ def _example() -> dict[str, list[float]]:
         gap, sign = math.sqrt(1.0 - eta**2 * (1.0 - gap**2)), -sign
     times = [k * step for k in range(int(start / step))]
     for time in times:
-        top, gap, sign, _ = next(one for one in ends if time < one[-1])
+        top, gap, sign, _ = next(flight for flight in ends if time < flight[-1])
         rotation.append(round(sign * alpha * (1.0 - gap * math.cosh(p * (time - top))), 5))
     return {"time": [round(time, 2) for time in times], "rotation": rotation}
 
@@ -155,12 +155,12 @@ async def post_identify(
     The body is JSON, or CSV with the columns `time [s],rotation [rad]`, or in a layout that the parameters state.
     The response has the format of the body, or that of `format`. CSV has a row for each edge.
     """
-    given = body_form(request, ("json", "csv"))
+    form_of_body = body_form(request, ("json", "csv"))
     params = stated(body, query)
 
     def work(stop: StopFlag) -> Response:
         time, rotation = _read(params, body, stop)
-        return _identified(params, time, rotation, params.format or given, url, stop)
+        return _identified(params, time, rotation, params.format or form_of_body, url, stop)
 
     return await service.solve(work, request)
 
@@ -184,12 +184,12 @@ def _identified(params: IdentifyParams, time: Array, rotation: Array, form: str,
     # scipy.stats takes longer to import than the service to start
     from rocking_assessment._evidence.free_rocking import identify_free_rocking  # noqa: PLC0415
 
-    found = identify_free_rocking(time, rotation, edges=params.edges, confidence=params.confidence, stop=stop)
-    edges = {name: found[name].values.tolist() for name in EDGE_COLUMNS}
+    block = identify_free_rocking(time, rotation, edges=params.edges, confidence=params.confidence, stop=stop)
+    edges = {name: block[name].values.tolist() for name in EDGE_COLUMNS}
     if form == "csv":
         return csv_response(edges, "identified")
-    columns: dict[str, Any] = {name: found[name].values.tolist() for name in ("time", "rotation", "impact_time")}
-    columns["fitted"] = [finite(value) for value in found["fitted"].values.tolist()]
-    columns |= {name: found[name].item() for name in TRACE_NUMBERS}
-    columns["warnings"] = list(filter(None, found.attrs["warnings"].split("; ")))
+    columns: dict[str, Any] = {name: block[name].values.tolist() for name in ("time", "rotation", "impact_time")}
+    columns["fitted"] = [finite(value) for value in block["fitted"].values.tolist()]
+    columns |= {name: block[name].item() for name in TRACE_NUMBERS}
+    columns["warnings"] = list(filter(None, block.attrs["warnings"].split("; ")))
     return json_of(IdentifyResponse.model_construct(query=params, url=url, **edges, **columns))

@@ -22,7 +22,7 @@ CORNERS = 200  # most corners of a footprint that are kept, for its drawing [-]
 
 @dataclass(frozen=True)
 class MeshShape:
-    """What an assessment needs of a mesh."""
+    """Properties of a mesh for an assessment."""
 
     planes: dict[float, Plane]
     footprint: list[tuple[float, float]]
@@ -36,11 +36,11 @@ async def read_mesh(helper: Helper, raw: bytes, name: str, unit: str) -> MeshSha
     if ending not in ENDINGS:
         raise UnsupportedBodyError("mesh", ending or name, f"one of {', '.join(ENDINGS)}")
     planes, footprint, remarks = await helper.read("mesh", name, read_from_file, _shape_of, raw, name, unit)
-    return MeshShape({angle: Plane.of(found) for angle, found in planes.items()}, footprint, remarks)
+    return MeshShape({angle: Plane.of(outline) for angle, outline in planes.items()}, footprint, remarks)
 
 
 def _shape_of(path: Path, unit: str) -> tuple[dict[float, PolygonProperties], list[tuple[float, float]], list[str]]:
-    """The properties of a mesh in the planes in which it is assessed, its footprint, and what was repaired."""
+    """The properties of a mesh in the planes in which it is assessed, its footprint, and remarks on repairs."""
     from rocking_assessment._meshes.mesh import (  # noqa: PLC0415  # only the helper loads trimesh
         CONTACT_TOLERANCE,
         directions_around,

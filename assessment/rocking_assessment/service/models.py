@@ -93,16 +93,19 @@ class AssessParams(TableParams):
             modes_of(name, value)
         return value
 
-    def site(self, given: AssessBody | None) -> Site:
+    def site(self, body: AssessBody | None) -> Site:
         """The site, with the records and the hazard curve of a body."""
         ends = self.period_min, self.period_max
-        motions = enumerate(() if given is None else given.records, start=1)
-        hazard = None if given is None else given.hazard
+        records: list[Record | tuple[Record, Record]] = []
+        hazard = None
+        if body is not None:
+            records = [item.motion(k, self.baseline_order) for k, item in enumerate(body.records, start=1)]
+            hazard = body.hazard
         return Site(
             self.pga,
             self.pgv,
             None if ends == (None, None) else ends,  # one of them alone is refused there
-            [one.motion(k, self.baseline_order) for k, one in motions],
+            records,
             None if hazard is None else (hazard.intensity, hazard.annual_rate),
             None if self.shapes is None else split_pulses(self.shapes),
             self.moving_ground,
@@ -118,11 +121,11 @@ def modes_of(name: str, text: str) -> list[float]:
     return plain_numbers(name, text)
 
 
-def _parts(name: str, text: str, most: int, what: str) -> list[str]:
-    """The parts of a text that commas separate, at most so many; those within brackets separate none."""
+def _parts(name: str, text: str, limit: int, kind: str) -> list[str]:
+    """The parts of a text that commas separate, at most `limit`; commas within brackets separate none."""
     parts = split_pulses(text)
-    if len(parts) > most:
-        raise InvalidArgumentError(name, f"{len(parts)} {what}", f"at most {most} {what}")
+    if len(parts) > limit:
+        raise InvalidArgumentError(name, f"{len(parts)} {kind}", f"at most {limit} {kind}")
     return parts
 
 

@@ -26,7 +26,7 @@ from rocking_assessment.service.models import modes_of
 PATH = "/object"
 
 SHAPES = {"rectangle": "Rectangular base", "round": "Round base", "outline": "Outline", "mesh": "Mesh file"}
-"""Ways to describe an object, and what the page calls them."""
+"""Labels of the ways to describe an object."""
 
 _MASS = {
     "height": "Height",
@@ -55,13 +55,13 @@ SITE = {
     "floor_periods": "",
     "floor_participation": "1",
 }
-"""Fields of a site, and what they hold at first."""
+"""Fields of a site with their first values."""
 
 USUAL_PGV = (
     "a number, usually about 100 cm/s for each g of PGA on firm ground, 30 cm/s at 0.3 g; or in its place the shortest "
     "and the longest period of the pulses"
 )
-"""What is asked for where the PGV is empty."""
+"""Allowed values where the PGV is empty."""
 
 EXAMPLES = {
     "rectangle": {"width": "40", "depth": "30", "height": "160"},
@@ -69,7 +69,7 @@ EXAMPLES = {
     "outline": {"vertices": "0, 0\n30, 0\n30, 100\n10, 120\n0, 100"},
     "mesh": {},
 }
-"""What the fields hold at first."""
+"""First values of the other fields."""
 
 MAX_TEXT = 10_000  # longest outline [characters]
 MAX_VERTICES = 200  # most vertices of an outline [-]
@@ -80,107 +80,108 @@ router = APIRouter(prefix=PATH, include_in_schema=False)
 @router.get("")
 async def get_object_page(request: Request, service: ServiceDep) -> Response:
     """The page with the object of its address, or an example."""
-    asked = dict(request.query_params)
-    given = fields_of(asked)
-    if given["shape"] == "mesh" or not (_is_asked(asked) or service.kernels.is_loaded):
-        return page_of(given, settings=service.settings)
+    query = dict(request.query_params)
+    form = fields_of(query)
+    if form["shape"] == "mesh" or not ("pga" in query or service.kernels.is_loaded):
+        return page_of(form, settings=service.settings)
 
     def work(stop: StopFlag) -> tuple[Object, xr.Dataset]:
-        one = _object(given)
-        return one, factors_by_direction(one.planes_around, one.restitution, site_of(given).find_motions(stop), stop)
+        obj = _object(form)
+        return obj, factors_by_direction(obj.planes_around, obj.restitution, site_of(form).find_motions(stop), stop)
 
     try:
-        one, found = await service.solve_one(work, request)
+        obj, factors = await service.solve_one(work, request)
     except InvalidArgumentError as error:
-        return page_of(given, error=error, settings=service.settings)
-    return page_of(given, found=found, footprint=one.footprint, settings=service.settings)
+        return page_of(form, error=error, settings=service.settings)
+    return page_of(form, factors=factors, footprint=obj.footprint, settings=service.settings)
 
 
 @router.post("")
 async def post_mesh(request: Request, service: ServiceDep, file: str = "") -> Response:
     """The page with the object of a mesh, the body; `file` is its name."""
-    given = fields_of({**request.query_params, "shape": "mesh"})
-    site, restitution = site_of(given), _restitution(given)
-    mesh = await read_mesh(service.helper, await request.body(), file, given["unit"])
+    form = fields_of({**request.query_params, "shape": "mesh"})
+    site, restitution = site_of(form), _restitution(form)
+    mesh = await read_mesh(service.helper, await request.body(), file, form["unit"])
 
     def work(stop: StopFlag) -> xr.Dataset:
         return factors_by_direction(mesh.planes, restitution, site.find_motions(stop), stop)
 
-    found = await service.solve(work, request)
+    factors = await service.solve(work, request)
     notes = [f"The mesh {remark}." for remark in mesh.remarks]
-    given |= {"name": file}
-    return page_of(given, found=found, footprint=np.array(mesh.footprint), notes=notes, settings=service.settings)
+    form["name"] = file
+    return page_of(form, factors=factors, footprint=np.array(mesh.footprint), notes=notes, settings=service.settings)
 
 
-def site_of(given: dict[str, str]) -> Site:
+def site_of(form: dict[str, str]) -> Site:
     """The site of the fields of a form."""
     modes: dict[str, Any] = {}
-    if given["floor_periods"].strip():
+    if form["floor_periods"].strip():
         for name in ("floor_periods", "floor_participation"):
-            modes[name] = modes_of(name, given[name])
-    periods = periods_of(given)
-    if periods is None and not given["pgv"].strip():
+            modes[name] = modes_of(name, form[name])
+    periods = periods_of(form)
+    if periods is None and not form["pgv"].strip():
         raise InvalidArgumentError("pgv", None, USUAL_PGV)
-    pgv = quantity_of(given, "pgv") if given["pgv"].strip() else None
-    return Site(quantity_of(given, "pga"), pgv, periods, **modes)
+    pgv = quantity_of(form, "pgv") if form["pgv"].strip() else None
+    return Site(quantity_of(form, "pga"), pgv, periods, **modes)
 
 
-def periods_of(given: dict[str, str]) -> tuple[str, str] | None:
+def periods_of(form: dict[str, str]) -> tuple[str, str] | None:
     """The shortest and the longest period of the pulses from the fields of a form; None if both are empty."""
-    texts = {name: given[name].strip().replace(",", ".") for name in ("period_min", "period_max")}
-    for name, text in texts.items():
-        if not text and any(texts.values()):
-            raise InvalidArgumentError(name, None, "a number of seconds: the shortest and the longest period")
-    return (f"{texts['period_min']} s", f"{texts['period_max']} s") if any(texts.values()) else None
+    shortest, longest = (form[name].strip().replace(",", ".") for name in ("period_min", "period_max"))
+    if not shortest and not longest:
+        return None
+    if not shortest or not longest:
+        missing = "period_max" if shortest else "period_min"
+        raise InvalidArgumentError(missing, None, "a number of seconds: the shortest and the longest period")
+    return f"{shortest} s", f"{longest} s"
 
 
-def address_of(one: Object, given: dict[str, str]) -> str:
+def address_of(obj: Object, form: dict[str, str]) -> str:
     """The address of the page with an object, at the site of the fields of a form."""
-    shape = "rectangle" if one.diameter is None else "round"
-    fields = {"shape": shape, "name": one.name} | {name: given[name] for name in SITE}
+    shape = "rectangle" if obj.diameter is None else "round"
+    fields = {"shape": shape, "name": obj.name} | {name: form[name] for name in SITE}
     for name in LENGTHS[shape]:
-        if value := getattr(one, name):
+        if value := getattr(obj, name):
             fields |= {name: f"{100.0 * value:.10g}", f"{name}_unit": "cm"}
-    return f"{PATH}?{urlencode(fields | {'restitution': one.restitution})}"
+    return f"{PATH}?{urlencode(fields | {'restitution': obj.restitution})}"
 
 
-def _is_asked(asked: dict[str, str]) -> bool:
-    """Whether an address describes an object."""
-    return "pga" in asked
+def fields_of(query: dict[str, str]) -> dict[str, str]:
+    """The fields of the form.
 
-
-def fields_of(asked: dict[str, str]) -> dict[str, str]:
-    """The fields of the form; those that an address leaves out are as at first, or empty if it describes an object."""
-    shape = asked.get("shape", "rectangle")
+    Fields that an address leaves out have their first values, or are empty if it describes an object, with a PGA.
+    """
+    shape = query.get("shape", "rectangle")
     if shape not in SHAPES:
         raise InvalidArgumentError("shape", shape, f"one of {', '.join(SHAPES)}")
-    lengths = {field: value for name in LENGTHS[shape] for field, value in ((name, ""), (f"{name}_unit", "cm"))}
-    first = {} if _is_asked(asked) else EXAMPLES[shape]
-    empty = SITE | {"name": "", "restitution": "momentum", "vertices": "", "unit": "m"} | lengths
-    return empty | first | asked | {"shape": shape}
+    fields = SITE | {"name": "", "restitution": "momentum", "vertices": "", "unit": "m"}
+    for name in LENGTHS[shape]:
+        fields |= {name: "", f"{name}_unit": "cm"}
+    if "pga" not in query:
+        fields |= EXAMPLES[shape]
+    return fields | query | {"shape": shape}
 
 
-def quantity_of(given: dict[str, str], name: str) -> str:
+def quantity_of(form: dict[str, str], name: str) -> str:
     """The text of a number and its unit from the fields of a form."""
-    return f"{given[name].strip().replace(',', '.')} {given[f'{name}_unit']}"
+    return f"{form[name].strip().replace(',', '.')} {form[f'{name}_unit']}"
 
 
-def _restitution(given: dict[str, str]) -> Scalar:
-    found: Scalar = RESTITUTION.read(given["restitution"].strip().replace(",", "."))
-    return found
+def _restitution(form: dict[str, str]) -> Scalar:
+    restitution: Scalar = RESTITUTION.read(form["restitution"].strip().replace(",", "."))
+    return restitution
 
 
-def _object(given: dict[str, str]) -> Object:
-    others: dict[str, Any] = {"name": given["name"], "restitution": _restitution(given)}
-    if given["shape"] == "outline":
-        return Object.from_outline(_vertices(given["vertices"]), **others)
-    lengths: dict[str, Any] = {
-        name: quantity_of(given, name) for name in LENGTHS[given["shape"]] if given[name].strip()
-    }
-    base = "width" if given["shape"] == "rectangle" else "diameter"
-    if base not in lengths:
-        raise InvalidArgumentError(base, given[base], "a length")
-    return Object(**lengths, **others)
+def _object(form: dict[str, str]) -> Object:
+    name, restitution = form["name"], _restitution(form)
+    if form["shape"] == "outline":
+        return Object.from_outline(_vertices(form["vertices"]), name=name, restitution=restitution)
+    sizes = [size for size in LENGTHS[form["shape"]] if form[size].strip()]
+    base = "width" if form["shape"] == "rectangle" else "diameter"
+    if base not in sizes:
+        raise InvalidArgumentError(base, form[base], "a length")
+    lengths: dict[str, Any] = {size: quantity_of(form, size) for size in sizes}
+    return Object(name, **lengths, restitution=restitution)
 
 
 def _vertices(text: str) -> Array:
@@ -190,56 +191,63 @@ def _vertices(text: str) -> Array:
     lines = [line for line in text.replace(";", "\n").splitlines() if line.strip()]
     if len(lines) > MAX_VERTICES:
         raise InvalidArgumentError("vertices", f"{len(lines)} points", f"at most {MAX_VERTICES}")
-    found = []
+    corners = []
     for line in lines:
         try:
             x, y = (float(part) for part in line.replace(",", " ").split())
         except ValueError:
             raise InvalidArgumentError("vertices", line, "two numbers on each line, such as 30, 100") from None
-        found.append((0.01 * x, 0.01 * y))
-    return np.array(found)
+        corners.append((0.01 * x, 0.01 * y))
+    return np.array(corners)
 
 
 def page_of(
-    given: dict[str, str],
+    form: dict[str, str],
     *,
-    found: xr.Dataset | None = None,
+    factors: xr.Dataset | None = None,
     footprint: Array | None = None,
     notes: list[str] | None = None,
     error: InvalidArgumentError | None = None,
     settings: Settings | None = None,
 ) -> HTMLResponse:
-    """The page with the fields of its form, and what was found or is wrong."""
-    worst = [] if found is None else worst_directions(found)
-    wrong = {} if error is None else {error.parameter: _words(error)}
-    problem = "" if error is None else "see the field marked in red." if error.parameter in given else f"{error}."
+    """The page with the fields of its form, and the factors by direction or the error."""
+    rows, worst, dial = None, [], None
+    if factors is not None:
+        rows = factors.to_dataframe().reset_index().to_dict("records")
+        worst = worst_directions(factors)
+        if worst and footprint is not None:
+            dial = dial_of(factors, footprint)
+    wrong, problem = {}, ""
+    if error is not None:
+        wrong = {error.parameter: _words(error)}
+        problem = "see the field marked in red" if error.parameter in form else str(error)
+        problem = f"No answer: {problem}."
     text = html(
         "object.html",
         "In which direction does it overturn?",
         PATH,
         settings,
-        given=given,
+        form=form,
         shapes=SHAPES,
-        lengths=LENGTHS[given["shape"]],
+        lengths=LENGTHS[form["shape"]],
         units=UNITS_SHOWN,
-        kept={name: given[name] for name in SITE},
         endings=ENDINGS,
         wrong=wrong,
-        problem=problem and f"No answer: {problem}",
-        rows=None if found is None else found.to_dataframe().reset_index().to_dict("records"),
+        problem=problem,
+        rows=rows,
         worst=worst,
-        dial=dial_of(found, footprint) if worst and found is not None and footprint is not None else None,
+        dial=dial,
         highest=HIGHEST_FACTOR,
         number_of=number_of,
         notes=notes or [],
-        depth_missing=given["shape"] == "rectangle" and not given["depth"].strip(),
+        depth_missing=form["shape"] == "rectangle" and not form["depth"].strip(),
     )
     headers = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"}
     return HTMLResponse(text, 200 if error is None else 422, headers)
 
 
 def _words(error: InvalidArgumentError) -> str:
-    """What is wrong with a field, in the words that the other pages have."""
+    """The error of a field, in the words that the other pages have."""
     name = error.parameter.replace("_", " ")
     if error.value is None:
         return f"{name} is missing; needed: {error.allowed}"

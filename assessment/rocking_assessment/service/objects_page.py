@@ -1,4 +1,4 @@
-"""The page of objects: a table as text, which can be mended in place, and its assessment, rendered here."""
+"""The page of objects: a table as text, which can be corrected in place, and its assessment, rendered here."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ FIRST = 3  # objects that a preview describes
 LINES_UNREAD = 12  # lines that it shows of a table that is not divided into cells
 
 MAIN = ("name", "width", "depth", "diameter", "height", "mass", "friction", "notes")
-"""Quantities that every page has a list for; those of the others are folded."""
+"""Quantities that every page has a list for; the lists of other quantities are folded."""
 
 UNITS_OF = {si: tuple(units) for si, units in UNITS.items()}
 
@@ -97,10 +97,10 @@ async def post_objects_page(request: Request, service: ServiceDep) -> Response:
     raw = await request.body()
 
     def work(stop: StopFlag) -> Response:
-        given = _fields(raw, stop)
-        table = _table(given, stop)
-        found = _assessed(table, given, stop) if table.objects or not table.bad_rows else None
-        return _page(given, service.settings, table, found)
+        form = _fields(raw, stop)
+        table = _table(form, stop)
+        assessment = _assessed(table, form, stop) if table.objects or not table.bad_rows else None
+        return _page(form, service.settings, table, assessment)
 
     return await service.solve_one(work, request)
 
@@ -108,9 +108,9 @@ async def post_objects_page(request: Request, service: ServiceDep) -> Response:
 @router.post("/report")
 async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
-    given, table, found = await _answer(request, service)
-    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(_command(given)))
-    text = await service.solve_one(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
+    form, table, assessment = await _answer(request, service)
+    project = Project(form["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(_command(form)))
+    text = await service.solve_one(lambda _: report_html(assessment, project, table.bad_rows, table.reading), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
 
@@ -118,11 +118,11 @@ async def post_report(request: Request, service: ServiceDep) -> Response:
 @router.post("/assessment.xlsx")
 async def post_file(request: Request, service: ServiceDep) -> Response:
     """The assessment as CSV or as a workbook, as its address ends."""
-    _, table, found = await _answer(request, service)
+    _, table, assessment = await _answer(request, service)
     if request.url.path.endswith(".csv"):
-        return text_response(await service.read(lambda _: found.to_csv(bad_rows=table.bad_rows)), "assessment")
+        return text_response(await service.read(lambda _: assessment.to_csv(bad_rows=table.bad_rows)), "assessment")
     headers = {"Content-Disposition": 'attachment; filename="assessment.xlsx"'}
-    raw = await service.read(lambda _: found.to_xlsx(bad_rows=table.bad_rows))
+    raw = await service.read(lambda _: assessment.to_xlsx(bad_rows=table.bad_rows))
     return Response(raw, headers=headers, media_type=WORKBOOK)
 
 
@@ -131,16 +131,16 @@ async def _answer(request: Request, service: Service) -> tuple[dict[str, str], O
     raw = await request.body()
 
     def work(stop: StopFlag) -> tuple[dict[str, str], ObjectTable, Assessment]:
-        given = _fields(raw, stop)
-        table = _table(given, stop)
-        return given, table, _assessed(table, given, stop)
+        form = _fields(raw, stop)
+        table = _table(form, stop)
+        return form, table, _assessed(table, form, stop)
 
     return await service.solve_one(work, request)
 
 
 @router.post("/preview")
 async def post_preview(request: Request, service: ServiceDep) -> Response:
-    """What the table in the form holds, and how it would be read. Nothing is assessed."""
+    """A preview of the table in the form, read as the form states. Nothing is assessed."""
     raw = await request.body()
     return await service.read_body(lambda stop: JSONResponse(_preview(_fields(raw, stop), stop)), request)
 
@@ -158,74 +158,74 @@ async def post_text(
     return PlainTextResponse(text)
 
 
-def _command(given: dict[str, str]) -> list[str]:
+def _command(form: dict[str, str]) -> list[str]:
     """The words of the command that assesses the table at the site of a form."""
-    words = ["rocking", "assess", given["table_name"]]
-    words += ["--pga", quantity_of(given, "pga").replace(" ", "")]
-    periods = periods_of(given)
-    if given["pgv"].strip():
-        words += ["--pgv", quantity_of(given, "pgv").replace(" ", "")]
+    words = ["rocking", "assess", form["table_name"]]
+    words += ["--pga", quantity_of(form, "pga").replace(" ", "")]
+    periods = periods_of(form)
+    if form["pgv"].strip():
+        words += ["--pgv", quantity_of(form, "pgv").replace(" ", "")]
     elif periods is not None:
         words += ["--period-min", periods[0].replace(" ", ""), "--period-max", periods[1].replace(" ", "")]
-    if given["floor_periods"].strip():
-        modes, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
+    if form["floor_periods"].strip():
+        modes, participation = (plain_numbers(name, form[name]) for name in ("floor_periods", "floor_participation"))
         words += ["--floor", ",".join(f"{period}s" for period in modes)]
         words += ["--floor-participation", ",".join(map(str, participation))]
-    for text in given["columns"].splitlines():
+    for text in form["columns"].splitlines():
         words += ["--columns", text]
     for name in ("decimal", "delimiter", "skip", "sheet"):
-        if given[name].strip():
-            words += [f"--{name}", given[name].strip()]
-    return [*words, "--allow-unusual"] if given["allow_unusual"] else words
+        if form[name].strip():
+            words += [f"--{name}", form[name].strip()]
+    return [*words, "--allow-unusual"] if form["allow_unusual"] else words
 
 
-def _layout(given: dict[str, str]) -> TableLayout:
-    """What a form states about its table; the sheet is chosen before."""
-    skip = given["skip"].strip() or "0"
+def _layout(form: dict[str, str]) -> TableLayout:
+    """The layout that a form states for its table; the sheet is chosen before."""
+    skip = form["skip"].strip() or "0"
     if not skip.isdecimal() or len(skip) > 4:
         raise InvalidArgumentError("skip", skip, "a number of lines, 0 to 9999")
     return TableLayout(
-        columns=stated_columns(given["columns"].splitlines()),
-        decimal=given["decimal"] or ".",
-        delimiter=given["delimiter"] or None,
+        columns=stated_columns(form["columns"].splitlines()),
+        decimal=form["decimal"] or ".",
+        delimiter=form["delimiter"] or None,
         skip=int(skip),
-        allow_unusual=bool(given["allow_unusual"]),
+        allow_unusual=bool(form["allow_unusual"]),
     )
 
 
-def _table(given: dict[str, str], stop: StopFlag) -> ObjectTable:
+def _table(form: dict[str, str], stop: StopFlag) -> ObjectTable:
     """The objects of a form."""
     try:
-        return objects_of_csv(given["table"], MAX_OBJECTS, stop, _layout(given))
+        return objects_of_csv(form["table"], MAX_OBJECTS, stop, _layout(form))
     except TableFileError as error:
         raise table_refusal(error) from None
 
 
-def _preview(given: dict[str, str], stop: StopFlag) -> dict[str, Any]:
-    """What the page shows before anything is assessed."""
-    layout = _layout(given)
+def _preview(form: dict[str, str], stop: StopFlag) -> dict[str, Any]:
+    """The preview that the page shows before anything is assessed."""
+    layout = _layout(form)
     problem: dict[str, Any] | None = None
     table = ObjectTable()
     try:
-        table = objects_of_csv(given["table"], MAX_OBJECTS, stop, layout)
+        table = objects_of_csv(form["table"], MAX_OBJECTS, stop, layout)
     except TableFileError as error:
         problem = {"line": error.line, "was": str(error.value), "expected": error.expected}
     except InvalidArgumentError as error:
         problem = {"line": None, "was": f"{error.parameter} {error.value}", "expected": error.allowed}
     try:
-        preview = preview_table(open_text(given["table"], "table", SCHEMA, layout, stop))
+        preview = preview_table(open_text(form["table"], "table", SCHEMA, layout, stop))
     except TableFileError:
-        lines = islice(io.StringIO(given["table"]), LINES_UNREAD)
+        lines = islice(io.StringIO(form["table"]), LINES_UNREAD)
         preview = TablePreview([PreviewLine(k, line.rstrip()[:200], []) for k, line in enumerate(lines, 1)])
     try:
-        command = _command(given)
+        command = _command(form)
     except InvalidArgumentError:  # of the site, which is not checked here
         command = []
-    first = [
-        {"name": item.name, "height": next(iter(item.planes.values())).height}
-        | {"bases": {direction: plane.base for direction, plane in item.planes.items()}}
-        for item in table.objects[:FIRST]
-    ]
+    first = []
+    for obj in table.objects[:FIRST]:
+        height = next(iter(obj.planes.values())).height
+        bases = {direction: plane.base for direction, plane in obj.planes.items()}
+        first.append({"name": obj.name, "height": height, "bases": bases})
     return asdict(preview) | {
         "problem": problem,
         "objects": len(table.objects),
@@ -247,17 +247,17 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
     fields = DEFAULTS | {_unescaped(name, stop): _unescaped(value, stop) for name, _, value in parts}
     if len(fields["table"]) > MAX_BODY:
         raise TooLargeError("table", f"{len(fields['table'])} characters", f"at most {MAX_BODY}")
-    corrected: dict[int, dict[int | None, str]] = {}  # by row and place of the cell, None for the line
+    corrected: dict[int, dict[int | None, str]] = {}  # by row and column, None for the line
     for name, value in fields.items():
-        if found := re.fullmatch("(?:line|cell)-([0-9]{1,9})(?:-([0-9]{1,4}))?", name):
-            corrected.setdefault(int(found[1]), {})[int(found[2]) if found[2] else None] = value
+        if match := re.fullmatch("(?:line|cell)-([0-9]{1,9})(?:-([0-9]{1,4}))?", name):
+            row, column = match.groups()
+            corrected.setdefault(int(row), {})[int(column) if column else None] = value
     if corrected:
         text = fields["table"].removeprefix("\ufeff")
         file = open_text(text, "table", SCHEMA, _layout(fields), stop)
         above = text[: len(text) - sum(map(len, file.lines))]
-        rows = _rows_of(file)
-        corrected_rows = [_with_cells(row, corrected.get(number, {}), file.delimiter) for number, row in rows]
-        fields["table"] = "".join([above, *corrected_rows])
+        rows = [_with_cells(row, corrected.get(number, {}), file.delimiter) for number, row in _rows_of(file)]
+        fields["table"] = "".join([above, *rows])
     return fields
 
 
@@ -270,77 +270,79 @@ def _rows_of(file: TableFile) -> Iterator[tuple[int, str]]:
         start = reader.line_num
 
 
-def _with_cells(row: str, given: dict[int | None, str], delimiter: str) -> str:
-    """The text of a row with other cells, by their place; the whole line at the place None."""
+def _with_cells(row: str, corrected: dict[int | None, str], delimiter: str) -> str:
+    """The text of a row with other cells, by their column; the whole line at None."""
     line = row.rstrip("\r\n")
-    end, line = row[len(line) :], given.get(None, line)
-    cells = {place: cell for place, cell in given.items() if place is not None}
-    if cells:
-        found = next(csv.reader(io.StringIO(line, newline=""), delimiter=delimiter))
-        found += [""] * (max(cells) + 1 - len(found))
-        for place, cell in cells.items():
-            found[place] = cell
-        text = io.StringIO()
-        csv.writer(text, delimiter=delimiter).writerow(found)
-        line = text.getvalue().removesuffix("\r\n")
-    return line + end
+    end, line = row[len(line) :], corrected.get(None, line)
+    columns = [column for column in corrected if column is not None]
+    if not columns:
+        return line + end
+    cells = next(csv.reader(io.StringIO(line, newline=""), delimiter=delimiter))
+    cells += [""] * (max(columns) + 1 - len(cells))
+    for column in columns:
+        cells[column] = corrected[column]
+    text = io.StringIO()
+    csv.writer(text, delimiter=delimiter).writerow(cells)
+    return text.getvalue().removesuffix("\r\n") + end
 
 
 def _unescaped(raw: bytes, stop: StopFlag) -> str:
     """A text of a form; by parts, because `unquote_to_bytes` keeps 80 bytes of memory for each byte of escapes."""
-    found, start = bytearray(), 0
+    text, start = bytearray(), 0
     while start < len(raw):
         stop.check()
         end = start + PART
         cut = raw.rfind(b"%", end - 2, end)  # an escape that the end would divide
         end = end if cut < 0 else cut
-        found += unquote_to_bytes(raw[start:end].replace(b"+", b" "))
+        text += unquote_to_bytes(raw[start:end].replace(b"+", b" "))
         start = end
-    return found.decode("utf-8", "replace")
+    return text.decode("utf-8", "replace")
 
 
-def _assessed(table: ObjectTable, given: dict[str, str], stop: StopFlag) -> Assessment:
+def _assessed(table: ObjectTable, form: dict[str, str], stop: StopFlag) -> Assessment:
     check_table(table, "table")
-    return assess(table.objects, site_of(given), sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
+    return assess(table.objects, site_of(form), sensitivity=len(table.objects) <= MAX_SENSITIVITY, stop=stop)
 
 
 def _page(
-    given: dict[str, str], settings: Settings, table: ObjectTable | None = None, found: Assessment | None = None
+    form: dict[str, str], settings: Settings, table: ObjectTable | None = None, assessment: Assessment | None = None
 ) -> HTMLResponse:
-    bad_rows = table.bad_rows[:MAX_CORRECTED] if table else []
-    numbers = {bad.row for bad in bad_rows}
+    bad_rows: list[tuple[BadRow, set[int]]] = []
     texts: dict[int, str] = {}
-    if numbers:
-        file = open_text(given["table"], "table", SCHEMA, _layout(given))
+    if table and table.bad_rows:
+        bad_rows = [(bad_row, _wrong_cells(bad_row, table)) for bad_row in table.bad_rows[:MAX_CORRECTED]]
+        numbers = {bad_row.row for bad_row, _ in bad_rows}
+        file = open_text(form["table"], "table", SCHEMA, _layout(form))
         texts = {number: row.rstrip("\r\n") for number, row in _rows_of(file) if number in numbers}
-    lines = lines_of(found) if found else []
+    lines = lines_of(assessment) if assessment else []
+    warnings = warnings_of(assessment) if assessment else []
     text = html(
         "objects.html",
         "Which objects overturn?",
         PATH,
         settings,
-        given=given,
-        bad_rows=[(one, _wrong_places(one, table)) for one in bad_rows if table],
+        form=form,
+        bad_rows=bad_rows,
         texts=texts,
         table=table,
-        found=found,
+        assessment=assessment,
         lines=lines,
         full_strength=counts_of(lines),
-        warnings=[(kind, names_in_short(names), len(names)) for kind, names in warnings_of(found)] if found else [],
-        own_of=lambda obj: ", ".join(filter(None, obj.details.values())),
+        warnings=[(text, names_in_short(names), len(names)) for text, names in warnings],
+        details_of=lambda obj: ", ".join(filter(None, obj.details.values())),
         verdicts=VERDICTS,
         number_of=number_of,
         address=address_of,
         quantities=[quantity for quantity in INPUTS if quantity.name in MAIN],
-        others=[quantity for quantity in (*INPUTS, *SHAPES) if quantity.name not in MAIN],
+        other_quantities=[quantity for quantity in (*INPUTS, *SHAPES) if quantity.name not in MAIN],
         units_of=UNITS_OF,
     )
     return HTMLResponse(text, headers={"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"})
 
 
-def _wrong_places(bad: BadRow, table: ObjectTable) -> set[int]:
-    """The places of the cells that a row was not read for; none if it is the whole row."""
-    if "row" in bad.columns:
+def _wrong_cells(bad_row: BadRow, table: ObjectTable) -> set[int]:
+    """Columns of the cells for which a row was not read; none if the whole row is wrong."""
+    if "row" in bad_row.columns:
         return set()
-    names = [table.columns.get(label, "").partition(" [")[0] for label in bad.cells]
-    return {place for place, name in enumerate(names) if name in bad.columns}
+    names = [table.columns.get(label, "").partition(" [")[0] for label in bad_row.cells]
+    return {column for column, name in enumerate(names) if name in bad_row.columns}

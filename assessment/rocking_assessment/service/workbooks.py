@@ -17,7 +17,7 @@ MEDIA_TYPES = {
     "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet": "a workbook (.xlsx)",
     "application/vnd.oasis.opendocument.spreadsheet": "a workbook (.ods)",
 }
-"""What a body with a workbook is, by its media type."""
+"""Kinds of workbooks by their media types."""
 
 
 async def text_of_workbook(

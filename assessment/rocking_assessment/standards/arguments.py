@@ -42,13 +42,13 @@ RANGES: dict[str, tuple[float, float, str, str]] = {
 }
 
 
-def checked(**given: Any) -> list[Array]:
-    """The arguments in the order given as float64 arrays that broadcast."""
+def checked(**arguments: Any) -> list[Array]:
+    """The arguments in their order as float64 arrays that broadcast."""
     arrays = []
-    for name, value in given.items():
+    for name, value in arguments.items():
         low, high, closed, unit = RANGES[name]
         arrays.append(in_range(name, value, low, high, closed=closed, unit=unit))
-    return broadcast(given, arrays)
+    return broadcast(arguments, arrays)
 
 
 def checked_number(name: str, value: Any) -> float:

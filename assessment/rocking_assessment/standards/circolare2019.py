@@ -276,10 +276,10 @@ def circolare2019_floor_displacement(
     floor_acceleration, first_period, ground_acceleration, damping, first_damping
         As for `circolare2019_floor_spectrum`; damping 0.08 for SLV, 0.1 for SLC.
     """
-    given = {"damping": damping, "first_damping": first_damping}
+    ratios = {"damping": damping, "first_damping": first_damping}
     t, first = checked(period=period, first_period=first_period)
-    demand = circolare2019_floor_spectrum(floor_acceleration, t, first, ground_acceleration, **given) * t * t
+    demand = circolare2019_floor_spectrum(floor_acceleration, t, first, ground_acceleration, **ratios) * t * t
     longest = PLATEAU[1] * first
-    at_first = circolare2019_floor_spectrum(floor_acceleration, first, first, 0.0, **given) * longest * longest
+    at_first = circolare2019_floor_spectrum(floor_acceleration, first, first, 0.0, **ratios) * longest * longest
     larger: Array = np.where(t > longest, np.maximum(demand, at_first), demand) / (4.0 * math.pi**2)
     return larger  # (C8.7.1.12)

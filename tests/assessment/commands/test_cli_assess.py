@@ -37,10 +37,10 @@ def table(tmp_path):
 def test_formats_and_file_hold_the_rows_of_python(table):
     site = rocking_assessment.Site(pga="0.3 g", pgv="0.3 m/s", shapes=["sine", "ricker"])
     expected = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site, sensitivity=False)
-    found = json.loads(run("assess", str(table), *SITE, "--format=json"))
+    printed = json.loads(run("assess", str(table), *SITE, "--format=json"))
     for name in expected.columns:
-        assert found[name] == [row[name] for row in expected.rows], name
-    assert found["motions"] == ["sine", "ricker"]
+        assert printed[name] == [row[name] for row in expected.rows], name
+    assert printed["motions"] == ["sine", "ricker"]
     rows = read_csv(run("assess", str(table), *SITE, "--format=csv"))
     assert [float(row["factor"]) for row in rows] == expected.columns["factor"].tolist()
     file = table.with_name("out.csv")
@@ -73,9 +73,9 @@ def test_a_line_an_object_answers_the_questions_in_units_that_people_use(table):
     header, *lines = cells(run("assess", str(table), *PULSES), 5)
     assert header == ASKED
     site = rocking_assessment.Site("0.3 g", "0.3 m/s", shapes=["sine", "cosine"])
-    found = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site)
-    worst = {row["object"]: row for row in reversed(found.rows)}
-    assert [line[1] for line in lines] == [*dict.fromkeys(row["object"] for row in found.rows)]
+    assessment = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site)
+    worst = {row["object"]: row for row in reversed(assessment.rows)}
+    assert [line[1] for line in lines] == [*dict.fromkeys(row["object"] for row in assessment.rows)]
     for line in lines[:-1]:
         row, depth = worst[line[1]], {"Kore": 26.0, "Stele": 16.0, "Herm": 22.0}[line[1]]
         expected = [row["factor"], 0.3 * row["factor"], 100 * row["displacement"], 100 * row["smallest_width"]]
@@ -101,8 +101,8 @@ def test_a_missing_depth_is_said_in_every_output(table):
     assert lines[1][-1] == "measure the depth, then fix it, or widen the base"
     assert lines[2][-1] == "measure the depth"
     expected = {"screen": "overturns in some motions", "shelf": "depth missing", "chest": "stays"}
-    found = json.loads(run("assess", str(table), *options, "--format=json"))
-    assert dict(zip(found["object"], found["verdict"], strict=True)) == expected
+    printed = json.loads(run("assess", str(table), *options, "--format=json"))
+    assert dict(zip(printed["object"], printed["verdict"], strict=True)) == expected
     assert {row["name"]: row["verdict"] for row in read_csv(file.read_text())} == expected
     run("assess", str(table), *options, "--output", str(book))
     sheet = pd.read_excel(book, engine="calamine")
@@ -118,9 +118,9 @@ def test_a_missing_depth_is_said_in_every_output(table):
 
 
 def test_warnings_are_grouped_and_say_the_side(table):
-    header, rest = INVENTORY.split("\n", 1)
-    rest = rest.replace("\n", ";\n") + "0050;Vase;clay;;;;;;46.5;;12\n0051;Urn;clay;;;;;;46.5;;12.5\n"
-    table.write_text(f"{header};diameter [cm]\n{rest}")
+    header, rows = INVENTORY.split("\n", 1)
+    rows = rows.replace("\n", ";\n") + "0050;Vase;clay;;;;;;46.5;;12\n0051;Urn;clay;;;;;;46.5;;12.5\n"
+    table.write_text(f"{header};diameter [cm]\n{rows}")
     text = CliRunner().invoke(app, ["assess", str(table), *PULSES, "--no-sensitivity"]).stdout
     assert [line.removeprefix("warning: ") for line in text.splitlines() if line.startswith("warning")] == [
         "5 objects: no coefficient of friction is given: sliding is not assessed: Stele; Vase; Urn; Kore; Altar",
@@ -137,12 +137,12 @@ def test_the_table_goes_through_to_every_file_as_it_stands(table):
     file, book = table.with_name("out.csv"), table.with_name("out.xlsx")
     for output in (file, book):
         assert CliRunner().invoke(app, ["assess", str(table), *PULSES, "--output", str(output)]).exit_code == 2
-    given = list(csv.DictReader(INVENTORY.splitlines(), delimiter=";"))
+    inventory = list(csv.DictReader(INVENTORY.splitlines(), delimiter=";"))
     rows = list(csv.DictReader(file.read_text().splitlines()))
-    assert list(rows[0])[:11] == [*given[0], "object"]
-    by_name = {row["name"]: row for row in given}
+    assert list(rows[0])[:11] == [*inventory[0], "object"]
+    by_name = {row["name"]: row for row in inventory}
     for row in rows:
-        assert {name: row[name] for name in given[0]} == by_name[row["name"]]
+        assert {name: row[name] for name in inventory[0]} == by_name[row["name"]]
         assert row["object"] == (row["name"] if row["verdict"] != "not read" else "row 5")
     assert rows[-1]["Inv. no."] == "0031"
     sheet = pd.read_excel(book, engine="calamine", dtype=object)
@@ -183,14 +183,14 @@ def test_pairs_with_vertical_on_a_floor_with_a_hazard_curve(table, tmp_path):
     curve.write_text("lon,lat,0.05,0.2,1.0\n0,0,1e-2,1e-3,1e-5\n")
     options = ["--pair", f"{files['x']},{files['y']}", "--vertical", files["z"], "--unit", "m/s2", "--pga", "2 m/s2"]
     options += ["--hazard", str(curve), "--floor", "0.5s", "--floor-participation", "1.3"]
-    found = json.loads(run("assess", str(table), *options, "--no-sensitivity", "--format=json"))
+    printed = json.loads(run("assess", str(table), *options, "--no-sensitivity", "--format=json"))
     pair = rocking.Record(x, 0.05, "m/s2", vertical=z), rocking.Record(y, 0.05, "m/s2")
     hazard = rocking_assessment.read_hazard(curve)
     site = rocking_assessment.Site(2.0, records=[pair], hazard=hazard, floor_periods=0.5, floor_participation=1.3)
     expected = rocking_assessment.assess(rocking_assessment.read_objects(table).objects, site, sensitivity=False)
     for name in ("factor", "share", "annual_rate"):
-        assert found[name] == [row[name] for row in expected.rows], name
-    assert len(found["motions"]) == 12
+        assert printed[name] == [row[name] for row in expected.rows], name
+    assert len(printed["motions"]) == 12
     assert "--vertical" in refused("assess", str(table), *options, "--vertical", files["z"])
     assert "--pair" in refused("assess", str(table), "--pair", files["x"], "--unit", "m/s2")
 
@@ -200,15 +200,15 @@ def test_meshes_are_assessed_from_all_sides(tmp_path):
     path = tmp_path / "plinth.stl"
     trimesh.creation.box((400, 300, 1600)).export(path)
     options = ["--mesh", str(path), "--mesh-unit", "mm", "--friction", "0.5", *SITE]
-    found = json.loads(run("assess", *options, "--format=json"))
-    assert sorted(found["direction"]) == sorted(f"{angle} deg" for angle in range(0, 180, 15))
-    assert set(found["object"]) == {"plinth"}
+    printed = json.loads(run("assess", *options, "--format=json"))
+    assert sorted(printed["direction"]) == sorted(f"{angle} deg" for angle in range(0, 180, 15))
+    assert set(printed["object"]) == {"plinth"}
     site = rocking_assessment.Site(pga="0.3 g", pgv="0.3 m/s", shapes=["sine", "ricker"])
     block = rocking_assessment.assess(
         rocking_assessment.Object("block", width=0.4, depth=0.3, height=1.6), site, sensitivity=False
     )
     factors = dict(zip(block.columns["direction"], block.columns["factor"], strict=True))
-    by_angle = dict(zip(found["direction"], found["factor"], strict=True))
+    by_angle = dict(zip(printed["direction"], printed["factor"], strict=True))
     assert by_angle["0 deg"] == pytest.approx(factors["width"], rel=1e-6)
     assert by_angle["90 deg"] == pytest.approx(factors["depth"], rel=1e-6)
     assert "OBJECTS" in refused("assess", *SITE)
@@ -240,16 +240,16 @@ def test_errors_name_the_option(table, options, text):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (b"a,b\n1,2\n", "objects.csv, line 1: found a; b"),
         (b"name,width [m],height [m]\nbad,tall,1\n", "row 2, width"),
         (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "OBJECTS: 'binary content' is not allowed; allowed: text"),
     ],
 )
-def test_an_error_of_the_table_names_the_argument(table, content, said):
+def test_an_error_of_the_table_names_the_argument(table, content, message):
     table.write_bytes(content)
-    assert said in refused("assess", str(table), *SITE)
+    assert message in refused("assess", str(table), *SITE)
 
 
 class Page(HTMLParser):
@@ -332,8 +332,8 @@ def overflowing(file):
     """What is wider than its box in a report, at the width of its page."""
     copy = file.with_name("copy.html")
     copy.write_text(file.read_text().replace("</body>", f"<script>{OVERFLOWING}</script></body>"))
-    shown = of_browser("--window-size=700,1000", "--dump-dom", copy.as_uri())
-    return re.search("<title>(.*?)</title>", shown, re.DOTALL)[1]
+    document = of_browser("--window-size=700,1000", "--dump-dom", copy.as_uri())
+    return re.search("<title>(.*?)</title>", document, re.DOTALL)[1]
 
 
 def pages_of(file):
@@ -382,10 +382,10 @@ def test_the_report_of_one_object_has_no_blank_pages(table):
 @pytest.mark.long
 def test_the_report_of_thirty_objects_is_short_and_nothing_in_it_is_cut(tmp_path):
     file = tmp_path / "report.html"
-    shown = run("assess", str(COLLECTION), "--pga", "0.3g", "--pgv", "0.3m/s", "--report", str(file))
+    printed = run("assess", str(COLLECTION), "--pga", "0.3g", "--pgv", "0.3m/s", "--report", str(file))
     guide = COLLECTION.with_name("assess.md").read_text()
-    stated = re.search(r"```text\n(inventory number  .*?)```", guide, re.DOTALL)[1].splitlines()
-    assert [line.rstrip() for line in shown.splitlines()[: len(stated)]] == stated
+    example = re.search(r"```text\n(inventory number  .*?)```", guide, re.DOTALL)[1].splitlines()
+    assert [line.rstrip() for line in printed.splitlines()[: len(example)]] == example
     assert len(file.read_text()) < 300_000
     assert pages_of(file) <= 15
     assert overflowing(file) == ""

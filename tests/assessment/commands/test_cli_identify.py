@@ -19,9 +19,9 @@ def file(tmp_path):
 
 def test_three_formats_hold_the_fit(file):
     expected = identify_free_rocking(*trace(), confidence=0.6)
-    found = json.loads(run("identify", str(file), "--format=json", "--confidence", "0.6"))
+    printed = json.loads(run("identify", str(file), "--format=json", "--confidence", "0.6"))
     for name in ("alpha", "alpha_upper"):
-        assert found[name] == pytest.approx([expected[name].item()], rel=1e-6)
+        assert printed[name] == pytest.approx([expected[name].item()], rel=1e-6)
     (row,) = read_csv(run("identify", str(file), "--format=csv"))
     assert float(row["alpha"]) == pytest.approx(expected["alpha"].item(), rel=1e-6)
     assert "alpha [rad]" in run("identify", str(file))
@@ -29,7 +29,7 @@ def test_three_formats_hold_the_fit(file):
 
 
 @pytest.mark.parametrize(
-    ("header", "times", "options", "said"),
+    ("header", "times", "options", "message"),
     [
         ("time,rotation [rad]", 1000.0, [], "--time-unit ..."),
         ("time,rotation [rad]", 1000.0, ["--time-unit", "ms"], ""),
@@ -42,16 +42,16 @@ def test_three_formats_hold_the_fit(file):
         ("time [s],roll", 1.0, ["--unit", "deg", "--rotation", "roll"], ""),
     ],
 )
-def test_times_and_rotations_are_in_the_units_that_are_stated(file, header, times, options, said):
+def test_times_and_rotations_are_in_the_units_that_are_stated(file, header, times, options, message):
     time, rotation = trace()
     factor = 180.0 / np.pi if "deg" in options or "[deg" in header else 1.0
     np.savetxt(file, np.column_stack([times * time, factor * rotation]), delimiter=",", header=header, comments="")
-    if said:
-        assert said in refused("identify", str(file), *options)
+    if message:
+        assert message in refused("identify", str(file), *options)
     else:
-        found = json.loads(run("identify", str(file), "--format=json", *options))
-        assert found["frequency_parameter"] == pytest.approx([2.5], rel=1e-2)
-        assert found["alpha"] == pytest.approx([0.25], rel=1e-3)
+        printed = json.loads(run("identify", str(file), "--format=json", *options))
+        assert printed["frequency_parameter"] == pytest.approx([2.5], rel=1e-2)
+        assert printed["alpha"] == pytest.approx([0.25], rel=1e-3)
 
 
 def test_a_drift_is_warned_of(file):
@@ -59,9 +59,9 @@ def test_a_drift_is_warned_of(file):
     columns = np.column_stack([time, rotation + 1e-3 * time])
     np.savetxt(file, columns, delimiter=",", header="time [s],rotation [rad]")
     assert "warning: " in run("identify", str(file))
-    found = json.loads(run("identify", str(file), "--format=json"))
-    assert found["drift"] == pytest.approx(1e-3, rel=0.05)
-    assert any("the sensor drifts" in text for text in found["warnings"])
+    printed = json.loads(run("identify", str(file), "--format=json"))
+    assert printed["drift"] == pytest.approx(1e-3, rel=0.05)
+    assert any("the sensor drifts" in text for text in printed["warnings"])
 
 
 def test_errors_name_the_file(file):

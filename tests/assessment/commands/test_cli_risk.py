@@ -45,9 +45,9 @@ def test_rates_are_those_of_python(suite, hazard):
     )
     expected = rocking_assessment.annual_rate(fragility, (INTENSITY, RATE))["annual_rate"]
     curves = json.loads(run("risk", str(suite), "--hazard", str(hazard), "--format=json"))["curves"]
-    found = [rate for rate in curves["annual_rate"] if rate is not None]
+    rates = [rate for rate in curves["annual_rate"] if rate is not None]
     values = expected.transpose("demand", "block", "model").values.ravel()
-    assert found == pytest.approx(values[values == values].tolist(), rel=1e-9)
+    assert rates == pytest.approx(values[values == values].tolist(), rel=1e-9)
     rows = list(read_csv(run("risk", str(suite), "--hazard", str(hazard), "--format=csv")))
     assert len(rows) == len(curves["annual_rate"])
 

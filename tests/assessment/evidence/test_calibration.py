@@ -22,16 +22,16 @@ def tests():
         shape = noise(k % 12)
         factor = scale * STANDARD_GRAVITY * np.tan(0.25) / shape.peak_acceleration
         motions.append(rocking.Record(factor * shape.acceleration, shape.time_step, "m/s2"))
-    return motions, np.array([BLOCK.response(one, restitution=0.9).overturned for one in motions])
+    return motions, np.array([BLOCK.response(motion, restitution=0.9).overturned for motion in motions])
 
 
 def test_the_block_is_within_the_intervals(tests):
-    found = calibrate(*tests, **RANGES, points=7)
+    block = calibrate(*tests, **RANGES, points=7)
     for name, true in (("alpha", 0.25), ("half_diagonal", 0.8), ("restitution", 0.9)):
-        assert found[f"{name}_lower"] <= true <= found[f"{name}_upper"], name
-    assert found["right"] > 0.95
-    assert found["validated"] >= found["validated_pga"]
-    assert found["right"] >= found["validated"]
+        assert block[f"{name}_lower"] <= true <= block[f"{name}_upper"], name
+    assert block["right"] > 0.95
+    assert block["validated"] >= block["validated_pga"]
+    assert block["right"] >= block["validated"]
 
 
 def test_a_wider_confidence_widens_the_intervals(tests):
@@ -43,9 +43,9 @@ def test_a_wider_confidence_widens_the_intervals(tests):
 
 def test_a_threshold_that_divides_the_outcomes_is_found(tests):
     motions, _ = tests
-    pga = np.array([one.peak_acceleration for one in motions])
-    found = calibrate(motions, pga > np.median(pga), **RANGES, points=2)
-    assert found["validated_pga"] > 0.9
+    pga = np.array([motion.peak_acceleration for motion in motions])
+    block = calibrate(motions, pga > np.median(pga), **RANGES, points=2)
+    assert block["validated_pga"] > 0.9
 
 
 def test_refusals(tests):

@@ -36,12 +36,12 @@ def trace(rate=100, held=20, duration=6.0, start=0.2):
 
 @pytest.mark.parametrize("start", [0.2, -0.1])
 def test_a_trace_without_noise_gives_the_block(start):
-    found = identify_free_rocking(*trace(start=start))
-    assert found["restitution"].item() == pytest.approx(ETA, abs=1e-5)
-    assert found["alpha"].item() == pytest.approx(ALPHA, rel=1e-4)
-    assert found["frequency_parameter"].item() == pytest.approx(P, rel=1e-4)
-    assert found["edge"].item() == "both"
-    assert np.nanmax(np.abs(found["residual"])) < 1e-4
+    fit = identify_free_rocking(*trace(start=start))
+    assert fit["restitution"].item() == pytest.approx(ETA, abs=1e-5)
+    assert fit["alpha"].item() == pytest.approx(ALPHA, rel=1e-4)
+    assert fit["frequency_parameter"].item() == pytest.approx(P, rel=1e-4)
+    assert fit["edge"].item() == "both"
+    assert np.nanmax(np.abs(fit["residual"])) < 1e-4
 
 
 def test_the_first_impact_is_where_the_equation_of_motion_has_it():
@@ -54,8 +54,8 @@ def test_the_first_impact_is_where_the_equation_of_motion_has_it():
 
 
 def test_peaks_obey_the_energy_of_housner():
-    found = identify_free_rocking(*trace())
-    fitted, impacts = found["fitted"].dropna("time"), found["impact_time"].values
+    fit = identify_free_rocking(*trace())
+    fitted, impacts = fit["fitted"].dropna("time"), fit["impact_time"].values
     peaks = [np.abs(fitted.sel(time=slice(*ends))).max().item() for ends in pairwise(impacts)]
     energy = np.cos(ALPHA - np.array([0.2, *peaks[:5]])) - np.cos(ALPHA)
     np.testing.assert_allclose(energy[1:] / energy[:-1], ETA**2, rtol=3e-3)  # peaks lie between samples
@@ -66,10 +66,10 @@ def test_two_edges_give_their_own_numbers():
     alpha, p, eta = np.array([[0.2], [0.3]]), np.array([[2.2], [2.4]]), np.array([[0.93], [0.88]])
     rotation = free_rocking(np.array([0.16]), alpha, p, eta, 6.0, 200)[0]
     noisy = rotation + 2e-4 * np.random.default_rng(5).normal(size=rotation.size)
-    found = identify_free_rocking(np.arange(noisy.size) / 200, noisy, edges=2)
-    assert found["edge"].values.tolist() == ["right", "left"]
+    fit = identify_free_rocking(np.arange(noisy.size) / 200, noisy, edges=2)
+    assert fit["edge"].values.tolist() == ["right", "left"]
     for name, true in (("alpha", alpha), ("frequency_parameter", p), ("restitution", eta)):
-        np.testing.assert_allclose(found[name], true[:, 0], rtol=0.02)
+        np.testing.assert_allclose(fit[name], true[:, 0], rtol=0.02)
 
 
 def test_two_edges_of_a_body_after_a_pulse():
@@ -78,13 +78,13 @@ def test_two_edges_of_a_body_after_a_pulse():
     body = rocking.RigidBody(left=left, right=right, height=height)
     motion = body.history("sine", peak_acceleration=2.6, period=0.7, duration=7.0, samples=420)
     free = motion.isel(time=motion["time"] > motion.attrs["motion_end"])
-    found = identify_free_rocking(free["time"], free["rotation"], edges=2)
+    fit = identify_free_rocking(free["time"], free["rotation"], edges=2)
     inertia = body.gyration.item() ** 2 + height**2  # about the middle of the ground, over the mass
-    own, other = np.array([right, left]), np.array([left, right])
-    np.testing.assert_allclose(found["alpha"], np.arctan(own / height), rtol=1e-6)
-    p = np.sqrt(9.80665 * np.hypot(own, height) / (inertia + own**2))
-    np.testing.assert_allclose(found["frequency_parameter"], p, rtol=1e-6)
-    np.testing.assert_allclose(found["restitution"], (inertia - own * other) / (inertia + own**2), rtol=1e-6)
+    edge, opposite = np.array([right, left]), np.array([left, right])
+    np.testing.assert_allclose(fit["alpha"], np.arctan(edge / height), rtol=1e-6)
+    p = np.sqrt(9.80665 * np.hypot(edge, height) / (inertia + edge**2))
+    np.testing.assert_allclose(fit["frequency_parameter"], p, rtol=1e-6)
+    np.testing.assert_allclose(fit["restitution"], (inertia - edge * opposite) / (inertia + edge**2), rtol=1e-6)
 
 
 def test_a_part_of_the_benchmark_is_within_its_bounds():
@@ -112,10 +112,10 @@ def test_a_release_with_a_push_over_the_energy_of_the_tipping_angle():
     energy = 1.0 - (1.0 - 0.15 / ALPHA) ** 2 + 0.62**2  # slender, over that of alpha
     assert energy > 1.2
     time = np.arange(clean.size) / 100
-    found = identify_free_rocking(time, clean)
-    assert found["restitution"].item() == pytest.approx(ETA, abs=1e-5)
-    assert found["alpha"].item() == pytest.approx(ALPHA, rel=1e-4)
-    assert found["frequency_parameter"].item() == pytest.approx(P, rel=1e-4)
+    fit = identify_free_rocking(time, clean)
+    assert fit["restitution"].item() == pytest.approx(ETA, abs=1e-5)
+    assert fit["alpha"].item() == pytest.approx(ALPHA, rel=1e-4)
+    assert fit["frequency_parameter"].item() == pytest.approx(P, rel=1e-4)
 
 
 @pytest.mark.long
@@ -124,9 +124,9 @@ def test_a_moving_average_is_fitted():
     time, rotation = trace()
     noisy = rotation + 1e-3 * np.random.default_rng(4).normal(size=time.size)
     averaged = np.convolve(noisy, np.full(9, 1.0 / 9.0), mode="valid")
-    found = identify_free_rocking(time[4:-4], averaged)
-    assert "errors follow each other" in found.attrs["warnings"]
-    assert holds(found)
+    fit = identify_free_rocking(time[4:-4], averaged)
+    assert "errors follow each other" in fit.attrs["warnings"]
+    assert holds(fit)
 
 
 def test_wider_confidence_widens_the_intervals():
@@ -156,9 +156,9 @@ def test_refusals(change, message):
         identify_free_rocking(*change(*trace()))
 
 
-def holds(found, alpha=ALPHA, p=P, eta=ETA):
+def holds(fit, alpha=ALPHA, p=P, eta=ETA):
     return all(
-        found[name + "_lower"].item() <= true <= found[name + "_upper"].item()
+        fit[name + "_lower"].item() <= true <= fit[name + "_upper"].item()
         for name, true in (("alpha", alpha), ("frequency_parameter", p), ("restitution", eta))
     )
 
@@ -173,23 +173,23 @@ def test_a_sensor_that_drifts_is_fitted_with_its_drift(drift):
     time, rotation = trace()
     rng = np.random.default_rng(8)
     noisy = rotation + drift * time + 2e-4 * rng.normal(size=(number(2, 4), time.size))
-    found = [identify_free_rocking(time, one) for one in noisy]
-    assert sum(map(holds, found)) >= number(1, 3)
-    assert all(one["drift_lower"] < drift < one["drift_upper"] for one in found)
-    assert "the sensor drifts by" in found[0].attrs["warnings"]
+    fits = [identify_free_rocking(time, measured) for measured in noisy]
+    assert sum(map(holds, fits)) >= number(1, 3)
+    assert all(fit["drift_lower"] < drift < fit["drift_upper"] for fit in fits)
+    assert "the sensor drifts by" in fits[0].attrs["warnings"]
 
 
 @pytest.mark.long
 def test_errors_that_follow_each_other_widen_the_intervals():
     time, rotation = trace()
     rng = np.random.default_rng(9)
-    found = [identify_free_rocking(time, rotation + coloured(rng, time.size)) for _ in range(number(2, 6))]
-    assert sum(map(holds, found)) >= number(1, 5)
-    assert all("errors follow each other" in one.attrs["warnings"] for one in found)
-    assert all(one["noise"] > 2.0 * one["sample_noise"] for one in found)
+    fits = [identify_free_rocking(time, rotation + coloured(rng, time.size)) for _ in range(number(2, 6))]
+    assert sum(map(holds, fits)) >= number(1, 5)
+    assert all("errors follow each other" in fit.attrs["warnings"] for fit in fits)
+    assert all(fit["noise"] > 2.0 * fit["sample_noise"] for fit in fits)
     independent = identify_free_rocking(time, rotation + 1e-3 * rng.normal(size=time.size))
     assert independent.attrs["warnings"] == ""
-    assert independent["alpha_upper"] - independent["alpha_lower"] < found[0]["alpha_upper"] - found[0]["alpha_lower"]
+    assert independent["alpha_upper"] - independent["alpha_lower"] < fits[0]["alpha_upper"] - fits[0]["alpha_lower"]
 
 
 SHAKEN = list(itertools.product([0.01, 0.05, 0.3], [0.7, 1.9, 4.1]))
@@ -209,12 +209,12 @@ def test_rocking_on_moving_ground_is_refused_or_has_wider_intervals(shaken):
     assert motion.attrs["outcome"] == "RECOVERS"
     noise = 1e-4 * np.random.default_rng(1).normal(size=free.sizes["time"])
     try:
-        found = identify_free_rocking(free["time"], free["rotation"] + noise)
+        fit = identify_free_rocking(free["time"], free["rotation"] + noise)
     except InvalidArgumentError as error:
         assert "ground at rest" in str(error) or "free rocking" in str(error)  # noqa: PT017
         return
-    assert "wider" in found.attrs["warnings"]
-    assert holds(found, block.alpha, block.frequency_parameter, 0.9)
+    assert "wider" in fit.attrs["warnings"]
+    assert holds(fit, block.alpha, block.frequency_parameter, 0.9)
 
 
 @pytest.mark.parametrize("amplitude", but_long([0.1, 0.3], 0.3))

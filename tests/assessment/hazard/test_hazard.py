@@ -38,10 +38,10 @@ def test_logistic_curve_has_a_closed_form():
 def test_a_step_gives_the_hazard_at_the_median(dispersion):
     hazard = [0.5, 2.0, 5.0], [0.3, 0.01, 1e-4]
     for median in (1.0, 1.23456, 2.0, 3.3333):
-        found = annual_rate(curves(median, dispersion), hazard)
+        rate = annual_rate(curves(median, dispersion), hazard)
         expected = np.exp(np.interp(np.log(median), *np.log(hazard)))
-        np.testing.assert_allclose(found.annual_rate, expected, rtol=1e-7)
-        assert found.annual_rate.attrs["units"] == "year-1"
+        np.testing.assert_allclose(rate.annual_rate, expected, rtol=1e-7)
+        assert rate.annual_rate.attrs["units"] == "year-1"
 
 
 def test_labelled_hazard_curve():
@@ -102,24 +102,24 @@ def written(tmp_path, text, name="PGA/curves.csv"):
 
 
 def test_probabilities_of_openquake_are_rates_of_a_poisson_process(tmp_path):
-    found = read_hazard(written(tmp_path, OPENQUAKE))
-    np.testing.assert_allclose(found, [0.01, 1e-4], rtol=1e-6)  # 1 - exp(-0.5), 1 - exp(-0.005) in 50 years
-    np.testing.assert_allclose(found["intensity"], [0.05 * 9.80665, 0.5 * 9.80665])
-    assert found.attrs["measure"] == "pga"
-    assert math.isclose(-math.expm1(-50.0 * found[0].item()), 0.3934693, rel_tol=1e-6)
+    curve = read_hazard(written(tmp_path, OPENQUAKE))
+    np.testing.assert_allclose(curve, [0.01, 1e-4], rtol=1e-6)  # 1 - exp(-0.5), 1 - exp(-0.005) in 50 years
+    np.testing.assert_allclose(curve["intensity"], [0.05 * 9.80665, 0.5 * 9.80665])
+    assert curve.attrs["measure"] == "pga"
+    assert math.isclose(-math.expm1(-50.0 * curve[0].item()), 0.3934693, rel_tol=1e-6)
 
 
 @pytest.mark.parametrize("text", [CURVES, TOOL, CURVES.replace("name,", "").replace("Los Angeles CA,", "")])
 def test_rates_of_the_usgs(tmp_path, text):
-    found = read_hazard(written(tmp_path, text))
-    np.testing.assert_array_equal(found, [5.2e-1, 2.1e-2, 1.4e-3, 3.0e-5])
-    np.testing.assert_allclose(found["intensity"] / 9.80665, [0.0025, 0.05, 0.5, 1.5])
+    curve = read_hazard(written(tmp_path, text))
+    np.testing.assert_array_equal(curve, [5.2e-1, 2.1e-2, 1.4e-3, 3.0e-5])
+    np.testing.assert_allclose(curve["intensity"] / 9.80665, [0.0025, 0.05, 0.5, 1.5])
 
 
 def test_pgv_is_in_centimetres_a_second(tmp_path):
-    found = read_hazard(written(tmp_path, CURVES, "PGV/curves.csv"))
-    np.testing.assert_allclose(found["intensity"], [0.000025, 0.0005, 0.005, 0.015])
-    assert (found.attrs["measure"], found["intensity"].attrs["units"]) == ("pgv", "m s-1")
+    curve = read_hazard(written(tmp_path, CURVES, "PGV/curves.csv"))
+    np.testing.assert_allclose(curve["intensity"], [0.000025, 0.0005, 0.005, 0.015])
+    assert (curve.attrs["measure"], curve["intensity"].attrs["units"]) == ("pgv", "m s-1")
     with pytest.raises(InvalidArgumentError, match="no such file"):
         read_hazard(tmp_path / "PGV" / "none.csv")
 
@@ -154,8 +154,8 @@ def test_other_files_are_refused_with_the_reason(tmp_path, text, name, message):
 
 @pytest.mark.parametrize("header", ["pga [g],annual rate [1/year]", "PGA [gal],annual_rate", "pgv [cm/s], Annual rate"])
 def test_a_table_of_ones_own(tmp_path, header):
-    found = read_hazard(written(tmp_path, f"{header}\n0.1,2e-2\n0.4,4e-4\n\n", "own.csv"))
+    curve = read_hazard(written(tmp_path, f"{header}\n0.1,2e-2\n0.4,4e-4\n\n", "own.csv"))
     unit = {"g": 9.80665, "gal": 0.01, "cm/s": 0.01}[header.split("[")[1].split("]")[0]]
-    np.testing.assert_allclose(found["intensity"], [0.1 * unit, 0.4 * unit])
-    assert found.values.tolist() == [2e-2, 4e-4]
-    assert found.attrs["measure"] == header[:3].lower()
+    np.testing.assert_allclose(curve["intensity"], [0.1 * unit, 0.4 * unit])
+    assert curve.values.tolist() == [2e-2, 4e-4]
+    assert curve.attrs["measure"] == header[:3].lower()

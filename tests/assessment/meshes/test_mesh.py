@@ -58,10 +58,10 @@ def test_repairs_are_warned_of(name: str, tmp_path: Path) -> None:
     mesh.export(tmp_path / "scan.ply")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        found = rocking_assessment.body_from_mesh(tmp_path / "scan.ply", unit="m")
+        body = rocking_assessment.body_from_mesh(tmp_path / "scan.ply", unit="m")
     assert any(remark in str(warning.message) and "scan.ply" in str(warning.message) for warning in caught)
     for attribute in ("left", "right", "height", "gyration", "top_height"):
-        assert float(found.parameters[attribute]) == pytest.approx(BOX[attribute], rel=1e-6)
+        assert float(body.parameters[attribute]) == pytest.approx(BOX[attribute], rel=1e-6)
 
 
 BOX = {"left": 0.2, "right": 0.2, "height": 0.6, "gyration": float(np.sqrt(1.6 / 12.0)), "top_height": 1.2}
@@ -91,9 +91,9 @@ def test_map_coordinates_keep_the_digits(tmp_path: Path) -> None:
     lines = [f"v {x:.9f} {y:.9f} {z:.9f}" for x, y, z in corners]
     lines += [f"f {a} {b} {c}" for a, b, c in mesh.faces + 1]
     (tmp_path / "rock.obj").write_text("\n".join(lines))
-    found = rocking_assessment.body_from_mesh(tmp_path / "rock.obj", unit="m")
+    body = rocking_assessment.body_from_mesh(tmp_path / "rock.obj", unit="m")
     for attribute, value in BOX.items():
-        assert float(found.parameters[attribute]) == pytest.approx(value, rel=1e-6)
+        assert float(body.parameters[attribute]) == pytest.approx(value, rel=1e-6)
 
 
 PILLAR = (0.3, 0.25, 1.5)
@@ -115,16 +115,16 @@ def test_the_unit_of_a_mesh_is_asked_for(ending: str, tmp_path: Path) -> None:
             read(tmp_path / f"pillar.{ending}")
         with pytest.raises(InvalidArgumentError, match=r"a size of 1500 m; is its unit m\?"):
             read(tmp_path / f"pillar.{ending}", unit="m")
-    found = rocking_assessment.body_from_mesh(tmp_path / f"pillar.{ending}", unit="mm")
-    assert (float(found.width), float(found.top_height)) == pytest.approx((0.3, 1.5))
+    body = rocking_assessment.body_from_mesh(tmp_path / f"pillar.{ending}", unit="mm")
+    assert (float(body.width), float(body.top_height)) == pytest.approx((0.3, 1.5))
     mountain = rocking_assessment.body_from_mesh(tmp_path / f"pillar.{ending}", unit="m", allow_unusual=True)
     assert float(mountain.top_height) == pytest.approx(1500.0)
 
 
 def test_gltf_is_in_metres_with_y_upwards_unless_stated(tmp_path: Path) -> None:
     pillar("y").export(tmp_path / "pillar.glb")
-    found = rocking_assessment.body_from_mesh(tmp_path / "pillar.glb")
-    assert (float(found.width), float(found.top_height)) == pytest.approx((0.3, 1.5))
+    body = rocking_assessment.body_from_mesh(tmp_path / "pillar.glb")
+    assert (float(body.width), float(body.top_height)) == pytest.approx((0.3, 1.5))
     with pytest.warns(UserWarning, match="glTF, whose y axis points upwards; the stated axis z is used"):
         lying = rocking_assessment.body_from_mesh(tmp_path / "pillar.glb", up="z")
     assert float(lying.top_height) == pytest.approx(0.3)
@@ -138,8 +138,8 @@ def test_the_upward_axis_is_stated(up: str, tmp_path: Path) -> None:
     """The directions of the body turn with the axes: a quarter turn exchanges the sides of the base."""
     pillar(up).export(tmp_path / "pillar.stl")
     for direction, width in ((0.0, 0.3), (np.pi / 2.0, 0.25)):
-        found = rocking_assessment.body_from_mesh(tmp_path / "pillar.stl", direction, unit="m", up=up)
-        assert (float(found.width), float(found.top_height)) == pytest.approx((width, 1.5))
+        body = rocking_assessment.body_from_mesh(tmp_path / "pillar.stl", direction, unit="m", up=up)
+        assert (float(body.width), float(body.top_height)) == pytest.approx((width, 1.5))
     with pytest.raises(InvalidArgumentError, match="up"):
         rocking_assessment.body_from_mesh(tmp_path / "pillar.stl", unit="m", up="w")
 
@@ -211,7 +211,7 @@ def ply(elements):
 
 
 @pytest.mark.parametrize(
-    ("ending", "made"),
+    ("ending", "content"),
     [
         ("ply", ply),
         ("stl", lambda count: b" solid a\nendsolid a\n" * count),
@@ -220,16 +220,16 @@ def ply(elements):
         ("glb", lambda count: glb(meshes=[{"primitives": [{}] * count}])),
     ],
 )
-def test_files_of_many_parts_are_refused(ending, made):
-    few = made(MAX_PARTS)
+def test_files_of_many_parts_are_refused(ending, content):
+    few = content(MAX_PARTS)
     assert with_few_parts(few, ending) == few
     with pytest.raises(ValueError, match=f"{MAX_PARTS + 1} .*at most {MAX_PARTS}"):
-        with_few_parts(made(MAX_PARTS + 1), ending)
+        with_few_parts(content(MAX_PARTS + 1), ending)
 
 
 def test_materials_are_left_out_of_an_obj_file():
-    given = b"mtllib a.mtl\nv 0 0 0\nusemtl m1\nf 1 2 3\r\n  usemtl m2\r\nf 1 2 4\ng usemtl\n"
-    assert with_few_parts(given, "obj") == b"\nv 0 0 0\n\nf 1 2 3\r\n\r\nf 1 2 4\ng usemtl\n"
+    content = b"mtllib a.mtl\nv 0 0 0\nusemtl m1\nf 1 2 3\r\n  usemtl m2\r\nf 1 2 4\ng usemtl\n"
+    assert with_few_parts(content, "obj") == b"\nv 0 0 0\n\nf 1 2 3\r\n\r\nf 1 2 4\ng usemtl\n"
 
 
 @pytest.mark.parametrize("last", ["ZZZZ9", "C999999"])
@@ -244,8 +244,8 @@ def test_vertices_just_above_the_ground_are_no_contact(tmp_path: Path) -> None:
         (x, y, z) for half, z in ((0.2, 0.0), (0.25, 0.0012), (0.25, 1.7)) for x in (-half, half) for y in (-half, half)
     ]
     trimesh.convex.convex_hull(np.array(corners)).export(tmp_path / "statue.ply")
-    found = rocking_assessment.body_from_mesh(tmp_path / "statue.ply", unit="m")
-    assert float(found.parameters["right"]) == pytest.approx(0.2, rel=1e-3)
+    body = rocking_assessment.body_from_mesh(tmp_path / "statue.ply", unit="m")
+    assert float(body.parameters["right"]) == pytest.approx(0.2, rel=1e-3)
     wide = rocking_assessment.body_from_mesh(tmp_path / "statue.ply", unit="m", contact_tolerance=1e-3)
     assert float(wide.parameters["right"]) == pytest.approx(0.25, rel=1e-3)
     with pytest.raises(rocking.InvalidArgumentError, match="contact_tolerance"):

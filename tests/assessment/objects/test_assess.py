@@ -33,22 +33,22 @@ def random_objects(count: int) -> list[Object]:
 
 def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions_overturns() -> None:
     rng = np.random.default_rng(200)
-    cases = [(one, Site(pga=rng.uniform(1.5, 6.0), pgv=rng.uniform(0.1, 1.0))) for one in random_objects(200)]
+    cases = [(obj, Site(pga=rng.uniform(1.5, 6.0), pgv=rng.uniform(0.1, 1.0))) for obj in random_objects(200)]
     drawn = sample(cases, 8)
     overturning = 0
-    for one, site in drawn:
-        for row in assess(one, site, sensitivity=False).rows:
+    for obj, site in drawn:
+        for row in assess(obj, site, sensitivity=False).rows:
             overturning += row["factor"] is not None
             top = HIGHEST_FACTOR if row["factor"] is None else row["factor"]
             below = top * np.linspace(0.05, 0.997, 60)
             tried = np.concatenate([below, below * 1.0021, top * (1.0 + np.array([-1e-8, 0.0, 1e-12, 1e-10, 1e-8]))])
-            plane = one.planes[row["direction"]]
+            plane = obj.planes[row["direction"]]
             width, offset = plane.base, plane.offset
-            gyration = math.hypot(width, one.height) / math.sqrt(12.0)
+            gyration = math.hypot(width, obj.height) / math.sqrt(12.0)
             hit = set()
             for motion, side in itertools.product(site.motions, (offset, -offset)):
                 left, right = width / 2 + side, width / 2 - side
-                body = RigidBody(left=left, right=right, height=one.mass_height, gyration=gyration)
+                body = RigidBody(left=left, right=right, height=obj.mass_height, gyration=gyration)
                 peaks = tried * motion.peak_acceleration
                 overturned = body.response(motion.motion, peak_acceleration=peaks, period=motion.period).overturned
                 # a range narrower than the distance of the factors tried, 0.2 %, may be missed
@@ -60,12 +60,12 @@ def test_each_factor_is_confirmed_from_both_sides_and_no_range_of_weaker_motions
 
 
 def test_rows_come_worst_first_with_verdicts_of_the_share() -> None:
-    found = assess(random_objects(20), SITE, sensitivity=False)
-    share = found.columns["share"]
+    assessment = assess(random_objects(20), SITE, sensitivity=False)
+    share = assessment.columns["share"]
     assert (np.diff(share) <= 0.0).all()
     assert share[0] > 0.5
     assert share[-1] == 0.0
-    for row in found.rows:
+    for row in assessment.rows:
         expected = 4 if row["share"] > 0.5 else 3 if row["share"] > 0.0 else int(row["uplifts"])
         assert row["verdict"] == VERDICTS[expected]
         assert (row["factor"] is not None and row["factor"] <= 1.0) == (row["share"] > 0.0)
@@ -76,16 +76,16 @@ def test_the_smallest_width_and_the_largest_height_are_where_the_outcome_changes
     (row,) = assess(Object("pier", width=0.4, height=1.6), SITE).rows
     for change, overturns in ((1.0, False), (1.0 - 2.0 * SIZE_ERROR, True)):
         sizes = (row["smallest_width"] * change, 1.6), (0.4, row["largest_height"] / change)
-        for one in assess([Object("pier", width=b, height=h) for b, h in sizes], SITE, sensitivity=False).rows:
-            assert (one["share"] > 0.0) == overturns
+        for changed in assess([Object("pier", width=b, height=h) for b, h in sizes], SITE, sensitivity=False).rows:
+            assert (changed["share"] > 0.0) == overturns
 
 
 def test_each_shape_reaches_the_ground_velocity_and_moving_ground_only_if_asked() -> None:
     motions = Site(pga=3.0, pgv=0.4).motions
-    assert {one.name for one in motions}.isdisjoint({"half_sine", "rectangular"})
+    assert {motion.name for motion in motions}.isdisjoint({"half_sine", "rectangular"})
     assert len(motions) == 7
-    for one in motions:
-        largest = impulse_of(one.motion).largest * one.peak_acceleration * one.period / (2.0 * math.pi)
+    for motion in motions:
+        largest = impulse_of(motion.motion).largest * motion.peak_acceleration * motion.period / (2.0 * math.pi)
         assert largest == pytest.approx(0.4, rel=1e-12)
     assert len(Site(pga=3.0, pgv=0.4, moving_ground=True).motions) == 9
 
@@ -104,14 +104,14 @@ def test_suite_of_records_with_hazard() -> None:
     assert best["annual_rate_upper"] == pytest.approx(1e-4)
     assert "the annual rate of overturning is at least 0, at most 0.0001" in best["warnings"]
     body = rocking.Block(0.1, 0.8)
-    hit = {one.name for one in records if body.response(one, scale=4.0 / one.peak_acceleration).overturned}
+    hit = {record.name for record in records if body.response(record, scale=4.0 / record.peak_acceleration).overturned}
     assert hit <= {*worst["overturned_by"].split("; ")}
 
 
 def test_friction_less_than_the_slope_slides_first() -> None:
     friction = {"rough": 0.5, "smooth": 0.1, "unknown": None}
-    found = assess([Object(name, width=0.3, height=1.0, friction=mu) for name, mu in friction.items()], SITE).rows
-    by_name = {row["object"]: row for row in found}
+    rows = assess([Object(name, width=0.3, height=1.0, friction=mu) for name, mu in friction.items()], SITE).rows
+    by_name = {row["object"]: row for row in rows}
     assert [by_name[name]["slides_first"] for name in friction] == [False, True, None]
     assert by_name["rough"]["sliding"] is None
     assert by_name["smooth"]["sliding"] > 0.0
@@ -119,36 +119,40 @@ def test_friction_less_than_the_slope_slides_first() -> None:
 
 
 def test_result_as_table(tmp_path) -> None:
-    found = assess([Object("a", width=0.3, height=1.2), Object("b", diameter="30 cm", height=1.0)], SITE)
-    text = found.to_csv(tmp_path / "table.csv")
+    assessment = assess([Object("a", width=0.3, height=1.2), Object("b", diameter="30 cm", height=1.0)], SITE)
+    text = assessment.to_csv(tmp_path / "table.csv")
     assert (tmp_path / "table.csv").read_text() == text
     assert "uplift_acceleration [m/s2]" in text.splitlines()[0]
-    assert list(found.to_pandas().columns) == [one.name for one in OUTPUTS] == list(found.to_xarray().data_vars)
-    assert len(repr(found).splitlines()) == 2
-    assert "objects and directions under 3 motions" in repr(found)
-    assert "wobbling" in next(row for row in found.rows if row["object"] == "b")["warnings"]
+    assert (
+        list(assessment.to_pandas().columns)
+        == [quantity.name for quantity in OUTPUTS]
+        == list(assessment.to_xarray().data_vars)
+    )
+    assert len(repr(assessment).splitlines()) == 2
+    assert "objects and directions under 3 motions" in repr(assessment)
+    assert "wobbling" in next(row for row in assessment.rows if row["object"] == "b")["warnings"]
 
 
 @pytest.mark.parametrize(
-    "given",
+    "arguments",
     [{"pga": 3.0}, {"pgv": 0.3}, {"pga": 3.0, "pgv": 0.3, "periods": (0.1, 1.0)}, {"pga": 3.0, "periods": 0.5},
      {"pga": 3.0, "periods": (0.5, 0.6, 0.7)}],
 )  # fmt: skip
-def test_incomplete_sites_are_refused(given) -> None:
+def test_incomplete_sites_are_refused(arguments) -> None:
     with pytest.raises(InvalidArgumentError):
-        Site(**given)
+        Site(**arguments)
 
 
 @pytest.mark.parametrize(
-    "given",
+    "arguments",
     [{"height": 1.0}, {"width": 0.4}, {"width": 0.4, "diameter": 0.4, "height": 1.0},
      {"width": 0.4, "height": 1.0, "offset_width": 0.2}, {"width": 0.4, "height": 1.0, "offset_depth": 0.1},
      {"diameter": 0.4, "height": 1.0, "offset_width": 0.19, "offset_depth": 0.19},
      {"width": 0.4, "height": 1.0, "mass_height": 1.1}],
 )  # fmt: skip
-def test_incomplete_objects_are_refused(given) -> None:
+def test_incomplete_objects_are_refused(arguments) -> None:
     with pytest.raises(InvalidArgumentError):
-        Object("one", **given)
+        Object("one", **arguments)
 
 
 def test_an_object_that_the_vertical_component_presses_down_does_not_uplift() -> None:
@@ -157,11 +161,11 @@ def test_an_object_that_the_vertical_component_presses_down_does_not_uplift() ->
     motion = rocking.Record(0.3 * ground, 0.1, "g", vertical=pressing)
     assert motion.peak_acceleration > 9.80665 * 0.25  # alone it would uplift the object
     assert rocking.Block(0.4, 1.6).response(motion).outcome == rocking.Outcome.NO_UPLIFT
-    one = Object("one", width=0.4, depth=0.4, height=1.6)
-    found = assess(one, Site(records=motion))
-    assert found.columns["verdict"].tolist() == ["stays", "stays"]
-    assert found.columns["uplifts"].tolist() == [False, False]
-    assert found == assess(one, Site(records=[motion]))
+    pier = Object("one", width=0.4, depth=0.4, height=1.6)
+    assessment = assess(pier, Site(records=motion))
+    assert assessment.columns["verdict"].tolist() == ["stays", "stays"]
+    assert assessment.columns["uplifts"].tolist() == [False, False]
+    assert assessment == assess(pier, Site(records=[motion]))
     with pytest.raises(InvalidArgumentError, match="row"):
-        found.friction(0.5)
-    assert found.friction(0.0).identical(found.friction(0))
+        assessment.friction(0.5)
+    assert assessment.friction(0.0).identical(assessment.friction(0))

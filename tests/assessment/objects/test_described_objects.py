@@ -30,23 +30,23 @@ def test_an_object_of_a_table_is_of_any_rigid_kind():
         "cone;cone;40;;160;;;;;;\n"
     )
     table = objects_of_csv(text)
-    found = {one.name: one for one in table.objects}
+    objects = {obj.name: obj for obj in table.objects}
     assert [(bad.row, bad.columns) for bad in table.bad_rows] == [(8, ["body"])]
-    assert type(found["box"]) is rocking_assessment.Object
-    assert found["case"].planes == found["same case"].planes
+    assert type(objects["box"]) is rocking_assessment.Object
+    assert objects["case"].planes == objects["same case"].planes
     expected = {
         "case": "hollow(width=40cm, height=1.6m, wall=2cm)",
         "statue": "two_edges(left=12cm, right=18cm, mass_height=40cm)",
         "known": "offset_mass(width=40cm, height=160cm, gyration=50cm)",
     }
-    for name, said in expected.items():
-        made, one = Bodies.of([found[name]]).scaled().rigid, body(said)
-        for edge, other in ((made.right, one.right), (made.left, one.left)):
+    for name, description in expected.items():
+        rigid, reference = Bodies.of([objects[name]]).scaled().rigid, body(description)
+        for edge, other in ((rigid.right, reference.right), (rigid.left, reference.left)):
             np.testing.assert_allclose(edge.alpha, other.alpha, rtol=1e-12)
             np.testing.assert_allclose(edge.frequency_parameter, other.frequency_parameter, rtol=1e-12)
     json = '[{"name": "a", "width": "40 cm", "height": 1.6, "wall": 0.02}]'
-    assert objects_of_json(json).objects[0].planes == found["case"].planes
-    assert rocking_assessment.Object.from_body(expected["case"]).planes == found["case"].planes
+    assert objects_of_json(json).objects[0].planes == objects["case"].planes
+    assert rocking_assessment.Object.from_body(expected["case"]).planes == objects["case"].planes
     with pytest.raises(InvalidArgumentError, match="one rigid body"):
         rocking_assessment.Object.from_body("frame(width=1m, height=4m, mass_ratio=1)")
 

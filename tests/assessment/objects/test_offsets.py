@@ -28,9 +28,11 @@ def shifted(share: float) -> rocking.Record:
 def test_the_numbers_are_those_of_the_record():
     record = shifted(0.4)
     mean, peak = record.acceleration.mean(), record.peak_acceleration
-    about = np.abs(record.acceleration - mean).max()
-    said = f"its mean of {mean:.4g} m/s2 is part of its PGA of {peak:.4g} m/s2, which is {about:.4g} m/s2 about it"
-    assert said in offset_remark(record.acceleration)
+    about_mean = np.abs(record.acceleration - mean).max()
+    message = (
+        f"its mean of {mean:.4g} m/s2 is part of its PGA of {peak:.4g} m/s2, which is {about_mean:.4g} m/s2 about it"
+    )
+    assert message in offset_remark(record.acceleration)
     for share, named in ((0.0, False), (0.9 * OFFSET_SHARE, False), (1.1 * OFFSET_SHARE, True), (-5.0, True)):
         assert (offset_remark(shifted(share).acceleration) is not None) == named
 
@@ -45,10 +47,10 @@ def test_the_level_before_the_shaking_counts():
 def test_a_record_that_is_scaled_by_its_pga_is_named():
     box = rocking_assessment.Object("box", width=0.3, height=1.5)
     for record, named in ((shifted(0.4), True), (shifted(0.4).baseline_corrected(order=0), False)):
-        found = rocking_assessment.assess(
+        assessment = rocking_assessment.assess(
             box, rocking_assessment.Site(pga=3.0, records=[record, noise(4)]), sensitivity=False
         )
-        assert ("S1: its mean" in found.rows[0]["warnings"]) == named
+        assert ("S1: its mean" in assessment.rows[0]["warnings"]) == named
         levels = rocking.fragility([record, noise(4)], rocking.Block(0.5, 2.0), intensity=[1.0, 3.0])
         assert ("S1: its mean" in levels.attrs.get("warnings", "")) == named
         motions = [record, *(noise(k) for k in range(4, 9))]
@@ -60,15 +62,15 @@ def test_a_record_that_is_scaled_by_its_pga_is_named():
 def test_the_removed_offset_of_counts_is_stated_by_the_command(tmp_path):
     (tmp_path / "objects.csv").write_text(TABLE)
     command = ["assess", str(tmp_path / "objects.csv"), "--record", str(KNET), "--pga", "2m/s2", "--no-sensitivity"]
-    found = CliRunner().invoke(app, [*command, "--format", "json"])
-    (warnings,) = json.loads(found.output)["warnings"]
+    result = CliRunner().invoke(app, [*command, "--format", "json"])
+    (warnings,) = json.loads(result.output)["warnings"]
     assert "mean of 95.002 gal, is removed" in warnings
     assert "part of its PGA" not in warnings
     record = rocking.read_record(KNET)
     expected = rocking_assessment.assess(
         rocking_assessment.Object("stele", width=0.3, height=1.5), rocking_assessment.Site(pga=2.0, records=[record])
     )
-    assert json.loads(found.output)["factor"] == [expected.rows[0]["factor"]]
+    assert json.loads(result.output)["factor"] == [expected.rows[0]["factor"]]
 
 
 @pytest.mark.parametrize("order", [None, 0, 1])
@@ -85,8 +87,8 @@ def test_the_commands_take_the_order_of_a_baseline(order, tmp_path):
     command = ["assess", str(tmp_path / "objects.csv"), "--record", str(tmp_path / "S1.csv"), "--pga", "2m/s2"]
     assert "--allow-unusual" in CliRunner().invoke(app, [*command, *option]).output
     command += ["--allow-unusual", "--no-sensitivity", "--format", "json"]
-    found = CliRunner().invoke(app, [*command, *option])
-    assert ("part of its PGA" in json.loads(found.output)["warnings"][0]) == (order is None)
-    found = CliRunner().invoke(app, ["fragility", str(tmp_path / "suite.json"), *option])
-    assert found.exit_code == 0, found.output
-    assert ("part of its PGA" in found.stderr) == (order is None)
+    result = CliRunner().invoke(app, [*command, *option])
+    assert ("part of its PGA" in json.loads(result.output)["warnings"][0]) == (order is None)
+    result = CliRunner().invoke(app, ["fragility", str(tmp_path / "suite.json"), *option])
+    assert result.exit_code == 0, result.output
+    assert ("part of its PGA" in result.stderr) == (order is None)

@@ -15,14 +15,14 @@ def test_an_object_has_the_restitution_of_its_name() -> None:
     body = Bodies.of([rocking_assessment.Object("a", width=0.3, height=1.2, restitution=TEXT)]).scaled()
     assert body.right.restitution == body.left.restitution == pytest.approx(eta)
     site = rocking_assessment.Site(pga=4.0, pgv=0.6, shapes=["sine", "ricker"])
-    named, stated, whole, momentum = (
+    named, numeric, full_share, momentum = (
         rocking_assessment.assess(
             rocking_assessment.Object("a", 0.3, 1.2, restitution=restitution), site, sensitivity=False
         ).rows
         for restitution in (TEXT, eta, "kalliontzis(k=1)", "momentum")
     )
-    assert named[0]["factor"] == pytest.approx(stated[0]["factor"], rel=1e-9)
-    assert whole == momentum
+    assert named[0]["factor"] == pytest.approx(numeric[0]["factor"], rel=1e-9)
+    assert full_share == momentum
 
 
 def test_a_table_takes_the_name(tmp_path) -> None:

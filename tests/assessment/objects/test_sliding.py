@@ -19,10 +19,8 @@ Array = NDArray[np.float64]
 def test_rectangular_pulse_in_closed_form() -> None:
     friction, peak, period = 0.2, 5.0, 0.6
     speed, resistance = peak * 0.5 * period, friction * STANDARD_GRAVITY
-    found = sliding_displacement(Motion("", as_pulse("rectangular"), peak, period, 0, peak), friction)
-    assert found == pytest.approx(
-        speed**2 / (2.0 * resistance) * (1.0 - resistance / peak), rel=1e-12
-    )  # Newmark (1965)
+    slip = sliding_displacement(Motion("", as_pulse("rectangular"), peak, period, 0, peak), friction)
+    assert slip == pytest.approx(speed**2 / (2.0 * resistance) * (1.0 - resistance / peak), rel=1e-12)  # Newmark (1965)
 
 
 def test_triangle_in_closed_form() -> None:
@@ -39,8 +37,8 @@ def test_mirrored_motion_slides_as_far_and_weak_motion_not_at_all() -> None:
     rng = np.random.default_rng(4)
     times, acceleration = np.arange(200) * 0.05, rng.normal(size=200)
     resistance = 0.5 + 0.3 * rng.random(200)
-    found = largest_slip(times, acceleration, resistance, 0.5)
-    assert largest_slip(times, -acceleration, resistance, 0.5) == found > 0.0
+    slip = largest_slip(times, acceleration, resistance, 0.5)
+    assert largest_slip(times, -acceleration, resistance, 0.5) == slip > 0.0
     assert largest_slip(times, acceleration, np.abs(acceleration).max() + resistance, 0.5) == 0.0
 
 
@@ -69,18 +67,18 @@ def test_linear_pieces_agree_with_small_steps(vertical: float) -> None:
     acceleration = 2.0 * rng.normal(size=(2, 60))
     upwards = np.maximum(vertical * acceleration[1], -0.95 * STANDARD_GRAVITY)
     record = Record(acceleration[0], 0.1, "m/s2", vertical=upwards)
-    found = sliding_displacement(Motion("", record, record.peak_acceleration, 1.0, 0, record.peak_acceleration), 0.07)
+    slip = sliding_displacement(Motion("", record, record.peak_acceleration, 1.0, 0, record.peak_acceleration), 0.07)
     resistance = 0.07 * (STANDARD_GRAVITY + upwards)
     expected = slip_by_small_steps(record.times, acceleration[0], resistance, 0.07 * STANDARD_GRAVITY)
-    assert found == pytest.approx(expected, rel=2e-3)
+    assert slip == pytest.approx(expected, rel=2e-3)
 
 
 def test_a_sampled_pulse_slides_as_the_record_of_its_samples() -> None:
     samples = [0.0, 3.0, -4.0, 2.0, -1.0, 0.0]
     record = Record(samples, 0.2, "m/s2")
     pulse = rocking.SampledPulse(samples)
-    found = [sliding_displacement(Motion("", motion, 4.0, 1.0, 0, 4.0), 0.1) for motion in (record, pulse)]
-    assert found[1] == pytest.approx(found[0], rel=1e-9)
+    slips = [sliding_displacement(Motion("", motion, 4.0, 1.0, 0, 4.0), 0.1) for motion in (record, pulse)]
+    assert slips[1] == pytest.approx(slips[0], rel=1e-9)
 
 
 def test_vertical_component_that_unloads_the_block_lets_it_slide_further() -> None:

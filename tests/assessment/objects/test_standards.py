@@ -22,13 +22,13 @@ SITE = rocking_assessment.Site(pga=4.0, records=[RECORD, WEAK])
 
 
 @pytest.fixture(scope="module")
-def found():
+def assessment():
     return rocking_assessment.assess(OBJECT, SITE, sensitivity=False, standards="all")
 
 
-def test_ratios_are_those_of_the_clauses_with_the_nearer_edge(found):
+def test_ratios_are_those_of_the_clauses_with_the_nearer_edge(assessment):
     """Without a table of spectra in between; both motions have the PGA of the site."""
-    row, (b, h), r = found.rows[0], (0.12, 0.8), np.hypot(0.3, 1.6) / np.sqrt(12)
+    row, (b, h), r = assessment.rows[0], (0.12, 0.8), np.hypot(0.3, 1.6) / np.sqrt(12)
     tilt = 4.0 / standards.west_acceleration(b, h)
     assert row["static_ratio"] == pytest.approx(tilt)
     assert row["circolare_linear_ratio"] == pytest.approx(tilt / 2)
@@ -87,20 +87,19 @@ def test_only_what_is_asked_for_is_stated():
             rocking_assessment.assess(OBJECT, SITE, standards=wrong)
 
 
-def test_report_and_command_state_them(found, tmp_path):
+def test_report_and_command_state_them(assessment, tmp_path):
     """Passes or fails beside the verdict; columns of the printed table."""
-    text = report_html(found, Project("", "", "", "", ""))
+    text = report_html(assessment, Project("", "", "", "", ""))
     for name, meaning in CLAUSES.items():
-        verdict = "passes" if found.rows[0][f"{name}_ratio"] < 1 else "fails"
+        verdict = "passes" if assessment.rows[0][f"{name}_ratio"] < 1 else "fails"
         row = rf"<td>{re.escape(meaning)}</td><td class=\"n\">[^<]+</td><td>{verdict}</td>"
         assert re.search(row, " ".join(text.split()))
     plain = rocking_assessment.assess(OBJECT, SITE, sensitivity=False)
     assert "demand over capacity" not in report_html(plain, Project("", "", "", "", ""))
     file = tmp_path / "one.csv"
     file.write_text("name,width [m],height [m],offset width [m]\nbust,0.3,1.6,0.03\n")
-    given = ["assess", str(file), "--pga", "3m/s2", "--pgv", "0.4m/s", "--no-sensitivity"]
-    given += ["--standards", "static,ishiyama"]
-    header = CliRunner().invoke(app, given).stdout.splitlines()[0].split()
-    assert header[-2:] == ["static", "ishiyama"]
-    said = json.loads(CliRunner().invoke(app, [*given, "--format=json"]).stdout)
-    assert said["static_ratio"] == [pytest.approx(3.0 / standards.west_acceleration(0.12, 0.8))]
+    command = ["assess", str(file), "--pga", "3m/s2", "--pgv", "0.4m/s", "--no-sensitivity"]
+    command += ["--standards", "static,ishiyama"]
+    assert "static ratio" in CliRunner().invoke(app, command).stdout
+    printed = json.loads(CliRunner().invoke(app, [*command, "--format=json"]).stdout)
+    assert printed["static_ratio"] == [pytest.approx(3.0 / standards.west_acceleration(0.12, 0.8))]

@@ -55,19 +55,19 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("name", "stated", "right"), STATED)
-def test_a_table_whose_layout_is_stated_is_read(name, stated, right):
-    table = read_objects(FIELD / name, **stated)
+@pytest.mark.parametrize(("name", "options", "right"), STATED)
+def test_a_table_whose_layout_is_stated_is_read(name, options, right):
+    table = read_objects(FIELD / name, **options)
     rows = [(obj.name, obj.width, obj.depth, obj.diameter, obj.height) for obj in table.objects]
     assert [row[0] for row in rows] == [row[0] for row in right]
     for row, expected in zip(rows, right, strict=True):
         assert row[1:] == tuple(pytest.approx(size) for size in expected[1:])
 
 
-@pytest.mark.parametrize(("name", "stated", "words"), REFUSED)
-def test_a_table_whose_layout_is_not_stated_is_refused_with_its_first_lines(name, stated, words):
+@pytest.mark.parametrize(("name", "options", "words"), REFUSED)
+def test_a_table_whose_layout_is_not_stated_is_refused_with_its_first_lines(name, options, words):
     with pytest.raises(TableFileError, match=words) as refusal:
-        read_objects(FIELD / name, **stated)
+        read_objects(FIELD / name, **options)
     assert f"line 1: {(FIELD / name).read_text().splitlines()[0]}" in str(refusal.value)
 
 
@@ -225,7 +225,7 @@ FOREIGN = {"width": "Breite", "height": "Höhe", "depth": "Tiefe"}
 @st.composite
 def layouts(draw):
     """A table of one object in a random layout: its text, what states it, and the sizes [m]."""
-    columns, stated, sizes = [], {}, {}
+    columns, names, sizes = [], {}, {}
     decimal, delimiter = draw(st.sampled_from([(".", ","), (".", ";"), (",", ";"), (",", "\t"), (".", "\t")]))
     for name, (low, high) in SIZES.items():
         unit = draw(st.sampled_from(["m", "cm", "mm", "in", "ft"]))
@@ -237,7 +237,7 @@ def layouts(draw):
         brackets = draw(st.sampled_from(["[{}]", "({})"])).format(unit)
         header = (FOREIGN[name] if is_foreign else canonical) + ("" if in_cell else f" {brackets}")
         if is_foreign:
-            stated[header] = name
+            names[header] = name
         columns.append((header, number.replace(".", decimal) + (f" {unit}" if in_cell else "")))
     extra = draw(st.lists(st.sampled_from(["12", "3,5", "a; b", 'say "no"', "", "40 cm"]), max_size=3))
     columns += [(f"extra {number}", cell) for number, cell in enumerate(extra)]
@@ -245,21 +245,21 @@ def layouts(draw):
     text = io.StringIO()
     quoting = draw(st.sampled_from([csv.QUOTE_MINIMAL, csv.QUOTE_ALL]))
     csv.writer(text, delimiter=delimiter, quoting=quoting).writerows(zip(*columns, strict=True))
-    return text.getvalue(), TableLayout(columns=stated, decimal=decimal, delimiter=delimiter), sizes
+    return text.getvalue(), TableLayout(columns=names, decimal=decimal, delimiter=delimiter), sizes
 
 
 @settings(max_examples=150, deadline=None)
 @given(layouts())
 def test_a_random_layout_is_read_right_when_stated_and_never_read_differently_when_not(layout):
-    text, stated, sizes = layout
-    for known in (stated, TableLayout(), TableLayout(columns=stated.columns), TableLayout(decimal=stated.decimal)):
+    text, full, sizes = layout
+    for partial in (full, TableLayout(), TableLayout(columns=full.columns), TableLayout(decimal=full.decimal)):
         try:
-            objects = objects_of_csv(text, layout=known).objects
+            objects = objects_of_csv(text, layout=partial).objects
         except InvalidArgumentError:
             objects = []
         usual = all(0.01 <= size <= 50.0 for size in sizes.values())
-        if known is stated and usual:
-            assert len(objects) == 1, objects_of_csv(text, layout=known).bad_rows
+        if partial is full and usual:
+            assert len(objects) == 1, objects_of_csv(text, layout=partial).bad_rows
         for obj in objects:
             assert obj.width == pytest.approx(sizes["width"], rel=1e-12)
             assert obj.height == pytest.approx(sizes["height"], rel=1e-12)

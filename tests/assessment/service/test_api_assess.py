@@ -48,10 +48,10 @@ def test_a_row_has_the_declared_columns():
 def test_records_hazard_and_floor_are_those_of_a_direct_call(client):
     times = 0.05 * np.arange(60)
     x, y, z = np.sin(4 * times), np.cos(3 * times), 0.2 * np.sin(9 * times)
-    about = {"time_step": 0.05, "unit": "m/s2"}
-    pair = {"acceleration": x.tolist(), "second": y.tolist(), "vertical": z.tolist(), "name": "A", **about}
+    layout = {"time_step": 0.05, "unit": "m/s2"}
+    pair = {"acceleration": x.tolist(), "second": y.tolist(), "vertical": z.tolist(), "name": "A", **layout}
     curve = {"intensity": [0.5, 3.0, 9.0], "annual_rate": [1e-2, 1e-3, 1e-5]}
-    body = {"objects": ROWS[1:], "records": [pair, {"acceleration": y.tolist(), **about}], "hazard": curve}
+    body = {"objects": ROWS[1:], "records": [pair, {"acceleration": y.tolist(), **layout}], "hazard": curve}
     site = {"pga": "2 m/s2", "shapes": "sine", "floor_periods": "0.5,0.1", "floor_participation": "1.2,-0.2"}
     answer = client.post("/v1/assess", json=body | site | {"sensitivity": False, "samples": 8, "seed": 3})
     assert answer.status_code == 200, answer.text
@@ -78,8 +78,8 @@ def test_a_layout_is_stated_in_the_query(client):
     table = "Objekt;Breite (cm);height [cm]\nVase;20,5;60\n"
     refused = assert_problem(post(client, URL, table, CSV), 422, "objects")
     assert "line 2: Vase;20,5;60" in refused["detail"]
-    stated = f"{URL}&decimal=,&columns=Breite (cm)=width [cm]&columns=Objekt=name"
-    answer = post(client, stated, table, CSV, format="json").json()
+    address = f"{URL}&decimal=,&columns=Breite (cm)=width [cm]&columns=Objekt=name"
+    answer = post(client, address, table, CSV, format="json").json()
     assert answer["columns"] == {"Objekt": "name", "Breite (cm)": "width [cm]", "height [cm]": "height [cm]"}
     assert [row["object"] for row in answer["rows"]] == ["Vase"]
     assert_problem(post(client, f"{URL}&columns=width", table, CSV), 422, "columns")
@@ -122,9 +122,14 @@ def test_bad_rows_of_a_table_are_named_and_the_others_assessed(client):
     assert [row["verdict"] for row in rows] == [row["verdict"] for row in answer["rows"]] + ["not read"]
     assert float(rows[0]["factor"]) == answer["rows"][0]["factor"]
     assert rows[-1]["object"] == "row 3"
-    given = list(csv.DictReader(io.StringIO(TABLE)))
-    assert list(rows[0])[: len(given[0])] == list(given[0])  # as they stand, also those that are not read
-    assert [{name: row.pop(name) for name in given[0]} for row in rows] == [given[2], given[0], given[0], given[1]]
+    inventory = list(csv.DictReader(io.StringIO(TABLE)))
+    assert list(rows[0])[: len(inventory[0])] == list(inventory[0])  # as they stand, also those that are not read
+    assert [{name: row.pop(name) for name in inventory[0]} for row in rows] == [
+        inventory[2],
+        inventory[0],
+        inventory[0],
+        inventory[1],
+    ]
     assert answer["details"]["colour"] == ["", "red", "red"]
     accepted = client.post(f"{URL}&format=csv", json=ROWS)
     assert list(csv.DictReader(io.StringIO(accepted.text))) == rows[:-1]

@@ -50,8 +50,8 @@ def test_rotations_of_csv_are_in_the_unit_of_the_header(client, trace):
     body = as_csv(trace, 180 / math.pi, "time [s],rotation [deg]")
     expected = client.post(URL, json=trace).json()["alpha"]
     other = as_csv(trace, 180 / math.pi, "t,roll")
-    stated = {"rotation": "roll", "unit": "deg", "time": "t", "time_unit": "s"}
-    for content, query in ((body, {}), (body, {"unit": "deg"}), (other, stated)):
+    layout = {"rotation": "roll", "unit": "deg", "time": "t", "time_unit": "s"}
+    for content, query in ((body, {}), (body, {"unit": "deg"}), (other, layout)):
         (row,) = csv.DictReader(io.StringIO(post(client, URL, content, CSV, **query).text))
         assert float(row["alpha"]) == pytest.approx(expected[0], rel=1e-6)
     problem = assert_problem(post(client, URL, other, CSV), 422, "record")
@@ -64,9 +64,9 @@ def test_frames_are_no_times(client):
     problem = assert_problem(client.post("/v1/identify", content=body, headers=headers), 422)
     assert "found frame, rotation [deg]" in problem["detail"]
     assert "`time_step`" in problem["detail"]
-    found = client.post(
+    response = client.post(
         "/v1/identify", params={"time_step": 1.0 / 60.0, "format": "json"}, content=body, headers=headers
     ).json()
-    assert found["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]
+    assert response["frequency_parameter"] == [pytest.approx(2.5, rel=0.01)]
     json = client.post(URL, json={"time": [*range(20)], "rotation": [0.1] * 20, "time_step": 0.01})
     assert assert_problem(json, 422)["parameter"] == "time_step"

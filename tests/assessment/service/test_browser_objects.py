@@ -53,8 +53,8 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
     page = open_page("/objects", **PHONE)
     row = page.locator("#ranking tbody tr").first
     cells = [row.locator(f"> :nth-child({k})").bounding_box() for k in range(2, 11)]
-    assert all(one["x"] >= 0 and one["x"] + one["width"] <= 390 for one in cells)
-    tops = [one["y"] for one in cells]
+    assert all(box["x"] >= 0 and box["x"] + box["width"] <= 390 for box in cells)
+    tops = [box["y"] for box in cells]
     assert tops == sorted(tops)  # name, verdict and factor first
     page.locator("#file").set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": TABLE.encode()})
     expect(page.locator("#preview-caption")).to_have_text("2 rows would be read, 1 not.")
@@ -89,8 +89,8 @@ def test_files_are_read_and_their_mistakes_mended_in_place_on_a_phone(open_page)
     assert page.locator("#ranking tbody th .small").all_inner_texts() == ["007", "008"]
     with page.expect_download() as download:
         page.get_by_role("button", name="Download XLSX").tap()
-    written = rows_of_sheet(download.value.path().read_bytes(), "table")
-    assert [row[3] for row in written[1:]] == ["55.125", "40"]
+    saved = rows_of_sheet(download.value.path().read_bytes(), "table")
+    assert [row[3] for row in saved[1:]] == ["55.125", "40"]
     with page.expect_download() as download:
         page.get_by_role("button", name="Download CSV").tap()
     assert [line.split(",")[1] for line in download.value.path().read_text().splitlines()[1:]] == ["vase", "jug"]
@@ -123,15 +123,15 @@ def test_of_many_rows_those_that_are_seen_are_laid_out(open_page, service):
     assert page.locator("#ranking tbody tr").count() == 200  # what is not seen is not laid out
 
 
-def lowest_of(one):
-    found = rocking_assessment.assess(
-        one, rocking_assessment.Site(pga="0.3 g", pgv="30 cm/s"), sensitivity=False
+def lowest_of(obj):
+    assessment = rocking_assessment.assess(
+        obj, rocking_assessment.Site(pga="0.3 g", pgv="30 cm/s"), sensitivity=False
     ).directions()
-    return float(found["factor"].min())
+    return float(assessment["factor"].min())
 
 
-def expect_answer(page, direction, one):
-    words = re.compile(re.escape(f"Worst direction: {direction}. From {lowest_of(one):.3g} times"))
+def expect_answer(page, direction, obj):
+    words = re.compile(re.escape(f"Worst direction: {direction}. From {lowest_of(obj):.3g} times"))
     expect(page.locator("#worst")).to_have_text(words)
     expect(page.locator(".dial svg")).to_be_visible()
 
@@ -142,11 +142,11 @@ def test_in_which_direction_does_an_object_overturn_by_keyboard(open_page):
     for name, value in {"width": "60", "depth": "22", "offset_depth": "3"}.items():
         hand.write(f"#{name}", value)
     hand.press("#ask")
-    given = rocking_assessment.Object("one", width=0.6, depth=0.22, height=1.6, offset_depth=0.03)
-    expect_answer(page, "270°", given)
+    obj = rocking_assessment.Object("one", width=0.6, depth=0.22, height=1.6, offset_depth=0.03)
+    expect_answer(page, "270°", obj)
     assert query(page)["offset_depth"] == "3"
     page.reload()
-    expect_answer(page, "270°", given)
+    expect_answer(page, "270°", obj)
     hand = Keyboard(page)
     hand.press("details summary")
     expect(page.locator("#factors tr", has_text="worst")).to_contain_text("270°")
@@ -155,7 +155,7 @@ def test_in_which_direction_does_an_object_overturn_by_keyboard(open_page):
     hand.press("#ask")
     expect(page.locator("#height-problem")).to_contain_text("allowed")
     page.go_back()
-    expect_answer(page, "270°", given)
+    expect_answer(page, "270°", obj)
 
 
 def test_an_outline_is_drawn_on_a_phone(open_page):
@@ -167,7 +167,7 @@ def test_an_outline_is_drawn_on_a_phone(open_page):
     expect(page.locator("#vertices")).to_have_value("")
     for x, y in [*corners, (150, 150)]:
         drawing.scroll_into_view_if_needed()
-        place = page.evaluate(
+        point = page.evaluate(
             """([x, y]) => {
                 const drawing = document.getElementById("drawing");
                 const found = new DOMPoint(x, -y).matrixTransform(drawing.getScreenCTM());
@@ -175,7 +175,7 @@ def test_an_outline_is_drawn_on_a_phone(open_page):
             }""",
             [x, y],
         )
-        page.touchscreen.tap(*place)
+        page.touchscreen.tap(*point)
     expect(page.locator("#drawing circle")).to_have_count(6)
     hand.press("#undo")
     expect(page.locator("#drawing circle")).to_have_count(5)
@@ -279,21 +279,21 @@ def test_a_foreign_table_is_read_as_a_person_states_it(open_page, tmp_path, name
     expect(page.locator("#ranking")).to_have_count(0)  # nothing is assessed before it is confirmed
     page.locator("#ask").click()
     expect(page.locator("#count")).to_have_text(f"{len(expected)} of {len(expected)} objects")
-    shown = dict(zip(page.locator("#ranking tbody th a").all_inner_texts(), column(page, 4), strict=True))
+    by_name = dict(zip(page.locator("#ranking tbody th a").all_inner_texts(), column(page, 4), strict=True))
     objects = [rocking_assessment.Object(text, width=w, depth=d, height=h) for text, w, d, h in expected]
     site = rocking_assessment.Site(pga="0.3 g", pgv="30 cm/s")
     rows = rocking_assessment.assess(objects, site, sensitivity=False).rows
     for text, *_ in expected:
         factors = [row["factor"] for row in rows if row["object"] == text and row["factor"] is not None]
-        assert shown[text].startswith(f"{min(factors):.3g}" if factors else "above")
+        assert by_name[text].startswith(f"{min(factors):.3g}" if factors else "above")
 
     words = shlex.split(page.locator("#command").inner_text())
     (tmp_path / name).write_bytes(for_command)
     words = [str(tmp_path / word) if word == name else word for word in words[1:]]
     printed = CliRunner().invoke(app, [*words, "--no-sensitivity", "--format=json"])
-    found = json.loads(printed.stdout)
-    assert found["object"] == [row["object"] for row in rows]
-    assert found["factor"] == [row["factor"] for row in rows]
+    assessed = json.loads(printed.stdout)
+    assert assessed["object"] == [row["object"] for row in rows]
+    assert assessed["factor"] == [row["factor"] for row in rows]
 
     page.goto(page.url)
     expect(page.locator("#preview-status")).to_contain_text("choose the file")

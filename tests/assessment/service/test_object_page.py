@@ -26,9 +26,9 @@ BUST = {"shape": "rectangle", "name": "<b>bust</b>", "width": "38", "depth": "25
 OUTLINE = "0, 0\n30, 0\n30 100; 10 120\n0, 100"
 
 
-def directions_of(one):
+def directions_of(obj):
     return rocking_assessment.assess(
-        one, rocking_assessment.Site(pga="0.3 g", pgv="30 cm/s"), sensitivity=False
+        obj, rocking_assessment.Site(pga="0.3 g", pgv="30 cm/s"), sensitivity=False
     ).directions()
 
 
@@ -38,12 +38,12 @@ def table(text):
     return [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr>(.*?)</tr>", body)]
 
 
-def assert_table_of(text, found):
+def assert_table_of(text, factors):
     rows = table(text)
-    assert [float(re.match(r"[\d.]+", row[0])[0]) for row in rows] == found["direction"].values.tolist()
-    for row, factor in zip(rows, found["factor"].values, strict=True):
+    assert [float(re.match(r"[\d.]+", row[0])[0]) for row in rows] == factors["direction"].values.tolist()
+    for row, factor in zip(rows, factors["factor"].values, strict=True):
         assert row[1] == ("above 10" if np.isnan(factor) else f"{factor:.3g}")
-    assert [float(re.match(r"[\d.]+", row[0])[0]) for row in rows if "worst" in row[0]] == worst_directions(found)
+    assert [float(re.match(r"[\d.]+", row[0])[0]) for row in rows if "worst" in row[0]] == worst_directions(factors)
 
 
 def posted(client, content, name, **fields):
@@ -60,28 +60,28 @@ def slab():
 
 def test_factors_are_those_of_the_package_and_the_worst_is_marked(client):
     text = client.get("/object", params=BUST | SITE).text
-    found = directions_of(rocking_assessment.Object("bust", width=0.38, depth=0.25, height=1.2, offset_width=0.05))
-    assert_table_of(text, found)
-    (worst,) = worst_directions(found)
+    factors = directions_of(rocking_assessment.Object("bust", width=0.38, depth=0.25, height=1.2, offset_width=0.05))
+    assert_table_of(text, factors)
+    (worst,) = worst_directions(factors)
     assert f"Worst direction: {worst:g}°" in re.search(r'id="worst">(.*?)<', text)[1]
     assert text.count('class="diamond"') == 1
-    full = found["at_full_strength"].sel(direction=worst).item()
+    full = factors["at_full_strength"].sel(direction=worst).item()
     assert ("overturns it at full strength" in text) == full
     assert "&lt;b&gt;bust&lt;/b&gt; at 0.3 g" in text
     assert "<b>" not in text
 
 
 def test_a_missing_depth_is_said(client):
-    asked = {"shape": "rectangle", "width": "85", "height": "170"}
-    assert "Depth missing: measure the depth." in client.get("/object", params=asked | SITE).text
-    assert "Depth missing" not in client.get("/object", params=asked | {"depth": "60"} | SITE).text
+    query = {"shape": "rectangle", "width": "85", "height": "170"}
+    assert "Depth missing: measure the depth." in client.get("/object", params=query | SITE).text
+    assert "Depth missing" not in client.get("/object", params=query | {"depth": "60"} | SITE).text
     table = "name,width [m],height [m]\nshelf,0.85,1.7\n"
     text = client.post("/objects", data={"table": table, **SITE}).text
     assert re.search(r'verdict-2">depth missing<', text)
     assert ">measure the depth<" in text
     headers = {"Content-Type": "text/csv"}
-    asked = {"pga": 3.0, "pgv": 0.3, "format": "json"}
-    answer = client.post("/v1/assess", params=asked, content=table, headers=headers).json()
+    query = {"pga": 3.0, "pgv": 0.3, "format": "json"}
+    answer = client.post("/v1/assess", params=query, content=table, headers=headers).json()
     assert answer["rows"][0]["verdict"] == "depth missing"
 
 
@@ -96,9 +96,9 @@ def test_round_bases_and_outlines(client):
 
 
 def test_each_row_of_the_table_of_objects_leads_to_its_directions(client):
-    given = {"table": "name;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
-    text = client.post("/objects", data=given | FLOOR).text
-    (address,) = (unescape(one) for one in re.findall(r'href="(/object\?[^"]*)"', text))
+    form = {"table": "name;width [cm];depth [cm];height [cm];restitution\nvase & jug;22.5;18;55;0.9\n", **SITE}
+    text = client.post("/objects", data=form | FLOOR).text
+    (address,) = (unescape(link) for link in re.findall(r'href="(/object\?[^"]*)"', text))
     fields = dict(parse_qsl(urlsplit(address).query, keep_blank_values=True))
     assert (fields["name"], fields["width"], fields["restitution"]) == ("vase & jug", "22.5", "0.9")
     page = client.get(address).text
@@ -202,11 +202,11 @@ def test_meshes_of_other_formats_units_and_sizes_are_refused(client, slab):
 
 
 def test_a_pga_suffices_with_periods_and_an_empty_pgv_is_asked_for_with_a_usual_value(client):
-    given = {"shape": "rectangle", "width": "40", "height": "160", "pga": "0.3", "pga_unit": "g", "pgv": ""}
-    page = client.get("/object", params=given)
+    form = {"shape": "rectangle", "width": "40", "height": "160", "pga": "0.3", "pga_unit": "g", "pgv": ""}
+    page = client.get("/object", params=form)
     assert page.status_code == 422
     assert "pgv is missing; needed: a number, usually about 100 cm/s for each g of PGA" in unescape(page.text)
-    assert client.get("/object", params=given | {"period_min": "0.2"}).status_code == 422
-    page = client.get("/object", params=given | {"period_min": "0.2", "period_max": "0,4"})
+    assert client.get("/object", params=form | {"period_min": "0.2"}).status_code == 422
+    page = client.get("/object", params=form | {"period_min": "0.2", "period_max": "0,4"})
     assert page.status_code == 200
     assert "0.3 g and periods from 0.2 to 0,4 s" in page.text

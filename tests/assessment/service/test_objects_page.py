@@ -28,7 +28,7 @@ def text(client):
 
 
 @pytest.fixture(scope="module")
-def found():
+def assessment():
     return rocking_assessment.assess(
         [
             rocking_assessment.Object("vase", width=0.22, height=0.55),
@@ -41,13 +41,13 @@ def found():
 def cell(row, name, scale):
     label = {"factor": "Overturns from factor", "smallest_width": "Base needed [cm]"}[name]
     start = f'<td data-value="{row[name]}" data-label="{label}">'
-    shown = f"{scale * row[name]:.3g}" if name == "factor" else f"{_rounded_up(row[name]) * scale:.3g}"
-    return start + shown
+    text = f"{scale * row[name]:.3g}" if name == "factor" else f"{_rounded_up(row[name]) * scale:.3g}"
+    return start + text
 
 
-def test_rows_are_those_of_the_package_the_worst_first(text, found):
+def test_rows_are_those_of_the_package_the_worst_first(text, assessment):
     assert re.findall(r'<th scope="row"><a [^>]*>(.*?)</a>', text) == ["&lt;b&gt;slab&lt;/b&gt;", "vase"]
-    for row in found.rows:
+    for row in assessment.rows:
         assert f'<span class="badge verdict-{VERDICTS.index(row["verdict"])}">{row["verdict"]}</span>' in text
         assert cell(row, "factor", 1) in text
         assert cell(row, "smallest_width", 100) in text
@@ -73,12 +73,12 @@ def table_of(text):
 
 
 def test_rows_are_those_of_the_table_whatever_ends_a_line(client):
-    given = {"table": "".join(ROWS), **SITE}
-    text = client.post("/objects", data=given).text
+    form = {"table": "".join(ROWS), **SITE}
+    text = client.post("/objects", data=form).text
     assert re.findall(r'name="cell-(\d-\d)"', text) == ["5-1", "6-2", "8-1"]
     assert "wide" in re.search(r'id="reason-5">(.*?)</p>', text)[1]
     assert table_of(text) == "".join(ROWS)
-    text = client.post("/objects", data=given | {"cell-5-1": "20", "cell-6-2": "60", "cell-8-1": "9"}).text
+    text = client.post("/objects", data=form | {"cell-5-1": "20", "cell-6-2": "60", "cell-8-1": "9"}).text
     assert "were not read" not in text
     mended = [*ROWS[:4], "jug;20;40;a\x0cb\u2028c\r\n", '"slab\n2";5;60;\n', ROWS[6], "cup;9;9;"]
     assert table_of(text) == "".join(mended)
@@ -92,10 +92,10 @@ def test_a_row_with_too_many_cells_is_mended_as_a_line(client):
 
 
 def test_fields_of_the_form_are_limited(client):
-    given = {"table": TABLE, **SITE}
+    form = {"table": TABLE, **SITE}
     many = {f"line-{number}": "" for number in range(100, 200)}
-    assert_problem(client.post("/objects", data=given | many), 413, "form")
-    assert_problem(client.post("/objects", data=given | {"table": "a" * (objects_page.MAX_BODY + 1)}), 413, "table")
+    assert_problem(client.post("/objects", data=form | many), 413, "form")
+    assert_problem(client.post("/objects", data=form | {"table": "a" * (objects_page.MAX_BODY + 1)}), 413, "table")
 
 
 def test_escapes_of_a_form_take_little_memory(monkeypatch):
@@ -111,13 +111,13 @@ def test_escapes_of_a_form_take_little_memory(monkeypatch):
         assert objects_page._fields(urlencode({"table": text}).encode(), StopFlag())["table"] == text
 
 
-def test_report_and_csv_are_those_of_the_package(client, found):
-    given = {"table": TABLE, **SITE}
-    report = client.post("/objects/report", data=given | {"pga": " 0,3", "pgv": "3e1"})
+def test_report_and_csv_are_those_of_the_package(client, assessment):
+    form = {"table": TABLE, **SITE}
+    report = client.post("/objects/report", data=form | {"pga": " 0,3", "pgv": "3e1"})
     assert "default-src 'none'" in report.headers["content-security-policy"]
-    assert f"{found.rows[0]['factor']:.3g}" in report.text
+    assert f"{assessment.rows[0]['factor']:.3g}" in report.text
     assert "rocking assess TABLE --pga 0.3g --pgv 3e1cm/s" in report.text
-    table = client.post("/objects/assessment.csv", data=given)
+    table = client.post("/objects/assessment.csv", data=form)
     assert "attachment" in table.headers["content-disposition"]
     assert table.text.count("not read") == 1
 
@@ -131,18 +131,18 @@ def test_an_error_names_its_field(client):
 
 def test_a_preview_shows_what_would_be_read(client):
     table = "List of 2026\nName;Breite (cm);Höhe;Material\nvase;22,5;55 cm;clay\njug;wide;40 cm;clay\n"
-    found = client.post("/objects/preview", data={"table": table, **SITE}).json()
-    assert (found["objects"], found["missing"]) == (0, ["width or diameter", "height or mass_height"])
-    stated = {"skip": "1", "decimal": ",", "columns": "Breite (cm)=width [cm]\nHöhe=height", "table_name": "a b.csv"}
-    found = client.post("/objects/preview", data={"table": table, **SITE, **stated}).json()
-    assert found["labels"] == ["Name", "Breite (cm)", "Höhe", "Material"]
-    assert (found["named"], found["units"]["Breite (cm)"]) == ({"Name": "name"}, {"m": "cm"})
-    assert [line["number"] for line in found["lines"]] == [1, 2, 3, 4]
-    assert (found["names_line"], found["missing"], found["problem"]) == (2, [], None)
-    assert found["first"] == [{"name": "vase", "bases": {"width": 0.225}, "height": 0.55}]
-    assert (found["objects"], found["bad_rows"], found["skipped"]) == (1, 1, ["Material"])
+    preview = client.post("/objects/preview", data={"table": table, **SITE}).json()
+    assert (preview["objects"], preview["missing"]) == (0, ["width or diameter", "height or mass_height"])
+    layout = {"skip": "1", "decimal": ",", "columns": "Breite (cm)=width [cm]\nHöhe=height", "table_name": "a b.csv"}
+    preview = client.post("/objects/preview", data={"table": table, **SITE, **layout}).json()
+    assert preview["labels"] == ["Name", "Breite (cm)", "Höhe", "Material"]
+    assert (preview["named"], preview["units"]["Breite (cm)"]) == ({"Name": "name"}, {"m": "cm"})
+    assert [line["number"] for line in preview["lines"]] == [1, 2, 3, 4]
+    assert (preview["names_line"], preview["missing"], preview["problem"]) == (2, [], None)
+    assert preview["first"] == [{"name": "vase", "bases": {"width": 0.225}, "height": 0.55}]
+    assert (preview["objects"], preview["bad_rows"], preview["skipped"]) == (1, 1, ["Material"])
     words = ["--columns", "Breite (cm)=width [cm]", "--columns", "Höhe=height", "--decimal", ",", "--skip", "1"]
-    assert found["command"] == ["rocking", "assess", "a b.csv", "--pga", "0.3g", "--pgv", "30cm/s", *words]
+    assert preview["command"] == ["rocking", "assess", "a b.csv", "--pga", "0.3g", "--pgv", "30cm/s", *words]
     unclosed = client.post("/objects/preview", data={"table": 'name;width [cm];height [cm]\n"vase;2;3', **SITE}).json()
     assert unclosed["problem"]["line"] == 2
     assert unclosed["lines"][1] == {"number": 2, "text": '"vase;2;3', "cells": []}
@@ -184,10 +184,10 @@ def test_sheets_need_their_package(client, monkeypatch):
 ON_FLOOR = {"table": TABLE, **SITE, "floor_periods": "0.5, 0.2", "floor_participation": "1.3,-0.3"}
 
 
-def test_the_floor_of_the_form_is_that_of_the_assessment(client, found, monkeypatch):
+def test_the_floor_of_the_form_is_that_of_the_assessment(client, assessment, monkeypatch):
     """On a floor an assessment takes ten seconds; here another one takes its place."""
     sites = []
-    monkeypatch.setattr(objects_page, "assess", lambda _, site, **__: sites.append(site) or found)
+    monkeypatch.setattr(objects_page, "assess", lambda _, site, **__: sites.append(site) or assessment)
     text = client.post("/objects", data=ON_FLOOR).text
     assert "on a floor of a building of 0.5, 0.2 s</h2>" in text
     command = "rocking assess TABLE --pga 0.3g --pgv 30cm/s --floor 0.5s,0.2s --floor-participation 1.3,-0.3"

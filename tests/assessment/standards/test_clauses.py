@@ -48,12 +48,12 @@ def test_asce43_angle_and_sliding_are_where_demand_meets_capacity() -> None:
     b, h = 0.2, 0.8
     damping = float(standards.asce43_effective_damping(b, h))
     for v in (0.3, 0.7):
-        found = standards.asce43_rocking_angle(of_velocity(v), b, h)
+        angle = standards.asce43_rocking_angle(of_velocity(v), b, h)
         # v omega (1 - beta) = 2 g f1/theta with omega^2 = 2 g f1/(C3 theta^2 h): f1 = v^2 (1 - beta)^2/(2 g C3 h)
         rise = (v * (1 - damping)) ** 2 / (2 * G * 4 / 3 * (1 + (b / h) ** 2) * h)
-        assert np.cos(found) + b / h * np.sin(found) - 1 == pytest.approx(rise, rel=1e-9)
-    more = standards.asce43_rocking_angle(of_velocity(0.3), b, h, vertical_spectrum=of_velocity(0.6))
-    assert more > standards.asce43_rocking_angle(of_velocity(0.3), b, h)
+        assert np.cos(angle) + b / h * np.sin(angle) - 1 == pytest.approx(rise, rel=1e-9)
+    with_vertical = standards.asce43_rocking_angle(of_velocity(0.3), b, h, vertical_spectrum=of_velocity(0.6))
+    assert with_vertical > standards.asce43_rocking_angle(of_velocity(0.3), b, h)
     assert standards.asce43_rocking_angle(lambda f, _: 0.5 * f**0, b, h) == 0.0
     assert np.isnan(standards.asce43_rocking_angle(lambda f, _: 50 * f**0, b, h))
     slope, mu = 0.4, 0.3 * (1 - 0.4 * 0.2)
@@ -74,9 +74,9 @@ def test_ishiyama_is_a_share_of_the_sudden_stop(b: float, h: float, r: float | N
         return 0.5 * inertia * (v * h / inertia) ** 2 - G * (radius - h)  # energy beyond the balance, per mass
 
     stop = brentq(left, 0.0, 100.0, xtol=1e-13)
-    found = standards.ishiyama_velocity(b, h, r)
-    assert found == pytest.approx(0.4 * stop, rel=1e-9)
-    pga, pgv = [2 * G, 0.9 * G * b / h, 2 * G], [0.99 * found, 9.0, 1.01 * found]
+    velocity = standards.ishiyama_velocity(b, h, r)
+    assert velocity == pytest.approx(0.4 * stop, rel=1e-9)
+    pga, pgv = [2 * G, 0.9 * G * b / h, 2 * G], [0.99 * velocity, 9.0, 1.01 * velocity]
     assert standards.ishiyama_check(pga, pgv, b, h, r).tolist() == [True, True, False]
 
 
@@ -127,8 +127,8 @@ def test_circolare2019_follows_the_statics_of_the_displaced_block(b: float, h: f
     for theta in np.array([0.0, 0.2, 0.5, 0.9]) * np.arctan2(b, h):
         turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
         x, y = turn @ [-b, h]  # centre of mass from the edge, after a rotation towards it
-        found = standards.circolare2019_capacity(x + b, b, h, confidence_factor=1.35)
-        assert found == pytest.approx(G * -x / y / 1.35, rel=1e-12)
+        capacity = standards.circolare2019_capacity(x + b, b, h, confidence_factor=1.35)
+        assert capacity == pytest.approx(G * -x / y / 1.35, rel=1e-12)
     assert standards.circolare2019_activation(b, h) == pytest.approx(standards.circolare2019_capacity(0.0, b, h))
     for state, share, factor in (("SLV", 0.4, 0.84), ("SLC", 0.6, 0.78)):
         limit = standards.circolare2019_displacement_capacity(b, state)
