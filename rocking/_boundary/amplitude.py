@@ -60,7 +60,7 @@ class Thresholds(EqualByValue):
     impacts: NDArray[np.int32]
 
     def __repr__(self) -> str:
-        """The changes of outcome in words."""
+        """Return the changes of outcome in words."""
         changes = []
         for amplitude, above in zip(self.amplitude.tolist(), self.overturns_above.tolist(), strict=True):
             changes.append(f"{'overturns' if above else 'survives'} above a = {amplitude:.6g}")

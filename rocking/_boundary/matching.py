@@ -26,7 +26,7 @@ columns have one threshold of its kind only [-]."""
 NEAR = 0.3  # two thresholds this share of the distance to the next one apart can belong to one curve only [-]
 
 PAIR, LEFT_ALONE, RIGHT_ALONE = range(3)
-"""What the next thresholds of two columns do: they belong to one curve, or one of them has no partner."""
+"""Choices for the next thresholds of two columns: they belong to one curve, or one of them has no partner."""
 
 STRAIGHT = 0.05
 """Two chords between equal regions belong to one curve if their slopes differ by less than this [-]."""

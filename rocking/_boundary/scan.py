@@ -279,7 +279,7 @@ class _Search:
             np.minimum.at(self.first, *self.hits)
 
     def settled(self) -> Bools:
-        """Whether a strength is known that is low enough."""
+        """Return True for lines with a strength that is low enough."""
         return np.asarray(self.first <= self.enough)
 
     def lowest(self, highest: Array) -> Array:

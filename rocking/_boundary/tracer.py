@@ -31,7 +31,8 @@ times the work.
 """
 
 LAYERED = 3.5
-"""The same holds if the nodes of a line show, on average, more ends of regions of many impacts than this [-].
+"""Ends of regions of many impacts that the nodes of a line show on average, above which these are resolved less
+finely, too [-].
 
 Under the pulse c2 surviving bands divide such a region, each with thinner ones beside it, down to the finest scale.
 """

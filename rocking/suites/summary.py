@@ -38,7 +38,7 @@ def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
 
 
 def rotation_quantiles(outcomes: xr.Dataset) -> xr.DataArray:
-    """The peak rotation |theta|/alpha that a share of the records does not exceed, at each level: (quantile, block,
+    """Return the peak rotation |theta|/alpha that a share of the records does not exceed, at each level: (quantile, block,
     intensity).
 
     A record that overturns the block exceeds every rotation: nan where too many do. A quantile is the smallest peak of
