@@ -7,6 +7,8 @@ from ._base.errors import RockingError as RockingError
 from ._base.errors import StoppedError as StoppedError
 from ._base.installation import __version__ as __version__
 from ._boundary.amplitude import thresholds as thresholds
+from ._boundary.restraints import SavingRestraint as SavingRestraint
+from ._boundary.restraints import saving_restraint as saving_restraint
 from ._boundary.tracing import overturning_boundary as overturning_boundary
 from ._dimensional.block import Block as Block
 from ._dimensional.body_kinds import body as body

@@ -100,6 +100,8 @@ from ._dimensional.problem import search_range as search_range
 from ._dimensional.response import respond as respond
 from ._dimensional.rigid_body import RigidBody as RigidBody
 from ._dimensional.table import SIZES as SIZES
+from ._dimensional.table_preview import TablePreview as TablePreview
+from ._dimensional.table_preview import preview_table as preview_table
 from ._dimensional.table_reader import MAX_CHARACTERS as MAX_CHARACTERS
 from ._dimensional.table_reader import SHEETS as SHEETS
 from ._dimensional.table_reader import BadRow as BadRow
@@ -133,6 +135,7 @@ from ._excitation.records.pair import PAIR_ANGLES as PAIR_ANGLES
 from ._excitation.records.pair import checked_pair as checked_pair
 from ._excitation.records.pair import rotated as rotated
 from ._excitation.records.readers.columns import read_rotations as read_rotations
+from ._excitation.records.readers.preview import PreviewLine as PreviewLine
 from ._excitation.records.readers.read_record import read_record as read_record
 from ._excitation.records.readers.text_file import TextFile as TextFile
 from ._excitation.records.record import Record as Record

@@ -33,7 +33,16 @@ TERMS = Path(__file__).parent / "data" / "notation.txt"
 """Names, term, symbol, unit and where defined; of a declared quantity the names and where. Names that differ between
 interfaces: those of Python, of the command line, of HTTP and of columns."""
 
-RETURNED = {"BodyResponse", "InvalidArgumentError", "Outcome", "PulseFit", "Response", "RockingError", "StoppedError"}
+RETURNED = {
+    "BodyResponse",
+    "InvalidArgumentError",
+    "Outcome",
+    "PulseFit",
+    "Response",
+    "RockingError",
+    "SavingRestraint",
+    "StoppedError",
+}
 """Classes that functions return or raise."""
 
 PICTURES = {"plot_free_rocking"}

@@ -49,6 +49,10 @@ class Service:
     async def solve_one(self, work: Work[T], request: Request) -> T:
         """The same for what concerns one body or a table: cheap work unless the body of the request is large."""
         await self.kernels.wait()
+        return await self.read_body(work, request)
+
+    async def read_body(self, work: Work[T], request: Request) -> T:
+        """Run work that needs no solver in a thread: cheap unless the body of the request is large."""
         declared = request.headers.get("content-length", "0" if request.method == "GET" else "")
         is_small = declared.isdecimal() and int(declared[:12]) <= CHEAP_BYTES
         return await (self.cheap if is_small else self.dear).run(work, request)

@@ -47,6 +47,9 @@ UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.pi / 180.0, "mrad": 0.001},
     "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
     "-": {"-": 1.0, "%": 0.01},
+    "N": {"N": 1.0, "kN": 1000.0, "MN": 1e6},
+    "N/m": {"N/m": 1.0, "N/mm": 1000.0, "kN/m": 1000.0, "MN/m": 1e6},
+    "N s/m": {"N s/m": 1.0, "kN s/m": 1000.0, "MN s/m": 1e6},
     "kg": {
         "kg": 1.0,
         "g": 0.001,
@@ -67,6 +70,9 @@ EXAMPLES = {
     "rad": "20 deg, 0.35 rad",
     "rad/s": "2.5 rad/s",
     "kg": "45 kg, 100 lb",
+    "N": "500 N, 2 kN",
+    "N/m": "50 kN/m, 5e4 N/m",
+    "N s/m": "4 kN s/m, 4000 N s/m",
 }
 """Quantities that an error proposes."""
 
@@ -78,6 +84,9 @@ USUAL = {
     "rad": ("deg",),
     "rad/s": ("rad/s",),
     "kg": ("kg",),
+    "N": ("N",),
+    "N/m": ("N/m",),
+    "N s/m": ("N s/m",),
 }
 """The units that an error proposes where there is none."""
 
@@ -113,6 +122,8 @@ _NUMBER = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?", re.ASCII | r
 
 def _forms(name: str) -> tuple[str, ...]:
     """Return the ways to write a unit, as `_plain` leaves them."""
+    if " " in name:
+        return (name.replace(" ", ""),)
     length, _, time = name.partition("/")
     if time == "s2":
         return (name, f"{length}/s/s", f"{length}s-2", f"{length}/s-2", f"{length}s2")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rocking._base.constants import STANDARD_GRAVITY
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import needed, number, reject_given
-from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION
+from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, RESTRAINTS
 from rocking._base.units import Scalar
 from rocking._boundary.scan import RESOLUTION as SCAN_RESOLUTION
 from rocking._boundary.scan import Index, Lines, checked_resolution, outcome_changes
@@ -24,7 +24,7 @@ from rocking._excitation.records.vertical import (
     check_one_vertical_scale,
     highest_vertical_scale,
 )
-from rocking._model.checks import check_one_alpha, known_restitution
+from rocking._model.checks import check_one_alpha, check_restraint, known_restitution
 from rocking._model.fields import IMPACTS, OUTCOME
 from rocking._model.labelled import variable
 from rocking._model.outcome import SURVIVES, decode_outcomes
@@ -95,6 +95,9 @@ def thresholds(
     frequency_parameter: Scalar | None = None,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    stiffness: Scalar = 0.0,
+    prestress: Scalar = 0.0,
+    damping: Scalar = 0.0,
     vertical_scale: Scalar | None = None,
     highest: Scalar | None = None,
     resolution: Scalar = SCAN_RESOLUTION,
@@ -104,7 +107,7 @@ def thresholds(
 
     Parameters
     ----------
-    motion, frequency_ratio, frequency_parameter, restitution, alpha
+    motion, frequency_ratio, frequency_parameter, restitution, alpha, stiffness, prestress, damping
         As for `peak_response`; scalars.
     vertical_scale : float, optional
         Factor of the vertical component of a record at the amplitude 1 [-], [0, 1e6]; 1 by default. Both components are
@@ -137,15 +140,21 @@ def thresholds(
         highest = motion.highest_amplitude
     top = number("highest", highest, 1.0, 1e6, closed="right")
     eta = RESTITUTION.number(known_restitution(restitution, alpha))
+    restraint = one_restraint(stiffness, prestress, damping)
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         parameter = needed("a record", frequency_parameter=frequency_parameter)
         p = number("frequency_parameter", parameter, *motion.frequency_parameters, unit="rad/s")
-        groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha)}
+        groups = {"frequency_parameter": p, "restitution": eta, "alpha": check_one_alpha(alpha), "restraint": restraint}
         return _record_changes(motion, groups, vertical_scale, top, checked_resolution(resolution), stop)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = FREQUENCY_RATIO.number(needed("a pulse", frequency_ratio=frequency_ratio))
-    return amplitude_changes(block_solver(motion, stop=stop), omega, eta, top, check_one_alpha(alpha))
+    level = 1.0 + float(restraint.get("prestress", 0.0))
+    if top <= level:  # no uplift
+        return Thresholds(np.empty(0), np.empty(0, np.bool_), np.empty(0, np.int8), np.empty(0, np.int32))
+    solver = block_solver(motion, stop=stop, restraint=restraint)
+    changes = amplitude_changes(solver, omega, eta, top / level, check_one_alpha(alpha))
+    return replace(changes, amplitude=changes.amplitude * level)
 
 
 def _record_changes(
@@ -158,13 +167,14 @@ def _record_changes(
 ) -> Thresholds:
     """Search `thresholds` under a record."""
     factor = check_one_vertical_scale(record, vertical_scale) if vertical_scale is not None else 1.0
-    lowest, limit = 1.0, math.inf
+    level = 1.0 + float(groups["restraint"].get("prestress", 0.0))
+    lowest, limit = level, math.inf
     if record.vertical is not None and factor > 0.0:
         limit = min(highest_vertical_scale(record), HIGHEST_VERTICAL_SCALE) / factor
         # uplift is where a abs(f) reaches 1 + a w: at a sample, since both are linear between samples
         upwards = factor * record.vertical / STANDARD_GRAVITY
         excess = np.abs(record.acceleration) / record.peak_acceleration - upwards
-        lowest = float(1.0 / excess.max())
+        lowest = float(level / excess.max())
 
     def cells(_line: Index, amplitudes: Floats) -> NDArray[np.void]:
         return record_cells(record, slenderness=1.0 / amplitudes, vertical_scale=factor * amplitudes, **groups)
@@ -174,6 +184,12 @@ def _record_changes(
     vertical = None if record.vertical is None else factor * amplitude
     response = record_response(record, slenderness=1.0 / amplitude, vertical_scale=vertical, **groups, stop=stop)
     return Thresholds(amplitude, above, response.outcome, response.impacts)
+
+
+def one_restraint(stiffness: Scalar, prestress: Scalar, damping: Scalar) -> dict[str, Floats]:
+    """Check a restraint given by numbers, as `check_restraint`."""
+    values = zip(RESTRAINTS, (stiffness, prestress, damping), strict=True)
+    return check_restraint(*[quantity.number(value) for quantity, value in values])
 
 
 def amplitude_changes(solve: Solve, omega: float, eta: float, highest: float, alpha: float = 0.0) -> Thresholds:

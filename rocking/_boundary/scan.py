@@ -34,6 +34,7 @@ from rocking._numba.cancellation import StopFlag
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.estimate import estimate_outcomes
 from rocking._solver.records.record_response import solve_bodies
+from rocking._solver.restrained import is_restrained
 
 Bools = NDArray[np.bool_]
 Index = NDArray[np.intp]
@@ -123,8 +124,16 @@ class Lines:
         return np.asarray(records["outcome"] >= Outcome.OVERTURNED_DIRECTLY)
 
     def estimated(self, line: Index, strength: Array) -> tuple[Bools, Array]:
-        """Estimate which bodies overturn, and the ends of `Intervals` (bodies, 4) by the logarithm of the strength."""
-        return estimate_outcomes(self.samples, self.cells(line, strength), self.threads, self.stop)
+        """Estimate which bodies overturn, and the ends of `Intervals` (bodies, 4) by the logarithm of the strength.
+
+        Of bodies with a tendon or a damper by the solver, without a reach: intervals are as wide as the resolution.
+        """
+        cells = self.cells(line, strength)
+        if is_restrained(cells).any():
+            ends = np.zeros((line.size, 4))
+            ends[:, :2] = math.inf
+            return self.overturned(line, strength), ends
+        return estimate_outcomes(self.samples, cells, self.threads, self.stop)
 
     def overturned_where_coarse(self, line: Index, strength: Array) -> Bools:
         """Return True for the bodies that overturn and have a sample interval longer than `LONGEST_INTERVAL`."""

@@ -5,7 +5,7 @@ A point is 1/a, log omega, the restitution and the slenderness angle, 0 for the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -17,8 +17,10 @@ from rocking._excitation.pulses import AbstractPulse
 from rocking._model.energy import outcome_margin
 from rocking._model.outcome import SURVIVES, impacts_of_code, outcome_codes
 from rocking._numba.cancellation import StopFlag
-from rocking._solver.peak_response import solve_cells
-from rocking._solver.state import FULL_PRECISION
+from rocking._solver.peak_response import solve_blocks, solve_cells
+from rocking._solver.records.record_response import NO_RESTRAINT
+from rocking._solver.restrained import restrain, restrained_margin
+from rocking._solver.state import FULL_PRECISION, block_cells
 
 RESOLUTION = 1e-12  # width of the final bracket, in 1/a and in log omega; the curves are good to it
 
@@ -130,8 +132,15 @@ class Found:
     chatter: NDArray[np.bool_]
 
 
-def block_solver(pulse: AbstractPulse, threads: int | None = None, stop: StopFlag | None = None) -> Solve:
+def block_solver(
+    pulse: AbstractPulse,
+    threads: int | None = None,
+    stop: StopFlag | None = None,
+    restraint: Mapping[str, Floats] = NO_RESTRAINT,
+) -> Solve:
     """Return the solver for blocks as a `Solve`, which raises `StoppedError` once `stop` is set.
+
+    `restraint`: of `rocking._model.checks.check_restraint`; the slenderness is then over that of uplift, 1 + sigma.
 
     It calls the solver below `peak_response`: the points of a search are in range, and most calls have a few of them.
     """
@@ -140,7 +149,16 @@ def block_solver(pulse: AbstractPulse, threads: int | None = None, stop: StopFla
         records = solve_cells(pulse, [*cells], FULL_PRECISION, threads, stop)
         return records, outcome_margin(records["end_rotation"], records["end_velocity"], *cells[2:])
 
-    return solve
+    def solve_restrained(
+        slenderness: Floats, omega: Floats, eta: Floats, alpha: Floats
+    ) -> tuple[NDArray[np.void], Floats]:
+        cells = block_cells(omega, slenderness / level, eta, alpha)
+        restrain(cells, restraint)
+        records = solve_blocks(pulse, cells, threads, stop)
+        return records, restrained_margin(records, cells)
+
+    level = 1.0 + restraint.get("prestress", 0.0)
+    return solve_restrained if restraint else solve
 
 
 def classifier(solve: Solve, code_of: Callable[[Outcomes], Codes] | None = None, work: Work | None = None) -> Classify:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from rocking._base.errors import integer
 from rocking._base.quantities import FREQUENCY_RATIO, RESTITUTION, SLENDERNESS
 from rocking._base.units import Scalar
+from rocking._boundary.amplitude import one_restraint
 from rocking._boundary.chains import Chains, chains_of
 from rocking._boundary.chords import refine_chords
 from rocking._boundary.columns import THINNEST
@@ -46,6 +47,9 @@ def overturning_boundary(
     *,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    stiffness: Scalar = 0.0,
+    prestress: Scalar = 0.0,
+    damping: Scalar = 0.0,
     frequency_ratio: tuple[float, float] = (0.2, 15.0),
     slenderness: tuple[float, float] = (0.02, 1.0),
     nodes: int = 401,
@@ -56,12 +60,13 @@ def overturning_boundary(
 
     Parameters
     ----------
-    motion, restitution, alpha
+    motion, restitution, alpha, stiffness, prestress, damping
         As for `peak_response`; scalars.
     frequency_ratio : (float, float)
         Window of omega [-], 0 < low < high.
     slenderness : (float, float)
-        Window of g tan(alpha)/a_g = 1/a [-], 0 < low < high <= 1: depends on the motion, unlike h/b.
+        Window of g tan(alpha)/a_g = 1/a [-], 0 < low < high <= 1: depends on the motion, unlike h/b. Of a block with a
+        prestress the window of (1 + sigma)/a; the curves have 1/a.
     nodes : int
         Nodes in each direction on which regions are first looked for, 16 to 4001.
     threads : int, optional
@@ -96,7 +101,16 @@ def overturning_boundary(
     """
     eta = RESTITUTION.number(known_restitution(restitution, alpha))
     angle, pulse = check_one_alpha(alpha), as_pulse(motion)
-    return boundaries_at_angles(pulse, [(eta, angle, nodes)], frequency_ratio, slenderness, threads, stop)[0]
+    restraint = one_restraint(stiffness, prestress, damping)
+    if not restraint:
+        return boundaries_at_angles(pulse, [(eta, angle, nodes)], frequency_ratio, slenderness, threads, stop)[0]
+    threads = None if threads is None else integer("threads", threads, 1, math.inf)
+    solver = block_solver(pulse, threads, stop, restraint)
+    curves = trace_curves(solver, [(eta, angle, nodes)], frequency_ratio, slenderness)[0]
+    curves["slenderness"] = curves["slenderness"] / (1.0 + restraint.get("prestress", 0.0))
+    attributes = {"pulse": pulse.name, "restitution": eta, "alpha": angle}
+    attributes |= {name: float(value) for name, value in restraint.items()}
+    return curves.assign_attrs(attributes | curves.attrs)
 
 
 def boundaries_at_angles(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
     from rich.console import Console
+    from rich.table import Table
 
     from rocking._dimensional.response import BodyResponse
 
@@ -30,8 +31,12 @@ LINE = 80  # most characters of a value in a line
 LABELS = {"1": "", "-": "", "m s-1": "m/s", "m s-2": "m/s2", "rad s-1": "rad/s"}
 """Units as people write them, by the unit in CF; others are the same."""
 
-SENTENCES = ("meaning", "margin", "warnings", "notes")
-"""Texts of a response, which are printed above its numbers."""
+ESSENTIAL = (
+    *("pulse", "record", "body", "peak_rotation", "peak_rotation_deg", "displacement", "impacts", "restitution"),
+    *("peak_acceleration", "period", "scale", "uplift_acceleration", "friction_demand", "nearest_period"),
+    *("largest_surviving_acceleration", "nearest_acceleration", "overturning_scale", "thresholds"),
+)
+"""Values of a response that a person reads; JSON and CSV have all of them."""
 
 
 @contextmanager
@@ -65,7 +70,7 @@ def print_table(columns: Mapping[str, Sequence[Any]], units: Mapping[str, str] |
         table.add_column(Text(_label(name, units)), justify="left" if is_text else "right")
     for row in zip(*columns.values(), strict=True):
         table.add_row(*(Text(_text(value)) for value in row))
-    _console().print(table)
+    _print_lines(table)
 
 
 def print_values(values: Mapping[str, Any], units: Mapping[str, str] | None = None) -> None:
@@ -79,7 +84,7 @@ def print_values(values: Mapping[str, Any], units: Mapping[str, str] | None = No
     for name, value in values.items():
         if value is not None:
             table.add_row(Text(_label(name, units)), Text(_text(value)))
-    _console().print(table)
+    _print_lines(table)
 
 
 def print_columns(
@@ -146,8 +151,8 @@ def print_response(response: BodyResponse, values: Mapping[str, Any], output_for
     changes = None
     if values["thresholds"] is not None:
         changes = ", ".join(map(str, response.thresholds or ())) or "none"
-    numbers = {name: value for name, value in values.items() if name not in SENTENCES}
-    print_values({**numbers, "thresholds": changes}, units)
+    print_values({name: values.get(name) for name in ESSENTIAL} | {"thresholds": changes}, units)
+    typer.echo("every value: --format json")
 
 
 def unit_label(unit: str) -> str:
@@ -168,6 +173,15 @@ def _console() -> Console:
     if not console.is_terminal:
         console.width = WIDE
     return console
+
+
+def _print_lines(table: Table) -> None:
+    """Print a table without the blanks that fill its last column."""
+    console = _console()
+    with console.capture() as captured:
+        console.print(table)
+    for line in captured.get().splitlines():
+        typer.echo(line.rstrip())
 
 
 def _label(name: str, units: Mapping[str, str] | None) -> str:

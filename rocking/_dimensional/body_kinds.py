@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking._base.quantity import Kind, Quantity, kind_with, split_kind
 from rocking._dimensional.bodies.composite import hollow, on_pedestal
-from rocking._dimensional.bodies.rigid import cylinder, offset_mass, outline, rectangle, two_edges, with_wall
+from rocking._dimensional.bodies.rigid import anchored, cylinder, offset_mass, outline, rectangle, two_edges, with_wall
 from rocking._dimensional.bodies.structures import arch, frame, on_pivots, structure
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ Makers = tuple[Callable[..., Any], ...]
 _RIGID: Makers = rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal, outline
 RIGID = tuple(map(with_wall, _RIGID))  # rigid bodies, which an object of a table may be
 
-_ALL: Makers = *RIGID, frame, arch, on_pivots, structure
+_ALL: Makers = *RIGID, anchored, frame, arch, on_pivots, structure
 BODIES: dict[str, Kind[RespondingBody]] = {make.__name__: Kind(make) for make in _ALL}
 """Where only parameters are given, the first kind that has them. Further packages add kinds by name through the entry
 points `rocking.bodies`; only `body` and the options of commands take these, neither the service nor tables."""
@@ -44,8 +44,8 @@ def body(description: str | Mapping[str, Any], **parameters: Any) -> RespondingB
     description : str or mapping
         The name of a kind, with its parameters and their units in brackets; or a mapping of the parameters, with `kind`
         unless they say which one it is. Kinds: rectangle, offset_mass, two_edges, cylinder, hollow, on_pedestal,
-        outline, frame, arch, on_pivots, structure, and those of the entry points `rocking.bodies` of other packages;
-        all up to outline also with `sides` and `rebound` of `rocking.RigidBody`, for a wall at one side.
+        outline, anchored, frame, arch, on_pivots, structure, and those of the entry points `rocking.bodies` of other
+        packages; all up to outline also with `sides` and `rebound` of `rocking.RigidBody`, for a wall at one side.
     **parameters
         The same as arguments: numbers in SI units, texts such as "40 cm", quantities of pint.
 

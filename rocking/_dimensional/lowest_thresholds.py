@@ -138,7 +138,8 @@ def record_range(problem: Problem) -> tuple[Array, Array]:
     (`rocking._model.body`): at a sample, since all of them are linear between samples.
     """
     record: Any = problem.motion
-    resisted = problem.cells["slenderness"] * record.peak_acceleration  # g tan(alpha_s)
+    cells = problem.cells
+    resisted = cells["slenderness"] * record.peak_acceleration  # g tan(alpha_s)
     gravity = np.broadcast_to(problem.body.gravity, problem.shape).ravel()
     if record.vertical is None:
         first, second = record.acceleration.max(), -record.acceleration.min()
@@ -152,7 +153,7 @@ def record_range(problem: Problem) -> tuple[Array, Array]:
             ]
         )
         limit = np.array([highest_vertical_scale(record, g) for g in gravity.tolist()])
-    return 1.0 / np.maximum(excess, 1.0 / HIGHEST_SCALE), np.minimum(limit, HIGHEST_SCALE)
+    return (1.0 + cells["prestress"]) / np.maximum(excess, 1.0 / HIGHEST_SCALE), np.minimum(limit, HIGHEST_SCALE)
 
 
 def _lowest_under_pulse(

@@ -181,6 +181,8 @@ class Problem(EqualByValue):
             cells["slenderness"][..., 1] = cells["slenderness"][..., 0]
         for side, eta in enumerate(self.restitutions):
             cells["eta"][..., side] = eta
+        for name, value in body.restraint.items():
+            cells[name] = value
         return cells.ravel()
 
     @property
@@ -205,8 +207,8 @@ class Problem(EqualByValue):
     def solver(self, index: int = 0, stop: StopFlag | None = None) -> Solve:
         """One of the bodies as a `Solve`: slenderness over that of uplift, `rate` of the cell; the rest is not read."""
         cell: KernelRecord = self.cells[index]
-        uplift = cell["slenderness"] / cell["slenderness"].min()
-        vertical = cell["vertical"] * cell["slenderness"].min()  # at uplift
+        level = cell["slenderness"].min() * (1.0 + cell["prestress"])
+        uplift, vertical = cell["slenderness"] / level, cell["vertical"] * level  # at uplift
 
         def solve_at(slenderness: Array, omega: Array, eta: Array, _alpha: Array) -> tuple[NDArray[np.void], Array]:
             cells = np.repeat(cell, eta.size)

@@ -61,7 +61,7 @@ class AbstractMotion(ABC):
         return 0.0
 
     def refined(self) -> AbstractMotion | None:
-        """Return the motion with finer samples, which shows how much its sampling matters; None if that has no meaning."""
+        """Return the motion with finer samples, which shows how much sampling matters; None if that has no meaning."""
         return None
 
     @abstractmethod

@@ -2,6 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -27,8 +28,9 @@ from rocking._solver.bodies import outcome_margin_of
 from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import NO_EDGES, peak_response
 from rocking._solver.records import state as samples_state
-from rocking._solver.records.record_response import pulse_rows
+from rocking._solver.records.record_response import NO_RESTRAINT, pulse_rows
 from rocking._solver.records.samples import SHAPE, TIME, VERTICAL, motion_samples
+from rocking._solver.restrained import is_restrained, restrain
 from rocking._solver.rules import IMPACT_LIMIT
 from rocking._solver.state import (
     BODY_CELL,
@@ -38,6 +40,7 @@ from rocking._solver.state import (
     RESPONSE_RECORD,
     block_cell,
     pulse_state,
+    restraint_level,
     step_state,
 )
 
@@ -196,7 +199,12 @@ class BodyMotion(ABC):
     @cached_property
     def _free_steps(self) -> Record:
         """Taylor steps of free rocking: without ground motion any pulse serves."""
-        return step_state(pulse_state(as_pulse("sine")))
+        return self._restrained(step_state(pulse_state(as_pulse("sine"))))
+
+    def _restrained(self, steps: Record) -> Record:
+        """The steps, set for tendon and damper of the body."""
+        steps["restrained"] = restraint_level(self.cell)
+        return steps
 
     @cached_property
     def _flag(self) -> NDArray[np.uint8]:
@@ -257,7 +265,7 @@ class PulseMotion(BodyMotion):
     @cached_property
     def _steps(self) -> Record:
         """Taylor steps under the pulse."""
-        return step_state(pulse_state(self.pulse))
+        return self._restrained(step_state(pulse_state(self.pulse)))
 
     @cached_property
     def _flights(self) -> tuple[NDArray[np.void], Record]:
@@ -267,7 +275,8 @@ class PulseMotion(BodyMotion):
         equal = cell["ratio"] == cell["stiffness"] == 1.0 and cell["eta"][0] == cell["eta"][1]
         equal = equal and cell["slenderness"][0] == cell["slenderness"][1]
         edges = NO_EDGES if equal else np.empty((1, EDGE_COLUMNS))
-        count = solve_batch(np.array([cell]), state, step_state(state[0]), self._flag, response, edges, followed)
+        steps = self._restrained(step_state(state[0]))
+        count = solve_batch(np.array([cell]), state, steps, self._flag, response, edges, followed)
         if self._flag[0]:
             check_stop(self.stop)
         return followed[:count].copy(), state[0]
@@ -279,6 +288,9 @@ class PulseMotion(BodyMotion):
             slenderness=self.cell["slenderness"][0],
             frequency_ratio=self.frequency_ratio,
             restitution=self.restitution,
+            stiffness=self.cell["spring"],
+            prestress=self.cell["prestress"],
+            damping=self.cell["damping"],
             stop=self.stop,
         )
         for solved in SOLVED_FIELDS:
@@ -352,12 +364,19 @@ class FreeMotion(BodyMotion):
         state["a"] = 1.0 / self.cell["slenderness"]
         for name in ("ratio", "stiffness"):
             state[name] = 1.0, self.cell[name]
+        for name in ("spring", "damping"):
+            state[name] = self.cell[name]
+        state["level"], state["restrained"] = 1.0 + self.cell["prestress"], int(is_restrained(cells)[0])
         state["speed"] = state["ratio"] * np.sqrt(state["stiffness"])
         state["turn"] = 1.0 if np.isinf(self.cell["slenderness"]).any() else -1.0
         state["end_rotation"], state["end_sign"] = abs(self.start), math.copysign(1.0, self.start)
         response, edges = np.zeros(1, RESPONSE_RECORD), np.zeros((1, EDGE_COLUMNS))
         response["end_rotation"], edges[:, 2] = state["end_rotation"], state["end_sign"]
         at_once = state["end_rotation"] >= state["ratio"][0 if self.start > 0.0 else 1]
+        if state["restrained"] == 1:  # whether it escapes without an impact: after one of restitution 0 it does not
+            without = cells.copy()
+            without["eta"] = 0.0
+            at_once = outcome_margin_of(response, edges, without)[0] >= 0.0
         later = outcome_margin_of(response, edges, cells)[0] >= 0.0
         outcome = Outcome.OVERTURNED_AFTER_IMPACT if later else Outcome.RECOVERS
         state["outcome"] = Outcome.OVERTURNED_DIRECTLY if at_once else outcome
@@ -390,6 +409,7 @@ def build_motion(
     frequency_ratio: Scalar,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    restraint: Mapping[str, Floats] = NO_RESTRAINT,
     duration: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> BodyMotion:
@@ -401,7 +421,9 @@ def build_motion(
         horizon = (made.end - made.start) / omega + FREE_DURATION
     else:
         horizon = positive("duration", duration, "-")
-    return motion_of_body(made, block_cell(omega, s, eta, angle), horizon, stop)
+    cell = block_cell(omega, s, eta, angle)
+    restrain(cell, restraint)
+    return motion_of_body(made, cell, horizon, stop)
 
 
 def build_record_motion(
@@ -412,6 +434,7 @@ def build_record_motion(
     restitution: Scalar,
     alpha: Scalar | None = None,
     vertical_scale: Scalar | None = 1.0,
+    restraint: Mapping[str, Floats] = NO_RESTRAINT,
     duration: Scalar | None = None,
     stop: StopFlag | None = None,
 ) -> BodyMotion:
@@ -422,4 +445,5 @@ def build_record_motion(
     vertical = check_one_vertical_scale(motion, vertical_scale)
     horizon = p * motion.duration + FREE_DURATION if duration is None else p * positive("duration", duration, "s")
     cell = block_cell(p * motion.time_step, s, eta, angle, vertical)
+    restrain(cell, restraint)
     return motion_of_body(motion, cell, horizon, stop)

@@ -86,7 +86,7 @@ def sample_record(
     and sgn(theta) at the last sample of the motion, 0 at rest.
     """
     init_body_state(block, cell, False)
-    by_pieces = cell.alpha == 0.0 and cell.vertical == 0.0
+    by_pieces = cell.alpha == 0.0 and cell.vertical == 0.0 and block.restrained == 0
     last = cell.rate * samples[TIME, len(samples[SHAPE]) - 1]
     filled, written = 0, 0
     while start_flight(block, samples) and not is_stopped(stop):
@@ -227,6 +227,8 @@ def copy_start(block: Record, start: Record) -> None:
         start.a[side], start.ratio[side] = block.a[side], block.ratio[side]
         start.stiffness[side] = block.stiffness[side]
     start.alpha, start.h, start.vertical, start.each_side = block.alpha, block.h, block.vertical, 0
+    start.restrained, start.spring, start.level = block.restrained, block.spring, block.level
+    start.damping, start.may_turn = block.damping, block.may_turn
     start.interval, start.s, start.w0 = block.interval, block.s, block.w0
     set_sign(start, block.sign)
     start.starts_at_uplift, start.at_rest = block.starts_at_uplift, 0

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking._base.errors import integer, needed, number, reject_given
+from rocking._base.errors import InvalidArgumentError, integer, needed, number, reject_given
 from rocking._base.quantities import FREQUENCY_RATIO
 from rocking._base.units import Scalar
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record
 from rocking._history.contact import add_contact
 from rocking._history.motion import BodyMotion, Floats, build_motion, build_record_motion, overturned
-from rocking._model.checks import known_restitution
+from rocking._model.checks import check_restraint, known_restitution
 from rocking._model.labelled import variable
 from rocking._model.response import Outcome
 from rocking._numba.cancellation import StopFlag
@@ -36,6 +36,9 @@ def time_history(
     frequency_parameter: Scalar | None = None,
     restitution: Scalar,
     alpha: Scalar | None = None,
+    stiffness: Scalar = 0.0,
+    prestress: Scalar = 0.0,
+    damping: Scalar = 0.0,
     vertical_scale: Scalar | None = None,
     duration: Scalar | None = None,
     samples: int | None = None,
@@ -46,7 +49,7 @@ def time_history(
 
     Parameters
     ----------
-    motion, frequency_ratio, frequency_parameter, restitution, alpha, vertical_scale
+    motion, frequency_ratio, frequency_parameter, restitution, alpha, stiffness, prestress, damping, vertical_scale
         As for `peak_response`; scalars.
     slenderness : float
         g tan(alpha)/a_g = 1/a [-], [1e-12, inf): depends on the motion, unlike h/b.
@@ -82,6 +85,9 @@ def time_history(
     if samples is not None:
         samples = integer("samples", samples, 2, MAX_SAMPLES)
     restitution = known_restitution(restitution, alpha)
+    restraint = check_restraint(stiffness, prestress, damping)
+    if contact and restraint:
+        raise InvalidArgumentError("contact", contact, "False for a restrained block: its tendon loads the ground too")
     if isinstance(motion, Record):
         reject_given("a record", frequency_ratio=frequency_ratio)
         groups = {
@@ -90,13 +96,14 @@ def time_history(
             "restitution": restitution,
             "alpha": alpha,
             "vertical_scale": vertical_scale,
+            "restraint": restraint,
         }
         return _under_record(motion, groups, duration, samples, contact, stop)
     made = as_pulse(motion)
     reject_given("a pulse", frequency_parameter=frequency_parameter, vertical_scale=vertical_scale)
     omega = FREQUENCY_RATIO.number(needed("a pulse", frequency_ratio=frequency_ratio))
     of_pulse = {"slenderness": slenderness, "frequency_ratio": omega, "restitution": restitution, "alpha": alpha}
-    moving = build_motion(made, **of_pulse, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
+    moving = build_motion(made, **of_pulse, restraint=restraint, duration=duration, stop=stop)  # type: ignore[arg-type]  # alpha: None
     grid = np.linspace(0.0, moving.horizon, DEFAULT_SAMPLES if samples is None else samples)
     history, tau, impact_times = _sampled(moving, grid, (" (3.4)", "a f = ", " (3.2)"))
     history["impact_time"] = variable("impact", impact_times, "1", "time of impact p t")

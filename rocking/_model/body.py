@@ -120,6 +120,11 @@ class AbstractBody(ABC):
         """Horizontal displacement of the top [m] at a rotation [rad]: `top_height` sin(theta), above the pivot."""
         return np.asarray(self.top_height * np.sin(rotation))
 
+    @property
+    def restraint(self) -> dict[str, Array]:
+        """Groups of a tendon and a damper [-], by the names of cells of the solver; nothing unless a body says so."""
+        return {}
+
     moves_as_block: ClassVar[bool] = False
     """Whether it moves as a rectangular block, whose width and height it then has."""
 

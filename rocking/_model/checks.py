@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, broadcast, in_range, number, plain_number
-from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, RESTITUTION, SLENDERNESS, SMALLEST_ALPHA
+from rocking._base.quantities import ALPHA, FREQUENCY_RATIO, RESTITUTION, RESTRAINTS, SLENDERNESS, SMALLEST_ALPHA
 from rocking._base.quantity import Quantity
-from rocking._base.units import Scalar, WithUnit
+from rocking._base.units import Scalar, Values, WithUnit
 from rocking._model.labelled import Index, broadcast_by_name, in_unit, index_of, is_labelled
 
 _GROUPS = {parameter.name: parameter for parameter in (SLENDERNESS, FREQUENCY_RATIO, RESTITUTION)}
@@ -118,3 +118,10 @@ def spread_impact(momentum: Any, share: float) -> Any:
 def check_groups(**given: Any) -> dict[str, Array]:
     """The given of `slenderness`, `frequency_ratio`, `restitution` and `alpha` as float64 arrays; alpha = None is 0."""
     return {name: check_alpha(one) if name == "alpha" else _GROUPS[name].convert(one) for name, one in given.items()}
+
+
+def check_restraint(stiffness: Values, prestress: Values, damping: Values) -> dict[str, Array]:
+    """Return the groups kappa, sigma and zeta [-] of a restraint by name; without the numbers that are 0."""
+    given = zip(RESTRAINTS, (stiffness, prestress, damping), strict=True)
+    checked = {quantity.name: quantity.convert(value) for quantity, value in given}
+    return {name: value for name, value in checked.items() if value.ndim or value != 0.0}

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rocking._base.arrays import Array
+from rocking._base.quantities import RESTRAINTS
 
 
 def residual_energy(
@@ -19,10 +20,10 @@ def residual_energy(
 
     From the fields `end_rotation` and `end_velocity`, z and w, and the group `alpha` of a block with equal edges [rad],
     0: slender. The fields do not tell about which edge a body rotates: where the edges differ there is no `alpha`, and
-    the result is nan.
+    the result is nan, as with a tendon or a damper.
     """
     z, w = fields["end_rotation"], fields["end_velocity"]
-    if "alpha" not in groups:
+    if "alpha" not in groups or any(group.name in groups for group in RESTRAINTS):
         return np.full(z.shape, np.nan)
     half = 0.5 * groups["alpha"]
     barrier = np.sinc(half / np.pi)  # sin(half)/half

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rocking._base.equality import EqualByValue
 from rocking._base.errors import InvalidArgumentError
-from rocking._base.quantities import FREQUENCY_PARAMETER, GROUPS
+from rocking._base.quantities import FREQUENCY_PARAMETER, GROUPS, RESTRAINTS
 from rocking._base.units import WithUnit
 from rocking._model.fields import OVERTURNED, RESPONSE_FIELDS, SOLVED_FIELDS, ResponseField, ResponseFields
 from rocking._model.labelled import Index, variable, with_index
@@ -115,7 +115,7 @@ class Response(ResponseFields, EqualByValue, declared=RESPONSE_FIELDS):
             one.name: one.variable(names, getattr(self, one.name)) for one in (*RESPONSE_FIELDS, OVERTURNED)
         }
         coordinates: dict[str, Any] = {}
-        for group in (*GROUPS, FREQUENCY_PARAMETER):
+        for group in (*GROUPS, FREQUENCY_PARAMETER, *RESTRAINTS):
             value = self.groups.get(group.name)
             if value is not None:
                 unit = "1" if group.unit == "-" else group.unit

@@ -17,8 +17,9 @@ from rocking._solver.kernels.batch import solve_batch
 from rocking._solver.peak_response import MAX_CHUNK, MIN_CHUNK, NO_FLIGHTS, solver_state
 from rocking._solver.records.record_response import solve_bodies, solve_bodies_under_pulse
 from rocking._solver.records.samples import motion_samples
+from rocking._solver.restrained import is_restrained, restrained_margin
 from rocking._solver.rules import IMPACT_LIMIT
-from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD
+from rocking._solver.state import EDGE_COLUMNS, FULL_PRECISION, RESPONSE_RECORD, restraint_level
 
 SOLVER_ERROR = 1e-12
 """Relative error of the solver where the problem is well conditioned, against multi-precision integration [-]."""
@@ -38,8 +39,12 @@ def solve(
         return solve_bodies_under_pulse(motion, cells, threads, stop, each_side=True)
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size, EDGE_COLUMNS))
 
+    # of free bodies, which are most, without a call
+    held = cells["damping"].any() or cells["spring"].any() or cells["prestress"].any()
+    level = restraint_level(cells) if held else 0
+
     def fill(part: slice, flag: NDArray[np.uint8]) -> None:
-        state = solver_state.of_steps(motion, FULL_PRECISION)
+        state = solver_state.of_steps(motion, FULL_PRECISION, level)
         solve_batch(cells[part], *state, flag, records[part], edges[part], NO_FLIGHTS)
 
     cores = threads or AVAILABLE_CORES
@@ -110,12 +115,16 @@ def amplification_of(motion: GroundMotion, cells: NDArray[np.void], stop: StopFl
 
 
 def residual_energy_of(records: NDArray[np.void], edges: Array, cells: NDArray[np.void]) -> Array:
-    """`rocking._model.energy.residual_energy` of bodies with two edges, about the present edge; (size,)."""
+    """`rocking._model.energy.residual_energy` of bodies with two edges, about the present edge; (size,).
+
+    nan of bodies with a tendon or a damper.
+    """
     left = edges[:, 2] < 0.0
     ratio = np.where(left, cells["ratio"], 1.0)
     speed = ratio * np.sqrt(np.where(left, cells["stiffness"], 1.0))
     ends = {"end_rotation": records["end_rotation"] / ratio, "end_velocity": records["end_velocity"] / speed}
-    return residual_energy(ends, {"alpha": cells["alpha"] * ratio})
+    energy = residual_energy(ends, {"alpha": cells["alpha"] * ratio})
+    return np.where(is_restrained(cells), np.nan, energy)
 
 
 def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np.void]) -> Array:
@@ -124,8 +133,15 @@ def outcome_margin_of(records: NDArray[np.void], edges: Array, cells: NDArray[np
     As `rocking._model.energy.outcome_margin`, for bodies with two edges: the largest of three margins, since a
     body that does not escape about its present edge can do so about the other one after an impact, and about the
     present one after two (`rocking._solver.rules.final_outcome`); against a wall all are about the present one.
-    Continuous, zero at the transition. Array (size,).
+    Of bodies with a tendon or a damper `rocking._solver.restrained.restrained_margin`. Continuous, zero at the
+    transition. Array (size,).
     """
+    restrained = is_restrained(cells)
+    if restrained.any():
+        margins = np.empty(cells.size)
+        margins[restrained] = restrained_margin(records[restrained], cells[restrained])
+        margins[~restrained] = outcome_margin_of(records[~restrained], edges[~restrained], cells[~restrained])
+        return margins
     right = edges[:, 2] >= 0.0
     ones = np.ones(cells.size)
     ratio, stiffness = np.stack([ones, cells["ratio"]]), np.stack([ones, cells["stiffness"]])

@@ -14,7 +14,7 @@ from rocking._base.errors import broadcast, integer, needed, reject_given
 from rocking._base.quantities import RELATIVE_TOLERANCE
 from rocking._excitation.pulses import AbstractPulse, as_pulse
 from rocking._excitation.records.record import Record as Recording
-from rocking._model.checks import check_groups, known_restitution
+from rocking._model.checks import check_groups, check_restraint, known_restitution
 from rocking._model.energy import outcome_margin
 from rocking._model.fields import SOLVED_FIELDS
 from rocking._model.labelled import index_of, is_labelled, labelled_response
@@ -24,7 +24,8 @@ from rocking._numba.compilation import Record, contiguous_array
 from rocking._numba.simd import LANES
 from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.kernels.batch import solve_batch
-from rocking._solver.records.record_response import record_response, solve_pulse
+from rocking._solver.records.record_response import record_response, solve_bodies_under_pulse, solve_pulse
+from rocking._solver.restrained import equivalent_free, in_own_units, is_restrained, restrain
 from rocking._solver.stages.batch import LEFT, solve_by_arcs
 from rocking._solver.stages.state import StageState, stage_state
 from rocking._solver.state import (
@@ -34,6 +35,7 @@ from rocking._solver.state import (
     RESPONSE_RECORD,
     block_cells,
     pulse_state,
+    restraint_level,
     step_state,
 )
 
@@ -68,9 +70,10 @@ def _new_arc_state(pulse: AbstractPulse) -> tuple[Record, StageState]:
     return pulse_state(pulse).copy(), stage_state()
 
 
-def _new_step_state(pulse: AbstractPulse, precision: float) -> tuple[NDArray[np.void], Record]:
-    flight = pulse_state(pulse)
-    return np.repeat(flight, LANES), step_state(flight, precision)
+def _new_step_state(pulse: AbstractPulse, precision: float, restrained: int = 0) -> tuple[NDArray[np.void], Record]:
+    flight, steps = pulse_state(pulse), step_state(pulse_state(pulse), precision)
+    steps["restrained"] = restrained
+    return np.repeat(flight, LANES), steps
 
 
 solver_state = SolverState()
@@ -91,6 +94,9 @@ def peak_response(
     frequency_parameter: ArrayLike | None = None,
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
+    stiffness: ArrayLike = 0.0,
+    prestress: ArrayLike = 0.0,
+    damping: ArrayLike = 0.0,
     vertical_scale: ArrayLike | None = None,
     relative_tolerance: float | None = None,
     threads: int | None = None,
@@ -106,6 +112,9 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     frequency_parameter: ArrayLike | None = None,
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
+    stiffness: ArrayLike = 0.0,
+    prestress: ArrayLike = 0.0,
+    damping: ArrayLike = 0.0,
     vertical_scale: ArrayLike | None = None,
     relative_tolerance: float | None = None,
     threads: int | None = None,
@@ -132,6 +141,10 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         or "kalliontzis(k=...)", the impact at the share k of the half base, (0, 1].
     alpha : array_like, optional
         Slenderness angle [rad], [1e-12, 1.57] for (2.2); None or 0 for the slender limit (3.1).
+    stiffness, prestress, damping : array_like
+        Of a restraint: kappa = k b^2/(m g R) and sigma = P0/(m g) of a vertical tendon along the centre line, [0, 1e4],
+        zeta = (3/2) (b/R)^2 c/(m p) of a vertical damper at the edge that uplifts, [0, 10] [-]; 0 is a free block. It
+        uplifts at a = 1 + sigma; under a tendon `peak_rotation` beyond 1 is no overturning by itself.
     vertical_scale : array_like, optional
         Factor of the vertical component of a record [-], [0, 1e6]; 1 by default. It adds to gravity, g + w for g in the
         restoring moment, in units of 9.80665 m/s2: under another gravity, multiply by the ratio.
@@ -173,11 +186,15 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
         "frequency_parameter": frequency_parameter,
         "restitution": restitution,
         "alpha": alpha,
+        "stiffness": stiffness,
+        "prestress": prestress,
+        "damping": damping,
         "vertical_scale": vertical_scale,
     }
     if is_labelled(*arguments.values()):
         options = {"relative_tolerance": relative_tolerance, "threads": threads, "stop": stop}
         return labelled_response(partial(peak_response, motion), arguments, options)
+    restraint = check_restraint(stiffness, prestress, damping)
     if isinstance(motion, Recording):
         reject_given("a record", frequency_ratio=frequency_ratio, relative_tolerance=relative_tolerance)
         return record_response(
@@ -187,6 +204,7 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
             restitution=restitution,
             alpha=alpha,
             vertical_scale=vertical_scale,
+            restraint=restraint,
             threads=threads,
             stop=stop,
         )
@@ -198,7 +216,12 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     given = {"slenderness": slenderness, "frequency_ratio": frequency_ratio, "restitution": restitution, "alpha": alpha}
     checked = check_groups(**given)
     slender = not checked["alpha"].any()
-    groups = broadcast(given, [*checked.values()][: 3 if alpha is None else 4])
+    values = [*checked.values()][: 3 if alpha is None else 4]
+    if restraint:
+        checked |= restraint
+        given |= {"stiffness": stiffness, "prestress": prestress, "damping": damping}
+        return _restrained_response(made, checked, given, threads, stop)
+    groups = broadcast(given, values)
     shape = groups[0].shape
     cells = [contiguous_array(group).ravel() for group in (groups[:3] if slender else groups)]
     accepted = 0.0 if relative_tolerance is None else RELATIVE_TOLERANCE.number(relative_tolerance)
@@ -214,6 +237,56 @@ def peak_response(  # type: ignore[misc]  # of labelled arguments the names are 
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
     dims, index = dimensions_of(*given.values()), index_of(*given.values())
     return Response(**found, pulse=made.name, groups=checked, dims=dims, index=index, motion=made)
+
+
+def _restrained_response(
+    pulse: AbstractPulse,
+    groups: dict[str, NDArray[np.float64]],
+    given: dict[str, Any],
+    threads: int | None,
+    stop: StopFlag | None,
+) -> Response:
+    """`peak_response` under a pulse to blocks with a tendon or a damper; `given`: the arguments before conversion."""
+    names = [*groups]
+    columns = dict(zip(names, broadcast(given, [*groups.values()]), strict=True))
+    shape = columns["slenderness"].shape
+    flat = {name: contiguous_array(column).ravel() for name, column in columns.items()}
+    cells = block_cells(flat["frequency_ratio"], flat["slenderness"], flat["restitution"], flat["alpha"])
+    restrain(cells, flat)
+    records = solve_blocks(pulse, cells, threads, stop)
+    found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
+    dims, index = dimensions_of(*given.values()), index_of(*given.values())
+    return Response(**found, pulse=pulse.name, groups=groups, dims=dims, index=index, motion=pulse)
+
+
+def solve_blocks(
+    pulse: AbstractPulse, cells: NDArray[np.void], threads: int | None, stop: StopFlag | None
+) -> NDArray[np.void]:
+    """Response records (size,) of blocks `BODY_CELL` under a pulse, free ones or with a tendon or a damper.
+
+    Errors as of `solve_cells`. Free blocks, and slender ones that a free block stands for, take the ways of free ones.
+    """
+    by_free, replaced = equivalent_free(cells, by_samples=False)
+    free = by_free | ~is_restrained(cells)
+    records = np.empty(cells.size, RESPONSE_RECORD)
+    columns = [replaced["slenderness"][free, 0], replaced["rate"][free], replaced["eta"][free, 0]]
+    columns.append(replaced["alpha"][free])
+    records[free] = solve_cells(pulse, columns, FULL_PRECISION, threads, stop)
+    records[by_free] = in_own_units(records[by_free], cells[by_free])
+    held = cells[~free]
+    if pulse.samples is not None:
+        records[~free] = solve_bodies_under_pulse(pulse, held, threads, stop)[0]
+        return records
+    solved = np.empty(held.size, RESPONSE_RECORD)
+
+    def fill(part: slice, flag: NDArray[np.uint8]) -> None:
+        state = solver_state.of_steps(pulse, FULL_PRECISION, restraint_level(held[part]))
+        solve_batch(held[part], *state, flag, solved[part], NO_EDGES, NO_FLIGHTS)
+
+    cores = threads or AVAILABLE_CORES
+    fill_chunks(fill, held.size, min(max(math.ceil(held.size / cores), MIN_CHUNK), MAX_CHUNK), cores, stop)
+    records[~free] = solved
+    return records
 
 
 def solved_by_arcs(pulse: AbstractPulse, cells: list[NDArray[np.float64]]) -> NDArray[np.bool_]:

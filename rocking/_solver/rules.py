@@ -32,6 +32,7 @@ from rocking._numba.compilation import FloatArray, Record, kernel
 from rocking._numba.records import copy_fields
 from rocking._numba.simd import maximum, square_root
 from rocking._solver.free_rocking import barrier_of, highest_rotation, release
+from rocking._solver.restrained_rocking import free_flight, set_restraint
 from rocking._solver.state import set_empty_response
 
 IMPACT_LIMIT = 200_000
@@ -60,8 +61,9 @@ def set_body(state: Record, cell: Record, each_side: bool) -> None:
     state.alpha, state.pull[0], state.each_side = cell.alpha, 0.0, int(each_side or differ)
     # an edge of infinite slenderness is a wall: the body rebounds, and sgn(theta) stays
     state.turn = -1.0 if max(cell.slenderness[0], cell.slenderness[1]) < math.inf else 1.0
-    set_edge(state, 0, cell.slenderness[0], cell.eta[0], 1.0, 1.0)
-    set_edge(state, 1, cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
+    set_restraint(state, cell)
+    set_edge(state, 0, state.level * cell.slenderness[0], cell.eta[0], 1.0, 1.0)
+    set_edge(state, 1, state.level * cell.slenderness[1], cell.eta[1], cell.ratio, cell.stiffness)
 
 
 @kernel
@@ -150,6 +152,9 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
     if overturns:
         overturn(state, 0)
         return
+    if state.restrained == 1:
+        restrained_outcome(state, z, w)
+        return
     # in the units of the edge: z over alpha_s, w over alpha_s p_s
     escapes, top, squared = release(z / state.ratio[side], w / state.speed[side], state.alpha * state.ratio[side])
     if escapes:
@@ -175,6 +180,28 @@ def final_outcome(state: Record, z: float, w: float, overturns: bool) -> None:
 
 
 @kernel
+def restrained_outcome(state: Record, z: float, w: float) -> None:
+    """Set the outcome of a body with tendon or damper, two equal edges, from z and w at the end of the motion.
+
+    As `final_outcome`, by following the flights: the energy falls in flights and at impacts, and rises with z below the
+    equilibrium at w = 0. So no later peak is higher than the first one after the motion, and none escapes after it. A
+    body that rises (w > 0) has its first peak in this flight, otherwise in the next one.
+    """
+    escapes, top, speed, _ = free_flight(state, z, w, w <= 0.0)
+    if escapes:
+        overturn(state, 0)
+        return
+    update_peak(state, state.side, top, state.impacts, 1)
+    if w > 0.0:
+        return
+    escapes, top, _, _ = free_flight(state, 0.0, state.eta[state.side] * speed, False)
+    if escapes:
+        overturn(state, 1)
+        return
+    update_peak(state, 1 - state.side, top, state.impacts + 1, 1)
+
+
+@kernel
 def pulls_of(state: Record) -> tuple[float, float]:
     """-z'' at z = 0 over q on both edges, (p_s/p)^2 sin(alpha_s)/alpha [-]; sets `softening`, too.
 
@@ -189,6 +216,10 @@ def pulls_of(state: Record) -> tuple[float, float]:
             left, stiffness = alpha * state.ratio[1], state.stiffness[1]
             pull[1] = 1.0 if alpha == 0.0 else stiffness * (math.sin(left) / alpha)
             state.softening = max(state.softening, stiffness * (1.0 + math.tan(left)))
+        if state.restrained == 1:
+            # of F C, of sigma D and of kappa sin(alpha z)/alpha; a damper makes flights lower, shorter and slower
+            pull[0], pull[1] = state.level * pull[0], state.level * pull[1]
+            state.softening = state.level * state.softening + (state.level - 1.0) + state.spring
     return pull[0], pull[1]
 
 

@@ -27,6 +27,8 @@ IN_FLIGHT, IMPACT, PULSE_END, OVERTURNS = -1, 0, 1, 2
 
 EDGES = (2,)
 
+FREE_ORDER = 18  # degree of the Taylor steps of restrained bodies without ground motion
+
 BODY_FIELDS = [
     # of both edges, the right one (theta > 0) first; times and rotations have the units of the right edge
     ("slenderness", np.float64, EDGES),  # g tan(alpha_s) over the largest ground acceleration
@@ -40,6 +42,19 @@ BODY_FIELDS = [
     ("pull", np.float64, EDGES),  # see `rocking._solver.rules.pulls_of`; 0 until it is known
     ("softening", np.float64),
     ("each_side", np.int64),  # whether peaks are wanted for each edge; always where the edges differ
+    # tendon and damper, see `rocking._solver.restrained_rocking`
+    ("restrained", np.int64),  # whether it has one
+    ("spring", np.float64),  # kappa
+    ("level", np.float64),  # 1 + sigma, which multiplies `slenderness`
+    ("damping", np.float64),  # zeta
+    ("growth", np.float64),  # lambda of a slender body that can escape, else 0
+    ("equilibrium", np.float64),  # z from which it does not return without ground motion; inf if there is none
+    ("may_turn", np.int64),  # whether z may have a maximum while the body is destabilised
+    ("free_z", np.float64, (FREE_ORDER + 1, 1)),  # Taylor step without ground motion
+    ("free_rate", np.float64, (FREE_ORDER + 1, 1)),
+    ("free_s", np.float64, (FREE_ORDER + 1,)),
+    ("free_c", np.float64, (FREE_ORDER + 1,)),
+    ("free_d", np.float64, (FREE_ORDER + 1,)),
 ]
 """Fields of a solver state that describe the body; set once for a cell, by `rocking._solver.rules`."""
 
@@ -53,6 +68,10 @@ BODY_CELL = np.dtype(
         ("eta", np.float64, EDGES),
         ("ratio", np.float64),  # alpha_s/alpha of the left edge
         ("stiffness", np.float64),  # (p_s/p)^2 of the left edge
+        # kappa, sigma and zeta of a body with equal edges; 0 of a free one
+        ("spring", np.float64),
+        ("prestress", np.float64),
+        ("damping", np.float64),
     ]
 )
 """A body under a motion: the argument of the kernels that know two edges."""
@@ -161,10 +180,16 @@ EDGE_LANES = [
     ("restoring_factor", np.float64, (LANES,)),  # (p_s/p)^2 sin(alpha_s)/alpha
     ("s_rate", np.float64, (LANES,)),  # -alpha/tan(alpha_s)
     ("c_rate", np.float64, (LANES,)),  # alpha tan(alpha_s)
+    # restraint, 0 and a cap of inf without it
+    ("spring", np.float64, (LANES,)),  # kappa sin(alpha) cos(alpha)/alpha
+    ("tension", np.float64, (LANES,)),  # sigma/(1 + sigma)
+    ("drag", np.float64, (LANES,)),  # 2 zeta
+    ("cap", np.float64, (LANES,)),  # largest step size on which z behaves as without the tendon [tau]
+    ("may_turn", np.float64, (LANES,)),
 ]
 """Fields of Taylor steps that describe the edges about which the bodies rotate, see `rocking._solver.taylor.step`."""
 
-AT_REST = ("slender", "alpha", "ratio", "stiffness", "sine_alpha", "cosine_alpha", "restoring_factor", "omega")
+AT_REST = ("slender", "alpha", "ratio", "stiffness", "sine_alpha", "cosine_alpha", "restoring_factor", "cap", "omega")
 """Lanes that are 1 while unused: a block at rest, which produces no infinities."""
 
 
@@ -174,7 +199,8 @@ STEP_FIELDS = [
     ("z", np.float64, _SERIES),  # coefficients of z,
     ("rate", np.float64, _SERIES),  # of dz/dtau,
     ("s", np.float64, _SERIES),  # of sin(alpha (1 - z))/sin(alpha)
-    ("c", np.float64, _SERIES),  # and of cos(alpha (1 - z))/cos(alpha)
+    ("c", np.float64, _SERIES),  # of cos(alpha (1 - z))/cos(alpha)
+    ("half", np.float64, _SERIES),  # and of cos(alpha z/2), if a body has a prestress
     # start of the step
     ("z0", np.float64, _LANES),
     ("w0", np.float64, _LANES),
@@ -193,6 +219,7 @@ STEP_FIELDS = [
 ACCURACY_FIELDS = [
     ("order", np.int64),  # degree of the steps, 6 to `MAX_ORDER`
     ("log_precision", np.float64),  # log2 of the largest ratio of the last terms to the motion
+    ("restrained", np.int64),  # 0: all bodies are free, 1: some have a tendon or a damper, 2: some have a prestress
 ]
 
 STEP_STATE = np.dtype(
@@ -228,8 +255,8 @@ def block_cells(
     alpha: NDArray[np.float64],
     vertical: NDArray[np.float64] | float = 0.0,
 ) -> NDArray[np.void]:
-    """Cells `BODY_CELL` (size,) of blocks with equal edges, from arrays (size,)."""
-    cells = np.empty(rate.size, BODY_CELL)
+    """Cells `BODY_CELL` (size,) of free blocks with equal edges, from arrays (size,)."""
+    cells = np.zeros(rate.size, BODY_CELL)
     cells["rate"], cells["alpha"], cells["ratio"], cells["stiffness"] = rate, alpha, 1.0, 1.0
     cells["vertical"] = vertical
     cells["slenderness"], cells["eta"] = slenderness[:, None], eta[:, None]
@@ -271,6 +298,13 @@ def aligned_record(layout: np.dtype[np.void]) -> Record:
     start = -memory.ctypes.data % VECTOR_BYTES
     record: Record = memory[start : start + layout.itemsize].view(layout)[0]
     return record
+
+
+def restraint_level(cells: NDArray[np.void]) -> int:
+    """The field `restrained` of Taylor steps for cells `BODY_CELL`."""
+    if cells["prestress"].any():
+        return 2
+    return int(cells["spring"].any() or cells["damping"].any())
 
 
 def step_state(flight: Record, precision: float = FULL_PRECISION) -> Record:

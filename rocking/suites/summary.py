@@ -38,8 +38,7 @@ def record_margins(outcomes: xr.Dataset) -> xr.Dataset:
 
 
 def rotation_quantiles(outcomes: xr.Dataset) -> xr.DataArray:
-    """Return the peak rotation |theta|/alpha that a share of the records does not exceed, at each level: (quantile, block,
-    intensity).
+    """Return the peak rotation |theta|/alpha that a share of the records does not exceed, (quantile, block, intensity).
 
     A record that overturns the block exceeds every rotation: nan where too many do. A quantile is the smallest peak of
     the sample that at least this share of the records does not exceed: nothing is interpolated.

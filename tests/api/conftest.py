@@ -224,7 +224,7 @@ def example_of(parameter):
     for examples in (parameter.get("examples"), schema.get("examples")):
         if examples:
             return examples[0] if isinstance(examples, list) else next(iter(examples.values()))["value"]
-    if schema.get("default") is not None:
+    if schema.get("default") not in (None, []):  # an empty list is no parameter
         return schema["default"]
     return schema["enum"][0] if parameter.get("required") and "enum" in schema else None
 

@@ -7,6 +7,7 @@ import rocking
 from rocking._excitation.records.readers.read_record import parse_record
 from tests.api.conftest import NAPA, assert_problem
 from tests.excitation.record_files import at2, rows
+from tests.excitation.test_volume_files import csmip
 
 RECORD = NAPA.read_bytes()
 BLOCK = {"width": 0.5, "height": 2.0}
@@ -160,3 +161,75 @@ def test_errors_of_the_vertical_component_name_the_parameter(client):
     assert_problem(post(client, body, route="scales", **COLUMNS, scale_max=5.0), 422, "scale_max")
     by_default = post(client, body, route="scales", **COLUMNS).json()
     assert by_default["scale"][-1] == pytest.approx(9.80665 / 4.0)
+
+
+def preview(client, body, **params):
+    response = client.post("/v1/records/preview", params=params, content=body)
+    assert response.status_code == 200, response.text
+    return response.json()
+
+
+def test_a_preview_shows_what_a_file_holds_and_what_would_be_read(client, motion):
+    found = preview(client, RECORD, samples=500)
+    assert found["columns"] == ["time [s]", "acceleration [g]"]
+    assert found["in_file"] == {"acceleration": 2, "unit": "g", "time": 1, "time_unit": "s"} == found["chosen"]
+    assert (found["file_format"], found["encoding"], found["missing"], found["problem"]) == (
+        "columns",
+        "UTF-8",
+        [],
+        None,
+    )
+    assert found["record"]["digest"] == motion.digest
+    assert len(found["time"]) == len(found["acceleration"]) <= 502
+    assert np.abs(found["acceleration"]).max() == motion.peak_acceleration  # the drawing keeps the peaks
+    assert np.diff(found["time"]).min() >= 0.0
+
+
+def test_a_preview_says_what_is_missing_or_asked(client):
+    rows = "".join(f"{10 * k};{k % 7 - 3},5\n" for k in range(40))
+    body = f"Messung\nZeit;Längs [m/s2]\n{rows}".encode()
+    found = preview(client, body)
+    assert found["record"] is None
+    assert found["missing"] == ["acceleration", "time", "unit"]
+    stated = {"skip": 1, "decimal": ","}
+    found = preview(client, body, **stated)
+    assert found["columns"] == ["Zeit", "Längs [m/s2]"]
+    assert found["names_line"] == 2
+    assert found["lines"][0] == {"number": 1, "text": "Messung", "cells": []}
+    assert found["lines"][2]["cells"] == ["0", "-3,5"]
+    stated |= {"acceleration": "Längs", "time": "1"}
+    found = preview(client, body, **stated)
+    assert found["missing"] == ["time_unit"]
+    assert found["chosen"] == {"acceleration": 2, "unit": "m/s2", "time": 1, "time_unit": None}
+    stated["time_unit"] = "ms"
+    assert preview(client, body, **stated)["record"]["time_step"] == 0.01
+    found = preview(client, body, **stated | {"unit": "g", "time_unit": "s"})
+    assert "allow_unusual" in found["problem"]["expected"]
+    assert found["record"]["peak_acceleration"] == pytest.approx(3.5 * 9.80665)  # shown beside the question
+    found = preview(client, body, **stated | {"acceleration": "Quer"})
+    assert "one column Quer" in found["problem"]["expected"]
+    latin = preview(client, body.decode().encode("cp1252"), **stated | {"acceleration": "2"})
+    assert (latin["encoding"], latin["record"]["samples"]) == ("Latin-1", 40)
+    assert_problem(client.post("/v1/records/preview", content=b"\0\0"), 422, "record")
+
+
+def test_a_preview_names_format_and_channels(client):
+    body = at2("NPTS= 100, DT= .01 SEC", body=rows(count=100)).encode()
+    found = preview(client, body)
+    assert (found["file_format"], found["columns"], found["missing"]) == ("AT2", [], [])
+    assert found["record"]["samples"] == 100
+    found = preview(client, csmip().encode())
+    assert (found["file_format"], found["record"]) == ("CSMIP", None)
+    channel = found["columns"][0]
+    assert preview(client, csmip().encode(), acceleration=channel)["record"]["name"].endswith(channel)
+    found = preview(client, b"<html>")
+    assert found["file_format"] is None
+    assert found["problem"]["was"] == "a web page or XML"
+
+
+def test_the_vertical_component_is_a_file_of_its_own(client):
+    component = at2("NPTS= 100, DT= .01 SEC", body=rows(count=100))
+    body = BLOCK | {"record": component, "vertical_record": component, "scale": 0.1}
+    record = client.post("/v1/records/response", json=body).json()["record"]
+    assert record["peak_vertical_acceleration"] == pytest.approx(record["peak_acceleration"])
+    assert_problem(client.post("/v1/records/response", json=body | {"vertical": "1"}), 422, "vertical")

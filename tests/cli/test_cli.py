@@ -58,7 +58,7 @@ def test_response_in_three_formats():
     lines = run("response", *WHOLE).splitlines()
     assert lines[:2] == [expected.sentence, expected.margin]
     assert ["peak_rotation_deg", "[deg]", "7.41882221"] in [line.split() for line in lines]
-    assert "overturns above 4.70006, survives above 13.1272, overturns above 13.9939" in lines[-1]
+    assert "overturns above 4.70006, survives above 13.1272, overturns above 13.9939" in lines[-2]
     half_sine = json.loads(run("response", "--pulse", "half_sine", *WHOLE[2:], "--format=json"))
     assert half_sine["pulse_duration"] == pytest.approx(0.25)
     near = run("response", *WHOLE[:7], "4.6 m/s^2", *WHOLE[8:])

@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from pydantic import BaseModel
 
-from rocking_api.models.answer import BY_SOLVER, InUnits, Q
+from rocking_api.models.answer import BY_SOLVER, Answer, InUnits, Q
 from rocking_api.models.blocks import ScaleThreshold
 from rocking_api.models.body_params import BodyParams, JsonBody
 from rocking_api.models.fields import Ended, InUnitsOfOne, ManySolved, OfBlock, Peaked, UnderRecord
@@ -43,8 +43,8 @@ CAUTION = (
 )
 
 
-class RecordFileParams(BodyParams):
-    """A body in SI units, and the format and layout of the file of the record."""
+class RecordLayoutParams(Params):
+    """Format and layout of the file of a record."""
 
     name: str = said("name of the file, for messages", "record", max_length=200)
     file_format: RecordFormat = None
@@ -61,6 +61,16 @@ class RecordFileParams(BodyParams):
     allow_unusual: bool = said("accept a PGA above 5 g, a PGV above 10 m/s, a step above 0.1 s", False)
     baseline_order: BaselineOrder = None
     mirrored: bool = said("the record with the other sign", False)
+
+
+class RecordPreviewParams(RecordLayoutParams):
+    """The same, and the samples for a drawing."""
+
+    samples: int = between(2, MAX_DRAWN, "most samples of the drawing", default=2000, unit="-")
+
+
+class RecordFileParams(RecordLayoutParams, BodyParams):
+    """A body in SI units, and the format and layout of the file of the record."""
 
 
 class RecordParams(RecordFileParams):
@@ -114,22 +124,34 @@ class RecordText(Params):
     """What a JSON body with a record has beside the parameters of its route."""
 
     record: str = said("text of the file", exclude=True)
+    vertical_record: str | None = said(
+        "text of the file of the vertical component, upwards, in the same layout", None, exclude=True
+    )
+
+
+class RecordPreviewBody(RecordText, RecordPreviewParams):
+    """The record, and the parameters of /v1/records/preview."""
+
+
+class BlockRecordText(RecordText):
+    """The same, and a body."""
+
     body: JsonBody  # a text once it is read
 
 
-class RecordResponseBody(RecordText, RecordResponseParams):
+class RecordResponseBody(BlockRecordText, RecordResponseParams):
     """The record, and the parameters of /v1/records/response."""
 
 
-class RecordHistoryBody(RecordText, RecordHistoryParams):
+class RecordHistoryBody(BlockRecordText, RecordHistoryParams):
     """The record, and the parameters of /v1/records/history."""
 
 
-class RecordScalesBody(RecordText, RecordScalesParams):
+class RecordScalesBody(BlockRecordText, RecordScalesParams):
     """The record, and the parameters of /v1/records/scales."""
 
 
-class RecordPulseBody(RecordText, RecordPulseParams):
+class RecordPulseBody(BlockRecordText, RecordPulseParams):
     """The record, and the parameters of /v1/records/pulse."""
 
 
@@ -144,6 +166,50 @@ class RecordDescription(SuiteRecord):
     arias_intensity: float = said("Arias intensity", unit="m/s")
     significant_duration: float = said("between 5 % and 95 % of the Arias intensity", unit="s")
     final_velocity: float = said("velocity at the last sample; large if the acceleration has an offset", unit="m/s")
+
+
+class RecordLine(BaseModel):
+    """A line of a file."""
+
+    number: int = said("its number, from 1", unit="-")
+    text: str = said("its first 200 characters")
+    cells: list[str] = said("its cells, if it is a line of names or of numbers")
+
+
+class RecordColumns(BaseModel):
+    """What is read from a file of columns."""
+
+    acceleration: int | None = said("column of the samples, from 1; null: not stated", unit="-")
+    unit: str | None = said("unit of the samples; null: not stated")
+    time: int | None = said("column of the times, from 1; null: not stated", unit="-")
+    time_unit: str | None = said("unit of the times; null: not stated")
+
+
+class RecordProblem(BaseModel):
+    """Why a file is not read, or what is asked about it. Arguments of `read_record` are between backticks."""
+
+    line: int | None = said("number of the line; null: the whole file", unit="-")
+    was: str = said("what is there")
+    expected: str = said("what should be there")
+
+
+class RecordPreviewResponse(Answer[RecordPreviewParams]):
+    """What a file holds, and the record that would be read. Nothing is solved."""
+
+    file_format: RecordFormat = said("format in which it is read; null: a format that is not read", None)
+    encoding: str | None = said("encoding of the text; null: binary")
+    lines: list[RecordLine] = said("the first lines, and those around the first row")
+    columns: list[str] = said("names of the columns or channels, empty for one without a name")
+    names_line: int | None = said("number of the line with the names of the columns; null: there is none", unit="-")
+    in_file: RecordColumns = said("what the header states by itself")
+    chosen: RecordColumns = said("what is read, with the parameters")
+    missing: list[str] = said("parameters that are missing")
+    problem: RecordProblem | None = said("why no record is read, or what is asked about it; null: nothing")
+    record: RecordDescription | None = said("the record; null: it cannot be read")
+    time: list[float] = said("of the drawing: from the first sample", unit="s")
+    acceleration: list[float] = said(
+        "of the drawing: all samples, or the least and the largest of every few samples", unit="m/s2"
+    )
 
 
 class RecordAnswer(InUnits[Q]):

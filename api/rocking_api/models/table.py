@@ -18,10 +18,9 @@ class TableParams(Params):
     """The layout of a table: `TableLayout` has the same names."""
 
     columns: list[str] = said(
-        "canonical header of a column with another one, or unused; may be repeated",
+        "canonical header of a column, such as Breite (cm)=width [cm], or unused; may be repeated",
         [],
         max_length=MAX_STATED,
-        examples=[["Breite (cm)=width [cm]"]],
     )
     decimal: Decimal = "."
     delimiter: Delimiter = None

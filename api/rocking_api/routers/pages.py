@@ -16,6 +16,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+from rocking._base.units import UNITS
 from rocking_api.extension import MenuEntry, extensions
 from rocking_api.http.errors import FULL, KINDS, OTHERS, PROBLEMS
 from rocking_api.settings import Settings, has_data
@@ -50,6 +51,7 @@ def templates() -> Environment:
         lstrip_blocks=True,
     )
     environment.globals["pulses"] = PULSES
+    environment.globals["record_units"] = [(unit, unit.replace("s2", "s²")) for unit in UNITS["m/s2"]]
     return environment
 
 

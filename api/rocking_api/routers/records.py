@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 from fastapi import APIRouter, Query, Request, Response
 
+from rocking._base.arrays import Array
 from rocking._base.errors import InvalidArgumentError, RecordFileError, finite
 from rocking._base.quantities import MASS
 from rocking._dimensional.curves import history, with_forces
 from rocking._dimensional.problem import Problem
 from rocking._dimensional.response import changes_of, respond
 from rocking._dimensional.thresholds import scale_window, thresholds_of
-from rocking._excitation.records.readers.read_record import parse_record
+from rocking._excitation.records.readers.columns import Choice
+from rocking._excitation.records.readers.preview import preview_record
+from rocking._excitation.records.readers.read_record import parse_record, with_vertical
 from rocking._excitation.records.record import Record
 from rocking._excitation.records.record import summary_of as record_summary
 from rocking._excitation.records.vertical import reject_flight
@@ -41,13 +45,37 @@ _EXAMPLE = "time [s],acceleration [g]\n" + "".join(
 )
 """One full sine of 1 s and 0.6 g."""
 
+STATED_OF_FILE = [name for name in LAYOUT if name not in ("vertical", "allow_unusual")]
+"""Arguments of `read_record` about one component."""
+
+_MEDIA = dict.fromkeys(("text/plain", "text/csv", "application/octet-stream"), _EXAMPLE)
+
 FILE = encoding.body_of(
     {"record": _EXAMPLE, "width": 0.4, "height": 1.6},
-    dict.fromkeys(("text/plain", "text/csv", "application/octet-stream"), _EXAMPLE),
+    _MEDIA,
     "file of the record: AT2, ESM, K-NET, COSMOS, CSMIP, GeoNet by their signatures, or columns in a stated layout, "
     "with the parameters in the query; or JSON that holds them all",
 )
-"""The OpenAPI description of the body of all these routes."""
+"""The OpenAPI description of the body of routes that answer for a block."""
+
+FILE_ALONE = encoding.body_of({"record": _EXAMPLE}, _MEDIA, "file of the record, or JSON that holds its text")
+"""That of the route that shows what the file holds."""
+
+
+@router.post("/preview", summary="What a file of a record holds, and how it would be read", openapi_extra=FILE_ALONE)
+async def post_preview(
+    body: encoding.JsonOrFile[m.RecordPreviewBody],
+    query: Annotated[m.RecordPreviewParams, Query()],
+    request: Request,
+    service: ServiceDep,
+    url: Url,
+) -> m.RecordPreviewResponse:
+    """First lines, columns, what is missing, and the record that would be read. Nothing is solved.
+
+    A file that is not read is no error: `problem` says what is wrong, or what is asked.
+    """
+    params = encoding.stated(body, query)
+    return await service.read_body(lambda stop: _preview(body, params, url, stop), request)
 
 
 @router.post("/response", summary="A block in SI units under a record", openapi_extra=FILE)
@@ -131,16 +159,82 @@ async def post_pulse(
     return await service.solve(lambda stop: _pulse(params, _record(body, params, stop), url, stop), request)
 
 
-def _record(body: m.RecordText | bytes, params: m.RecordFileParams, stop: StopFlag) -> Record:
+def _record(body: m.RecordText | bytes, params: m.RecordLayoutParams, stop: StopFlag) -> Record:
     """The record in a body."""
-    raw = body if isinstance(body, bytes) else body.record.encode()
-    layout = {name: getattr(params, name) for name in LAYOUT if name != "format"}
     try:
-        record = parse_record(raw, params.name, format=params.file_format, **layout, stop=stop)
+        return _read(body, params, stop)
     except RecordFileError as error:
         raise refusal(error.message(m.as_parameter, "?", "&"), "record", error.value, error.expected) from None
+
+
+def _read(body: m.RecordText | bytes, params: m.RecordLayoutParams, stop: StopFlag, **stated: Any) -> Record:
+    """The record in a body; `stated` take the place of parameters."""
+    layout = {**_layout(params), **stated}
+    record = parse_record(_content(body), params.name, **layout, stop=stop)
+    if isinstance(body, m.RecordText) and body.vertical_record is not None:
+        if params.vertical is not None:
+            raise InvalidArgumentError("vertical", params.vertical, "absent beside the file of `vertical_record`")
+        upwards = parse_record(body.vertical_record.encode(), f"{params.name}, vertical", **layout, stop=stop)
+        record = with_vertical(record, upwards)
     record = record.baseline_corrected(order=params.baseline_order)
     return record.mirrored() if params.mirrored else record
+
+
+def _content(body: m.RecordText | bytes) -> bytes:
+    return body if isinstance(body, bytes) else body.record.encode()
+
+
+def _layout(params: m.RecordLayoutParams) -> dict[str, Any]:
+    """Arguments of `read_record`."""
+    return {name: getattr(params, "file_format" if name == "format" else name) for name in LAYOUT}
+
+
+def _preview(
+    body: m.RecordText | bytes, params: m.RecordPreviewParams, url: str, stop: StopFlag
+) -> m.RecordPreviewResponse:
+    layout = _layout(params)
+    preview = preview_record(_content(body), params.name, **{name: layout[name] for name in STATED_OF_FILE}, stop=stop)
+    problem = None
+    record: Record | None = None
+    try:
+        record = _read(body, params, stop)
+    except RecordFileError as error:
+        problem = m.RecordProblem(line=error.line, was=str(error.value)[:200], expected=error.expected)
+        with suppress(RecordFileError):  # what is unusual is shown beside the question
+            record = _read(body, params, stop, allow_unusual=True)
+    time, acceleration = (np.zeros(0), np.zeros(0)) if record is None else _drawn(record, params.samples)
+    return m.RecordPreviewResponse(
+        query=params,
+        url=url,
+        file_format=preview.format,
+        encoding=preview.encoding,
+        lines=[m.RecordLine(**vars(line)) for line in preview.lines],
+        columns=preview.columns,
+        names_line=preview.names_line,
+        in_file=_columns(preview.in_file),
+        chosen=_columns(preview.choice),
+        missing=list(preview.missing),
+        problem=problem,
+        record=None if record is None else _description(record),
+        time=time.tolist(),
+        acceleration=acceleration.tolist(),
+    )
+
+
+def _columns(choice: Choice) -> m.RecordColumns:
+    samples = None if choice.samples is None else choice.samples + 1
+    time = None if choice.time is None else choice.time + 1
+    return m.RecordColumns(acceleration=samples, unit=choice.unit, time=time, time_unit=choice.time_unit)
+
+
+def _drawn(record: Record, most: int) -> tuple[Array, Array]:
+    """Times [s] and accelerations [m/s2], or the least and the largest acceleration of every few samples."""
+    if record.samples <= most:
+        return record.times, record.acceleration
+    starts = np.arange(0, record.samples, math.ceil(2 * record.samples / most))
+    least = np.minimum.reduceat(record.acceleration, starts)
+    largest = np.maximum.reduceat(record.acceleration, starts)
+    return np.repeat(record.times[starts], 2), np.column_stack([least, largest]).ravel()
 
 
 def _response(

@@ -7,30 +7,40 @@ import io
 import re
 import shlex
 from collections.abc import Iterator
+from dataclasses import asdict
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path, PurePath
+from typing import Any
 from urllib.parse import unquote_to_bytes
 
 from fastapi import APIRouter, Request, Response
-from fastapi.responses import HTMLResponse, PlainTextResponse
+from fastapi.responses import HTMLResponse, JSONResponse, PlainTextResponse
 from rocking_api.http.encoding import text_response
-from rocking_api.http.errors import TooLargeError
+from rocking_api.http.errors import TooLargeError, UnsupportedBodyError
+from rocking_api.models.table import table_refusal
 from rocking_api.routers.pages import POLICY, html
 from rocking_api.service import Service, ServiceDep
 from rocking_api.settings import Settings
 
 from rocking.extension import (
     SHEETS,
+    UNITS,
     BadRow,
+    InvalidArgumentError,
+    PreviewLine,
     StopFlag,
     TableFile,
+    TableFileError,
     TableLayout,
+    TablePreview,
     open_text,
     plain_numbers,
-    text_of,
+    preview_table,
+    stated_columns,
 )
 from rocking_assessment._objects.assess import assess
-from rocking_assessment._objects.columns import VERDICTS
+from rocking_assessment._objects.columns import INPUTS, SHAPES, VERDICTS
 from rocking_assessment._objects.report import Project, report_html
 from rocking_assessment._objects.result import Assessment
 from rocking_assessment._objects.summary import counts_of, lines_of, names_in_short, number_of, warnings_of
@@ -58,7 +68,18 @@ REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 
-DEFAULTS = SITE | {"table": "", "title": "Objects at a site"}
+LAYOUT = {"columns": "", "decimal": "", "delimiter": "", "skip": "", "sheet": "", "allow_unusual": ""}
+"""Fields of the layout of the table; `columns` has a line for each column that is stated."""
+
+DEFAULTS = SITE | LAYOUT | {"table": "", "table_name": "TABLE", "title": "Objects at a site"}
+
+FIRST = 3  # objects that a preview describes
+LINES_UNREAD = 12  # lines that it shows of a table that is not divided into cells
+
+MAIN = ("name", "width", "depth", "diameter", "height", "mass", "friction", "notes")
+"""Quantities that every page has a list for; those of the others are folded."""
+
+UNITS_OF = {si: tuple(units) for si, units in UNITS.items()}
 
 router = APIRouter(prefix=PATH, include_in_schema=False)
 
@@ -77,7 +98,7 @@ async def post_objects_page(request: Request, service: ServiceDep) -> Response:
 
     def work(stop: StopFlag) -> Response:
         given = _fields(raw, stop)
-        table = objects_of_csv(given["table"], MAX_OBJECTS, stop)
+        table = _table(given, stop)
         found = _assessed(table, given, stop) if table.objects or not table.bad_rows else None
         return _page(given, service.settings, table, found)
 
@@ -88,18 +109,7 @@ async def post_objects_page(request: Request, service: ServiceDep) -> Response:
 async def post_report(request: Request, service: ServiceDep) -> Response:
     """The report of the assessment, to print."""
     given, table, found = await _answer(request, service)
-    words = ["rocking", "assess", "TABLE"]
-    words += ["--pga", quantity_of(given, "pga").replace(" ", "")]
-    periods = periods_of(given)
-    if given["pgv"].strip():
-        words += ["--pgv", quantity_of(given, "pgv").replace(" ", "")]
-    elif periods is not None:
-        words += ["--period-min", periods[0].replace(" ", ""), "--period-max", periods[1].replace(" ", "")]
-    if given["floor_periods"].strip():
-        modes, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
-        words += ["--floor", ",".join(f"{period}s" for period in modes)]
-        words += ["--floor-participation", ",".join(map(str, participation))]
-    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(words))
+    project = Project(given["title"], "", "", datetime.now(UTC).date().isoformat(), shlex.join(_command(given)))
     text = await service.solve_one(lambda _: report_html(found, project, table.bad_rows, table.reading), request)
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
@@ -122,20 +132,110 @@ async def _answer(request: Request, service: Service) -> tuple[dict[str, str], O
 
     def work(stop: StopFlag) -> tuple[dict[str, str], ObjectTable, Assessment]:
         given = _fields(raw, stop)
-        table = objects_of_csv(given["table"], MAX_OBJECTS, stop)
+        table = _table(given, stop)
         return given, table, _assessed(table, given, stop)
 
     return await service.solve_one(work, request)
 
 
+@router.post("/preview")
+async def post_preview(request: Request, service: ServiceDep) -> Response:
+    """What the table in the form holds, and how it would be read. Nothing is assessed."""
+    raw = await request.body()
+    return await service.read_body(lambda stop: JSONResponse(_preview(_fields(raw, stop), stop)), request)
+
+
 @router.post("/text")
-async def post_text(request: Request, service: ServiceDep, name: str = "") -> Response:
-    """The text of a file, of a sheet as CSV."""
+async def post_text(
+    request: Request, service: ServiceDep, name: str = "", sheet: str = "", decimal: str = ""
+) -> Response:
+    """A sheet of a workbook as CSV, with a decimal sign."""
     raw = await request.body()
     ending = PurePath(name).suffix.lower()
     if ending not in SHEETS:
-        return PlainTextResponse(await service.read(lambda _: text_of(raw, "table")))
-    return PlainTextResponse(await text_of_workbook(service, raw, "table", name))
+        raise UnsupportedBodyError("table", ending, f"a workbook: {', '.join(SHEETS)}")
+    text = await text_of_workbook(service, raw, "table", name, sheet or None, decimal or ".")
+    return PlainTextResponse(text)
+
+
+def _command(given: dict[str, str]) -> list[str]:
+    """The words of the command that assesses the table at the site of a form."""
+    words = ["rocking", "assess", given["table_name"]]
+    words += ["--pga", quantity_of(given, "pga").replace(" ", "")]
+    periods = periods_of(given)
+    if given["pgv"].strip():
+        words += ["--pgv", quantity_of(given, "pgv").replace(" ", "")]
+    elif periods is not None:
+        words += ["--period-min", periods[0].replace(" ", ""), "--period-max", periods[1].replace(" ", "")]
+    if given["floor_periods"].strip():
+        modes, participation = (plain_numbers(name, given[name]) for name in ("floor_periods", "floor_participation"))
+        words += ["--floor", ",".join(f"{period}s" for period in modes)]
+        words += ["--floor-participation", ",".join(map(str, participation))]
+    for text in given["columns"].splitlines():
+        words += ["--columns", text]
+    for name in ("decimal", "delimiter", "skip", "sheet"):
+        if given[name].strip():
+            words += [f"--{name}", given[name].strip()]
+    return [*words, "--allow-unusual"] if given["allow_unusual"] else words
+
+
+def _layout(given: dict[str, str]) -> TableLayout:
+    """What a form states about its table; the sheet is chosen before."""
+    skip = given["skip"].strip() or "0"
+    if not skip.isdecimal() or len(skip) > 4:
+        raise InvalidArgumentError("skip", skip, "a number of lines, 0 to 9999")
+    return TableLayout(
+        columns=stated_columns(given["columns"].splitlines()),
+        decimal=given["decimal"] or ".",
+        delimiter=given["delimiter"] or None,
+        skip=int(skip),
+        allow_unusual=bool(given["allow_unusual"]),
+    )
+
+
+def _table(given: dict[str, str], stop: StopFlag) -> ObjectTable:
+    """The objects of a form."""
+    try:
+        return objects_of_csv(given["table"], MAX_OBJECTS, stop, _layout(given))
+    except TableFileError as error:
+        raise table_refusal(error) from None
+
+
+def _preview(given: dict[str, str], stop: StopFlag) -> dict[str, Any]:
+    """What the page shows before anything is assessed."""
+    layout = _layout(given)
+    problem: dict[str, Any] | None = None
+    table = ObjectTable()
+    try:
+        table = objects_of_csv(given["table"], MAX_OBJECTS, stop, layout)
+    except TableFileError as error:
+        problem = {"line": error.line, "was": str(error.value), "expected": error.expected}
+    except InvalidArgumentError as error:
+        problem = {"line": None, "was": f"{error.parameter} {error.value}", "expected": error.allowed}
+    try:
+        preview = preview_table(open_text(given["table"], "table", SCHEMA, layout, stop))
+    except TableFileError:
+        lines = islice(io.StringIO(given["table"]), LINES_UNREAD)
+        preview = TablePreview([PreviewLine(k, line.rstrip()[:200], []) for k, line in enumerate(lines, 1)])
+    try:
+        command = _command(given)
+    except InvalidArgumentError:  # of the site, which is not checked here
+        command = []
+    first = [
+        {"name": item.name, "height": next(iter(item.planes.values())).height}
+        | {"bases": {direction: plane.base for direction, plane in item.planes.items()}}
+        for item in table.objects[:FIRST]
+    ]
+    return asdict(preview) | {
+        "problem": problem,
+        "objects": len(table.objects),
+        "bad_rows": len(table.bad_rows),
+        "reasons": [str(row) for row in table.bad_rows[:FIRST]],
+        "skipped": table.skipped,
+        "remarks": table.remarks,
+        "first": first,
+        "command": command,
+    }
 
 
 def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
@@ -153,7 +253,7 @@ def _fields(body: bytes, stop: StopFlag) -> dict[str, str]:
             corrected.setdefault(int(found[1]), {})[int(found[2]) if found[2] else None] = value
     if corrected:
         text = fields["table"].removeprefix("\ufeff")
-        file = open_text(text, "table", SCHEMA, TableLayout(), stop)
+        file = open_text(text, "table", SCHEMA, _layout(fields), stop)
         above = text[: len(text) - sum(map(len, file.lines))]
         rows = _rows_of(file)
         corrected_rows = [_with_cells(row, corrected.get(number, {}), file.delimiter) for number, row in rows]
@@ -211,7 +311,7 @@ def _page(
     numbers = {bad.row for bad in bad_rows}
     texts: dict[int, str] = {}
     if numbers:
-        file = open_text(given["table"], "table", SCHEMA, TableLayout())
+        file = open_text(given["table"], "table", SCHEMA, _layout(given))
         texts = {number: row.rstrip("\r\n") for number, row in _rows_of(file) if number in numbers}
     lines = lines_of(found) if found else []
     text = html(
@@ -231,6 +331,9 @@ def _page(
         verdicts=VERDICTS,
         number_of=number_of,
         address=address_of,
+        quantities=[quantity for quantity in INPUTS if quantity.name in MAIN],
+        others=[quantity for quantity in (*INPUTS, *SHAPES) if quantity.name not in MAIN],
+        units_of=UNITS_OF,
     )
     return HTMLResponse(text, headers={"Content-Security-Policy": POLICY, "Cache-Control": "no-cache"})
 

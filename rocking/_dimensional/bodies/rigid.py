@@ -12,6 +12,7 @@ from rocking._base.quantity import Quantity
 
 if TYPE_CHECKING:
     from rocking._dimensional.block import Block
+    from rocking._dimensional.restrained_block import RestrainedBlock
     from rocking._dimensional.rigid_body import RigidBody
 
 VERTICES = Quantity(
@@ -28,6 +29,30 @@ def rectangle(
     from rocking._dimensional.block import Block  # noqa: PLC0415
 
     return Block(width, height, gravity)
+
+
+TENDON = Quantity("stiffness", "N/m", "stiffness of a vertical tendon along the centre line", symbol="k", lower=0.0,
+    closed="left", default=0.0, example="50 kN/m")  # fmt: skip
+
+TENSION = Quantity("prestress", "N", "prestress of the tendon", symbol="P_0", lower=0.0, closed="left", default=0.0,
+    example="2 kN")  # fmt: skip
+
+DAMPER = Quantity("damping", "N s/m", "vertical damper at the edge that uplifts", symbol="c", lower=0.0, closed="left",
+    default=0.0, example="4 kN s/m")  # fmt: skip
+
+
+def anchored(
+    width: Annotated[float, q.WIDTH],
+    height: Annotated[float, q.HEIGHT],
+    mass: Annotated[float, q.MASS],
+    stiffness: Annotated[float, TENDON] = 0.0,
+    prestress: Annotated[float, TENSION] = 0.0,
+    damping: Annotated[float, DAMPER] = 0.0,
+    gravity: Annotated[float, q.GRAVITY] = STANDARD_GRAVITY,
+) -> "RestrainedBlock":
+    """A rectangular block with a vertical tendon along its centre line and a damper at the edge that uplifts."""
+    block = rectangle(width, height, gravity)
+    return block.with_restraint(stiffness=stiffness, prestress=prestress, damping=damping, mass=mass)
 
 
 def offset_mass(

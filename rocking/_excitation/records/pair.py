@@ -17,8 +17,10 @@ PAIR_ANGLES = 12
 
 def checked_pair(records: Any) -> tuple[Record, ...]:
     """Return a record, or two with the same step, as a tuple."""
-    pair = tuple(records) if isinstance(records, Sequence) else (records,)
-    if len(pair) not in (1, 2) or not all(isinstance(record, Record) for record in pair):
+    pair, size = (records,), 1
+    if isinstance(records, Sequence):
+        pair, size = tuple(records), 2
+    if len(pair) != size or not all(isinstance(record, Record) for record in pair):
         raise InvalidArgumentError("records", records, "records, or pairs of two records")
     first, second = pair[0], pair[-1]
     if first.time_step != second.time_step:

@@ -28,6 +28,9 @@ def differ_in_eta_only(one: Record, other: Record) -> bool:
         and one.slenderness[1] == other.slenderness[1]
         and one.ratio == other.ratio
         and one.stiffness == other.stiffness
+        and one.spring == other.spring
+        and one.prestress == other.prestress
+        and one.damping == other.damping
     )
 
 

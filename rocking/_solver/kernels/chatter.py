@@ -13,7 +13,7 @@ def chatter_ends_in_rest(flight: Record, w: float, phase: float, end: float) -> 
     to rest in it. The window is four times as long as the series of flights would be under the present q. f is monotone
     up to `end`, so that q on both edges takes its extremes at the two ends of the window: no value between is missed.
     """
-    stiffest = max(1.0, flight.stiffness[1])
+    stiffest = flight.level * max(1.0, flight.stiffness[1])
     loss = 1.0 - max(flight.eta[0], flight.eta[1])
     # q <= 1 on one of the edges, and sin(alpha_s) <= alpha_s: the window is at least this long, whatever f is
     if not phase + flight.omega * (8.0 * w / (stiffest * loss)) <= end:

@@ -16,6 +16,7 @@ from rocking._base.errors import SearchError
 from rocking._numba.compilation import Record, kernel
 from rocking._solver.kernels.chatter import chatter_ends_in_rest
 from rocking._solver.kernels.intervals import split_into_intervals
+from rocking._solver.restrained_rocking import steepest_pull
 from rocking._solver.rules import (
     IMPACT_LIMIT,
     count_impact,
@@ -63,7 +64,8 @@ def on_impact(flight: Record, w: float) -> None:
     Given: the flight that has ended, and the interval in which it started. Decided: the interval of the impact, and
     what follows there: a flight about the next edge, an uplift, or rest. In a destabilising interval a flight about the
     edge of its level does not end, since z'' >= 0. So at most three impacts take place there: a flight from an earlier
-    interval ends, then one about the other edge, and one within rounding of an end of the interval.
+    interval ends, then one about the other edge, and one within rounding of an end of the interval. A tendon can end a
+    flight there: by the comparison of `rocking._solver.taylor.step.set_restraint_lane` it lasts pi/sqrt(k) or more.
     """
     phase = flight.phase + flight.omega * flight.length
     flight.next_w = count_impact(flight, flight.length, w)
@@ -73,6 +75,7 @@ def on_impact(flight: Record, w: float) -> None:
     if (
         flight.interval_level[flight.interval] * flight.sign < 0.0
         and flight.phase >= flight.interval_phase[flight.interval]
+        and not (flight.may_turn == 1 and steepest_pull(flight) * flight.length * flight.length > 1.0)
     ):
         # the flight started in this interval about the edge that is destabilised here, and should not have ended: it
         # has no length but for rounding, at one end of the interval or the other

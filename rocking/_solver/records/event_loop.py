@@ -41,7 +41,8 @@ def init_body_state(block: Record, cell: Record, each_side: bool) -> None:
     """Set a body to rest at the first sample, with an empty response; `each_side`: peaks are wanted for each edge."""
     set_body(block, cell, each_side)
     reset_response(block)
-    block.h, block.vertical = cell.rate, cell.vertical
+    # V and F over 1 + sigma, less the prestress, have the levels of a free body
+    block.h, block.vertical = cell.rate, cell.vertical / block.level
     set_sign(block, 1.0)
     block.interval, block.s, block.w0, block.largest_z, block.stepped = 0, 0.0, 0.0, 0.0, 0
 

@@ -1,7 +1,7 @@
 """`record_response`: responses of blocks under a recorded ground motion."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -23,10 +23,13 @@ from rocking._solver.chunks import AVAILABLE_CORES, fill_chunks
 from rocking._solver.records.batch import solve_by_steps, solve_slender
 from rocking._solver.records.samples import TIME, motion_samples, pulse_samples
 from rocking._solver.records.state import body_states, step_state, taylor_orders
+from rocking._solver.restrained import equivalent_free, in_own_units, is_restrained, restrain
 from rocking._solver.state import EDGE_COLUMNS, RESPONSE_RECORD, block_cells
 
 MAX_DIVIDED = 200_000
 """Most intervals of a pulse after those longer than `MAX_INTERVAL` are divided [-]."""
+
+NO_RESTRAINT: Mapping[str, Array] = {}
 
 MIN_CHUNK, MAX_CHUNK = 64, 512
 """Cells given to a thread at a time: at least a millisecond of work, with full SIMD lanes for most of it; more in
@@ -41,6 +44,7 @@ def record_response(
     restitution: ArrayLike,
     alpha: ArrayLike | None = None,
     vertical_scale: ArrayLike | None = 1.0,
+    restraint: Mapping[str, Array] = NO_RESTRAINT,
     threads: int | None = None,
     stop: StopFlag | None = None,
     body: Any = None,
@@ -48,7 +52,7 @@ def record_response(
     """`rocking.peak_response` under a record, for arguments without labels; `body` as of `Response`.
 
     "pulse" in the descriptions of the fields stands for the motion. Impacts are counted until the outcome and the peak
-    are certain.
+    are certain. `restraint`: of `rocking._model.checks.check_restraint`.
     """
     cores = AVAILABLE_CORES if threads is None else integer("threads", threads, 1, math.inf)
     given = {
@@ -58,12 +62,15 @@ def record_response(
         "alpha": alpha,
         "vertical_scale": vertical_scale,
     }
-    named = check_record_groups(motion, **given)
-    groups = broadcast(given, [*named.values()])
+    named = check_record_groups(motion, **given) | dict(restraint)
+    groups = broadcast(given | dict(restraint), [*named.values()])
     shape = groups[0].shape
-    p, s, eta, angle, vertical = (contiguous_array(group).ravel() for group in groups)
+    p, s, eta, angle, vertical, *held = (contiguous_array(group).ravel() for group in groups)
     cells = block_cells(p * motion.time_step, s, eta, angle, vertical)
-    records, _ = solve_bodies(motion_samples(motion), cells, cores, stop)
+    restrain(cells, dict(zip(restraint, held, strict=True)))
+    by_free, replaced = equivalent_free(cells, by_samples=True)
+    records, _ = solve_bodies(motion_samples(motion), replaced, cores, stop)
+    records[by_free] = in_own_units(records[by_free], cells[by_free])
     found: dict[str, NDArray[Any]] = {field.name: records[field.name].reshape(shape) for field in SOLVED_FIELDS}
     if motion.vertical is None:
         del named["vertical_scale"]
@@ -79,12 +86,15 @@ def record_cells(
     restitution: float,
     alpha: float | None,
     vertical_scale: Array | None,
+    restraint: Mapping[str, Array] = NO_RESTRAINT,
 ) -> NDArray[np.void]:
     """Cells `BODY_CELL` (size,) of blocks under a record, from groups that have been checked."""
     vertical = 0.0 if record.vertical is None or vertical_scale is None else vertical_scale
     one = np.ones(slenderness.size)
     rate = frequency_parameter * record.time_step * one
-    return block_cells(rate, slenderness, restitution * one, (alpha or 0.0) * one, vertical)
+    cells = block_cells(rate, slenderness, restitution * one, (alpha or 0.0) * one, vertical)
+    restrain(cells, restraint)
+    return cells
 
 
 def check_record_groups(motion: Record, **given: Any) -> dict[str, Array]:
@@ -166,11 +176,13 @@ def solve_bodies(
     `each_side`: whether the peaks of each edge are wanted, as they must be where the edges differ: float array (size,
     EDGE_COLUMNS); else the second result has no rows. Errors as of `rocking._solver.peak_response.solve_cells`.
     """
-    by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | each_side
+    restrained = is_restrained(cells)
+    by_steps = (cells["alpha"] > 0.0) | (cells["vertical"] != 0.0) | restrained | each_side
     kinds = np.full(cells.size, -1)
     if by_steps.any():
         # the degree sets the rounding of a cell: it must not depend on the cells beside it in the array or the thread
         kinds[by_steps] = 2 * taylor_orders(samples, cells[by_steps]) + (cells["vertical"][by_steps] != 0.0)
+        kinds[restrained] += 100 * (1 + (cells["prestress"][restrained] != 0.0))
     if cells.size and (kinds != kinds[0]).any():
         return _each_kind(kinds, lambda own, _: solve_bodies(samples, cells[own], threads, stop, each_side), each_side)
     records, edges = np.empty(cells.size, RESPONSE_RECORD), np.empty((cells.size if each_side else 0, EDGE_COLUMNS))

@@ -17,6 +17,7 @@ from rocking._solver.state import (
     PROGRESS_FIELDS,
     STEP_FIELDS,
     aligned_record,
+    restraint_level,
 )
 
 MIN_ORDER = 14  # lowest degree [-]: lower ones need more steps where the motion is strong, and take longer in all
@@ -86,6 +87,7 @@ def step_state(samples: NDArray[np.float64], cells: NDArray[np.void]) -> Record:
     steps["order"] = taylor_orders(samples, cells).max()
     steps["log_precision"] = math.log2(FULL_PRECISION)
     steps["has_vertical"] = int(cells["vertical"].any())
+    steps["restrained"] = restraint_level(cells)
     for name in AT_REST:
         steps[name] = 1.0
     return steps

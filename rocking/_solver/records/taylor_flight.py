@@ -7,7 +7,7 @@ argument of `rocking._solver.taylor.flight` holds on each piece:
 
 - q > 0: z = 0 is crossed downwards only, once. The sign of z at the end of a step decides.
 - q <= 0: F <= -V and S <= C, so that V S + F C <= V (S - C) <= 0. z'' >= 0 for all z >= 0 up to |theta| = pi/2, and z
-  has at most one minimum and no maximum.
+  has at most one minimum and no maximum; under a tendon (`may_turn`) it may have one, as there.
 """
 
 import math
@@ -71,6 +71,15 @@ def never_returns(block: Record, samples: FloatArray, z: float, w: float) -> boo
     if alpha * z >= 0.5 * math.pi:  # it lies on its side
         return True
     k = block.interval
+    if block.restrained == 1:
+        # V sin(alpha z - alpha) exceeds all that restores: it grows up to pi/2, these are bounded, or grow less
+        lowest = 1.0 + block.level * block.vertical * samples[LATER_LOW, k]
+        strength = block.level * block.a[0] * samples[LATER, k]
+        if alpha == 0.0:
+            held = block.level - 1.0 + block.spring * z + strength
+            return bool(lowest > block.spring and lowest * beyond > held)
+        held = block.spring + math.sin(alpha) * (block.level - 1.0) + math.tan(alpha) * strength
+        return bool(lowest * math.sin(alpha * beyond) > held)
     strongest = block.a[block.side] * samples[LATER, k] / (1.0 + block.vertical * samples[LATER_LOW, k])
     if beyond <= ratio * strongest:  # sin(x) <= x <= tan(x): no need of either
         return False
@@ -90,7 +99,7 @@ def process_step(block: Record, samples: FloatArray, steps: Record, lane: int) -
         impact = impact_in_step(steps, lane, destabilised, block.from_ground == 1)
         if impact >= 0.0:
             h, z, w = impact, 0.0, min(evaluate_series(steps.rate, lane, steps.order - 1, impact), 0.0)
-        if not destabilised:
+        if not destabilised or block.may_turn == 1:
             known = max(known_rotation(block), block.largest_z)
             block.largest_z = max(block.largest_z, highest_peak(steps, lane, 0.0, h, z, w, known))
         if impact >= 0.0:

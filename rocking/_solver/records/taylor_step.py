@@ -6,7 +6,7 @@ V = V0 + V' tau have two coefficients instead of a series, which removes one of 
 
 from rocking._numba.compilation import Record, kernel
 from rocking._numba.simd import absolute, load, minimum, select, splat, store
-from rocking._solver.taylor.step import choose_step_size, evaluate_step, start_series
+from rocking._solver.taylor.step import choose_step_size, evaluate_step, extend_half, start_half, start_series
 
 
 @kernel
@@ -20,6 +20,10 @@ def expand_motion(steps: Record) -> None:
         vertical, vertical_rate = load(steps.vertical, 0), load(steps.vertical_rate, 0)
     start_series(steps)
     factor, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    restrained, tension = steps.restrained, load(steps.tension, 0)
+    spring, drag = load(steps.spring, 0), load(steps.drag, 0)
+    if restrained == 2:
+        start_half(steps)
     for n in range(steps.order - 1):
         restoring = load(s, n)
         if has_vertical:
@@ -35,11 +39,17 @@ def expand_motion(steps: Record) -> None:
             sine += at_j * load(c, n - j)
             cosine += at_j * load(s, n - j)
         reciprocal = 1.0 / (n + 1.0)
+        if restrained == 2:
+            restoring += tension * (load(steps.half, n) - load(s, n))
         acceleration = factor * restoring * -reciprocal  # (2.2)
+        if restrained > 0:
+            acceleration -= (spring * (load(c, n) - load(s, n)) + drag * load(rate, n)) * reciprocal
         store(rate, n + 1, acceleration)
         store(z, n + 2, acceleration * (1.0 / (n + 2.0)))
         store(s, n + 1, s_rate * sine * reciprocal)
         store(c, n + 1, c_rate * cosine * reciprocal)
+        if restrained == 2:
+            extend_half(steps, n + 1)
 
 
 @kernel

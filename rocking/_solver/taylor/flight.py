@@ -12,12 +12,17 @@ is -(sin(alpha)/alpha) q:
   impact needs w < 0 at the start; then z <= 0 at the end or at the minimum shows it.
 - q <= 0 and w >= 0: z increases, nothing happens until the acceleration is restoring again. Such a step may pass the
   end of the destabilising interval.
+
+A damper changes none of this: z'' + 2 zeta z' takes the place of z''. Under a tendon, and a prestress of a rigid body,
+z may have a maximum while q <= 0 (`may_turn`). Then each segment holds one sign of q, peaks are searched for on all
+steps, and these are so short that z has the zeros above (`rocking._solver.taylor.step.set_restraint_lane`).
 """
 
 import math
 
 from rocking._base.errors import SearchError
 from rocking._numba.compilation import Record, kernel
+from rocking._solver.restrained_rocking import growing_part
 from rocking._solver.rules import known_rotation
 from rocking._solver.state import IMPACT, IN_FLIGHT, OVERTURNS, PULSE_END
 from rocking._solver.taylor.events import evaluate_series, first_crossing, refine_root, second_derivative_bound
@@ -41,7 +46,7 @@ def next_segment(flight: Record, steps: Record, lane: int) -> None:
     """Set the phase at which the steps of this lane must end next: the segment holds one case of the three above."""
     until, count = flight.interval, flight.interval_count
     restoring_phase = steps.phase[lane]
-    if steps.w0[lane] >= 0.0:
+    if steps.w0[lane] >= 0.0 and flight.may_turn == 0:
         # the block rises while it is destabilised: no event before `restoring_phase`, and the segment goes on beyond it
         while until < count and is_destabilised(flight, until):
             until += 1
@@ -91,6 +96,9 @@ def impact_in_step(steps: Record, lane: int, destabilised: bool, starts_at_groun
 def impact_at_dip(steps: Record, lane: int) -> float:
     """Time of the impact before a minimum of z between w < 0 and w > 0 while the block is destabilised, or -1."""
     z, order = steps.z, steps.order
+    if steps.may_turn[lane] > 0.0:  # several minima cannot be excluded
+        bound = second_derivative_bound(z, lane, order, steps.h[lane])
+        return float(first_crossing(z, lane, order, 0.0, steps.h[lane], True, bound))
     # z is convex there: w has one zero, the minimum, and z falls up to it
     bottom = first_crossing(steps.rate, lane, order - 1, 0.0, steps.h[lane], False, steps.second_derivative_bound[lane])
     if bottom > 0.0 and evaluate_series(z, lane, order, bottom) <= 0.0:
@@ -157,7 +165,11 @@ def process_step(flight: Record, steps: Record, lane: int) -> tuple[int, float, 
     if impact >= 0.0:
         return IMPACT, w, z
     # no return from the horizontal, nor from z + w >= 1 + a under an acceleration that |a f| <= a bounds
-    if flight.alpha > 0.0:
+    if flight.restrained == 1 and flight.alpha == 0.0:
+        # (growing_part)' = lambda (growing_part - F): it grows for ever
+        if flight.growth > 0.0 and growing_part(flight, z, w) >= flight.a[0]:
+            return OVERTURNS, w, z
+    elif flight.alpha > 0.0:
         if max(z, flight.largest_z) >= 0.5 * math.pi / flight.alpha:
             return OVERTURNS, w, z
     elif z + w >= 1.0 + flight.a[0]:

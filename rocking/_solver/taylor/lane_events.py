@@ -93,6 +93,7 @@ def locate_events(steps: Record) -> None:
     `peak` is the largest z inside the step, before the impact, if it can exceed `known`, else 0; or `UNDECIDED`.
     """
     in_use, destabilised = load(steps.in_use, 0) > 0.0, load(steps.destabilised, 0) > 0.0
+    no_peak = destabilised & (load(steps.may_turn, 0) == 0.0)
     at_ground = load(steps.at_ground, 0) > 0.0
     h, w0, z, w = load(steps.h, 0), load(steps.w0, 0), load(steps.z1, 0), load(steps.w1, 0)
     zero = splat(0.0)
@@ -116,7 +117,7 @@ def locate_events(steps: Record) -> None:
     steady = (w0 * w > 0.0) & (minimum(absolute(w0), absolute(w)) > sagitta)
     speed = maximum(absolute(w0), absolute(w)) + sagitta
     low = 0.5 * (load(steps.z0, 0) + z + speed * h) <= load(steps.known, 0)
-    possible = in_use & ~destabilised & (start < h) & ~steady & ~low
+    possible = in_use & ~no_peak & (start < h) & ~steady & ~low
     peak, undecided = select(possible, splat(UNDECIDED), zero), possible
     turns, start = possible & (w0 >= 0.0) & (w < 0.0), maximum(start, zero)
     reach, slope, tops = h, zero, zero

@@ -9,12 +9,30 @@ with F = sgn(theta) a_s f. S and C follow from S' = -(alpha/tan(alpha_s)) C z' a
 z = 0 both are 1, so that the acceleration is exactly zero at uplift through F = -1. As alpha goes to 0 this tends to
 (3.1), with S = 1 - z and C = 1, without a separate form. alpha_s enters as alpha (alpha_s/alpha), in lanes `alpha` and
 `ratio`; z is exact near the unstable equilibrium, where S vanishes.
+
+A tendon and a damper (`rocking._solver.restrained_rocking`) add -kappa sin(alpha z)/alpha, where the sine is
+sin(alpha) cos(alpha) (C - S), -(sin(alpha)/alpha) sigma D with D = cos(alpha z/2), and -2 zeta z'. With F over
+1 + sigma the first factor is larger by 1 + sigma, and S becomes S + (sigma/(1 + sigma)) (D - S): 1 at z = 0 as before.
 """
 
+import math
+
 from rocking._numba.compilation import Record, kernel
-from rocking._numba.simd import absolute, approx_exp2, approx_log2, load, maximum, minimum, splat, store
+from rocking._numba.simd import (
+    absolute,
+    approx_exp2,
+    approx_log2,
+    load,
+    maximum,
+    minimum,
+    select,
+    splat,
+    square_root,
+    store,
+)
 from rocking._numba.simd_functions import sine_and_cosine
 from rocking._solver.excitation import expand_excitation
+from rocking._solver.restrained_rocking import steepest_pull
 
 
 @kernel
@@ -22,6 +40,8 @@ def set_edge_lane(steps: Record, lane: int, state: Record, side: int) -> None:
     """Set a lane to an edge of the body of a solver state (`alpha` 0: slender)."""
     slender, alpha = (1.0, 1.0) if state.alpha == 0.0 else (0.0, state.alpha)
     ratio, stiffness = state.ratio[side], state.stiffness[side]
+    if steps.restrained > 0:
+        steps.s_rate[lane] = 0.0  # of the body before: set all
     if (
         steps.alpha[lane] == alpha
         and steps.ratio[lane] == ratio
@@ -37,6 +57,8 @@ def set_edge_lane(steps: Record, lane: int, state: Record, side: int) -> None:
     store(steps.cosine_alpha, 0, cosines)
     if slender == 1.0:
         steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = 1.0, -1.0, 0.0
+        if steps.restrained > 0:
+            set_restraint_lane(steps, lane, state, 1.0)
         return
     sine, cosine = steps.sine_alpha[lane], steps.cosine_alpha[lane]
     steps.restoring_factor[lane], steps.s_rate[lane], steps.c_rate[lane] = (
@@ -44,6 +66,49 @@ def set_edge_lane(steps: Record, lane: int, state: Record, side: int) -> None:
         -alpha * cosine / sine,
         alpha * sine / cosine,
     )
+    if steps.restrained > 0:
+        set_restraint_lane(steps, lane, state, sine * cosine / alpha)
+
+
+@kernel
+def set_restraint_lane(steps: Record, lane: int, state: Record, sines: float) -> None:
+    """Set a lane to the restraint of the body; `sines`: sin(alpha) cos(alpha)/alpha, 1 in the slender limit.
+
+    The cap of the step size: z'' + 2 zeta z' + k z >= 0 while the body is destabilised, with k of `steepest_pull`. From
+    z >= 0 with z' >= 0 it takes a quarter of the period 2 pi/sqrt(k) to z = 0, damped or not, and half of it from there
+    back to z = 0, likewise below z = 0 while it is restored. On shorter steps z has the zeros of a free body.
+    """
+    pull = steepest_pull(state)
+    steps.cap[lane] = 1.5 / math.sqrt(pull) if pull > 0.0 else math.inf
+    steps.may_turn[lane] = float(state.may_turn)
+    steps.spring[lane], steps.drag[lane] = state.spring * sines, 2.0 * state.damping
+    if state.restrained == 1:
+        steps.tension[lane] = (state.level - 1.0) / state.level
+        steps.restoring_factor[lane] *= state.level
+    else:
+        steps.tension[lane] = 0.0
+
+
+@kernel
+def start_half(steps: Record) -> None:
+    """Set D at the start of the step, exactly 1 at z = 0: 2 D^2 = 1 + cos(alpha z), the cosine from S and C."""
+    sine, slender = load(steps.sine_alpha, 0), load(steps.slender, 0)
+    share = (1.0 - slender) * sine * sine
+    cosine = share * load(steps.s, 0) + (1.0 - share) * load(steps.c, 0)
+    half = square_root(0.5 + 0.5 * cosine)
+    store(steps.half, 0, select(load(steps.z0, 0) == 0.0, splat(1.0), half))
+
+
+@kernel
+def extend_half(steps: Record, n: int) -> None:
+    """Set the coefficient n >= 1 of D from the square of the series."""
+    half = steps.half
+    sine, slender = load(steps.sine_alpha, 0), load(steps.slender, 0)
+    share = (1.0 - slender) * sine * sine
+    left = 0.5 * (share * load(steps.s, n) + (1.0 - share) * load(steps.c, n))
+    for j in range(1, n):
+        left -= load(half, j) * load(half, n - j)
+    store(half, n, 0.5 * left / load(half, 0))
 
 
 @kernel
@@ -72,6 +137,10 @@ def expand_motion(steps: Record) -> None:
     store(f, 0, (1.0 - at_uplift) * load(f, 0) - at_uplift)  # |a f| = 1 exactly at uplift
     start_series(steps)
     factor, s_rate, c_rate = load(steps.restoring_factor, 0), load(steps.s_rate, 0), load(steps.c_rate, 0)
+    restrained, tension = steps.restrained, load(steps.tension, 0)
+    spring, drag = load(steps.spring, 0), load(steps.drag, 0)
+    if restrained == 2:
+        start_half(steps)
     for n in range(steps.order - 1):
         restoring, sine, cosine = load(s, n), splat(0.0), splat(0.0)
         for j in range(n + 1):
@@ -80,11 +149,17 @@ def expand_motion(steps: Record) -> None:
             sine += at_j * back
             cosine += at_j * load(s, n - j)
         reciprocal = 1.0 / (n + 1.0)
+        if restrained == 2:
+            restoring += tension * (load(steps.half, n) - load(s, n))
         acceleration = factor * restoring * -reciprocal  # (2.2)
+        if restrained > 0:
+            acceleration -= (spring * (load(c, n) - load(s, n)) + drag * load(rate, n)) * reciprocal
         store(rate, n + 1, acceleration)
         store(z, n + 2, acceleration * (1.0 / (n + 2.0)))
         store(s, n + 1, s_rate * sine * reciprocal)
         store(c, n + 1, c_rate * cosine * reciprocal)
+        if restrained == 2:
+            extend_half(steps, n + 1)
 
 
 @kernel
@@ -103,7 +178,10 @@ def choose_step_size(steps: Record) -> None:
             gap = approx_log2(absolute(load(z, j))) - last + steps.log_precision
             longest = maximum(longest, gap * (1.0 / (k - j)))
         shortest = minimum(shortest, longest)
-    store(steps.h, 0, minimum(approx_exp2(shortest), load(steps.limit, 0)))
+    longest = minimum(approx_exp2(shortest), load(steps.limit, 0))
+    if steps.restrained > 0:
+        longest = minimum(longest, load(steps.cap, 0))
+    store(steps.h, 0, longest)
 
 
 @kernel

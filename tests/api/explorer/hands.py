@@ -3,7 +3,10 @@
 And the record that both upload.
 """
 
+import re
+
 import pytest
+from playwright.sync_api import expect
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
@@ -78,11 +81,13 @@ def short_record():
 
 
 def choose_record(page, name, content):
-    """Choose a file on the page of records, and wait for its answers, or for what is wrong with it."""
+    """Choose a file on the page of records, look at it, confirm it, and wait for its answers."""
     page.locator("#file").set_input_files({"name": name, "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#preview")).to_have_attribute("data-shown", re.compile(re.escape(name)))
+    expect(page.locator("#preview-caption")).to_contain_text("Peak ground acceleration")
+    page.locator("#ask").click()
     page.wait_for_function(
-        """name => document.getElementById("file-problem").textContent ||
-        ["#answer", "#scales .picture", "#pulse .picture"].map((box) => document.querySelector(box)).every(
+        """name => ["#answer", "#scales .picture", "#pulse .picture"].map((box) => document.querySelector(box)).every(
             (box) => box.dataset.shown.includes(name) && box.ariaBusy === "false")""",
         arg=name,
     )

@@ -107,10 +107,18 @@ def uploaded(page):
 
 
 def listed(page):
-    page.locator("#table").fill("object;width [cm];height [cm]\nvase;22;55\nslab;5;60\njug;wide;40")
+    page.locator("#table").fill("name;width [cm];height [cm]\nvase;22;55\nslab;5;60\njug;wide;40")
+    page.locator("#table").press("Tab")
+    expect(page.locator("#preview-caption")).to_have_text("2 rows would be read, 1 not.")
     page.locator("#ask").click()
     expect(page.locator("#bad")).to_be_visible()
     expect(page.locator("#ranking")).to_be_visible()
+
+
+def other_headers(page):
+    content = "Breite (cm);H\u00f6he (cm)\n38,5;60\n".encode()
+    page.locator("#file").set_input_files({"name": "de.csv", "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#column-height-problem")).to_be_visible()
 
 
 def unfolded(page):
@@ -129,19 +137,25 @@ def wrong(page):
     expect(page.locator("#width-problem")).to_be_visible()
 
 
+def unstated(page):
+    content = b"Messung\nZeit;L\xc3\xa4ngs\n0;1\n10;2\n20;1\n"
+    page.locator("#file").set_input_files({"name": "de.csv", "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#unit-problem")).to_be_visible()
+
+
 CHARTS = {"map", "rotation", "spectrum-chart", "stage", "acceleration-chart", "pulse-preview"}
-OF_RECORD = {"rotation", "acceleration-chart", "scales-chart", "pulse-chart", "stage"}
+OF_RECORD = {"preview-chart", "rotation", "acceleration-chart", "scales-chart", "pulse-chart", "stage"}
 OF_BLOCK = CHARTS | {"map-marks", "envelope"}
 
 STATES = {
     "block": State(BLOCK, explored, OF_BLOCK, (reported, wrong)),
     "point": State(POINT, explored, CHARTS),
-    "objects": State("/objects", listed),
+    "objects": State("/objects", listed, then=(other_headers,)),
     "slab": State(SLAB, unfolded),
     "headstone": State(HEADSTONE, unfolded),
     "wrong": State(SLAB.replace("width=40", "width=-1"), completed),
     "mesh": State("/object?shape=mesh", completed),
-    "records": State("/records", uploaded, OF_RECORD),
+    "records": State("/records", uploaded, OF_RECORD, (unstated,)),
     "suites": State("/suites", completed, {"suite-report"}),
     **{path: State(path, completed) for path in ("/datasets", "/state", "/docs", "/nowhere")},
 }

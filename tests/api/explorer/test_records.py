@@ -1,19 +1,24 @@
 """The page of a record: upload, motion, thresholds over the scale, fitted pulse, report, files that cannot be read."""
 
+import json
 import re
+import shlex
 from urllib.parse import unquote
 
 import numpy as np
 import pytest
 from playwright.sync_api import expect
+from typer.testing import CliRunner
 
 import rocking
 from rocking._base.constants import STANDARD_GRAVITY
+from rocking._cli.app import app
 from rocking._excitation.records.readers.read_record import parse_record
 from tests.api.conftest import NAPA
 from tests.api.explorer.hands import HEADER, STRONG, Keyboard, choose_record, short_record
 from tests.api.explorer.reading import stated_rotation
 from tests.excitation.record_files import at2
+from tests.sampling import but_long
 
 BLOCK = rocking.Block(0.5, 2.0)  # that of the form
 
@@ -28,11 +33,10 @@ def motion(content):
     return parse_record(content, "short.csv")
 
 
-def choose_files(page, hand, files):
+def choose_file(page, hand, name, content, field="#file"):
     with page.expect_file_chooser() as waiting:
-        hand.press("#file")
-    kind = "application/octet-stream"
-    waiting.value.set_files([{"name": name, "mimeType": kind, "buffer": content} for name, content in files.items()])
+        hand.press(field)
+    waiting.value.set_files({"name": name, "mimeType": "application/octet-stream", "buffer": content})
 
 
 def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_page, content, motion):
@@ -42,7 +46,11 @@ def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_pag
     expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
     expect(caption).to_contain_text("overturns from")
 
-    choose_files(page, hand, {"short.csv": content})
+    choose_file(page, hand, "short.csv", content)
+    expect(page.locator("#preview-title")).to_contain_text("short.csv: columns.")
+    expect(page.locator("#preview-caption")).to_contain_text(f"{motion.samples} samples")
+    expect(page.locator("#answer")).to_be_hidden()  # nothing is computed before it is confirmed
+    hand.press("#ask")
     expect(page.locator("#answer")).to_have_attribute("data-shown", re.compile("short.csv"))
     expected = BLOCK.response(motion)
     expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
@@ -91,41 +99,122 @@ def test_an_example_and_a_file_give_outcome_motion_thresholds_and_pulse(open_pag
         content.decode(),
     )
     expect(page.locator("#dropped")).to_contain_text("dropped.csv")
-    page.wait_for_function("() => document.getElementById('answer').dataset.shown.includes('dropped.csv')")
+    expect(page.locator("#preview-title")).to_contain_text("dropped.csv")
     assert page.locator("#file").evaluate("field => field.files[0].name") == "dropped.csv"
 
 
 def test_what_is_asked_about_an_earlier_file_does_not_go_on_with_a_later_one(open_page):
     page, asked = open_page("/records"), []
     page.route("**/v1/records/history**", lambda _: None)  # it has no answer
-    with page.expect_request(lambda one: "/history" in one.url and "first" in one.url):
-        page.locator("#file").set_input_files({"name": "first.csv", "mimeType": "text/csv", "buffer": short_record()})
-    page.on("request", lambda one: asked.append(unquote(one.url)))
+    page.locator("#file").set_input_files({"name": "first.csv", "mimeType": "text/csv", "buffer": short_record()})
+    expect(page.locator("#preview-title")).to_contain_text("first.csv")
+    with page.expect_request(lambda request: "/history" in request.url and "first" in request.url):
+        page.locator("#ask").click()
+    page.on("request", lambda request: asked.append(unquote(request.url)))
     damaged = (HEADER + "0,0.1\n0.01,0.2\n0.02,what\n0.03,0.1\n").encode()
     page.locator("#file").set_input_files({"name": "damaged.csv", "mimeType": "text/csv", "buffer": damaged})
-    expect(page.locator("#file-problem")).to_contain_text("damaged.csv, line 4: found what; expected a number")
+    expect(page.locator("#file-problem")).to_have_text("Line 4: found what; expected a number")
     page.wait_for_timeout(300)
-    assert [one for one in asked if "first" in one] == []
+    assert [url for url in asked if "first" in url] == []
+
+
+def written(value, digits):
+    return f"{value:.{digits}f}".replace(".", ",")
+
+
+def german(motion):
+    lines = ["Messung am Domberg", "Zeit (ms);L\u00e4ngs (cm/s2);Quer (cm/s2)"]
+    rows = zip(1000.0 * motion.times, 100.0 * motion.acceleration, strict=True)
+    lines += [f"{written(time, 1)};{written(value, 4)};{written(value / 2.0, 4)}" for time, value in rows]
+    return "\n".join(lines).encode()
+
+
+def portuguese(motion):
+    rows = zip(motion.times, motion.acceleration / STANDARD_GRAVITY, strict=True)
+    lines = ["tempo;acelera\u00e7\u00e3o", *(f"{written(time, 3)};{written(value, 6)}" for time, value in rows)]
+    return "\r\n".join(lines).encode("cp1252")
+
+
+def japanese(motion):
+    lines = ["\u89b3\u6e2c\u70b9,\u672c\u5e81", "\u5357\u5317,\u6771\u897f,\u4e0a\u4e0b"]
+    lines += [f"{value / 3.0:.4f},{value:.4f},{value / 2.0:.4f}" for value in 100.0 * motion.acceleration]
+    return "\n".join(lines).encode()
+
+
+TRIALS = {
+    "german.csv": (german, {"skip": "1", "decimal": ",", "acceleration": "L\u00e4ngs (cm/s2)", "time": "Zeit (ms)"}),
+    "portuguese.txt": (portuguese, {"decimal": ",", "acceleration": "2", "unit": "g", "time": "1", "time_unit": "s"}),
+    "japanese.csv": (japanese, {"skip": "1", "acceleration": "\u6771\u897f", "unit": "gal", "time_step": "0.005"}),
+}
+"""Files of records whose headers do not state how they are read, and what a person states."""
+
+
+def state(page, name, value):
+    field = page.locator(f"[name={name}][form=record]")
+    if field.evaluate("field => field.tagName") == "SELECT":
+        field.select_option(value)
+        return
+    field.fill(value)
+    field.press("Tab")
+
+
+@pytest.mark.parametrize("name", but_long(TRIALS, "japanese.csv"))
+def test_a_foreign_file_is_read_as_a_person_states_it(open_page, motion, tmp_path, name):
+    make, choices = TRIALS[name]
+    content = make(motion)
+    (tmp_path / name).write_bytes(content)
+    page = open_page("/records")
+    page.locator("#file").set_input_files(tmp_path / name)
+    expect(page.locator("#preview-title")).to_contain_text(f"{name}: columns.")
+    expect(page.locator("#preview-caption")).to_be_empty()
+    expect(page.locator("[form=record][aria-invalid=true]").first).to_be_visible()
+    page.locator("#ask").click()  # in vain
+    expect(page.locator("#answer")).to_be_hidden()
+    for field, value in choices.items():
+        state(page, field, value)
+    expected = BLOCK.response(motion)
+    expect(page.locator("#preview-caption")).to_contain_text(f"{motion.samples} samples, 0.005 s apart")
+    expect(page.locator("#preview-caption")).to_contain_text(f"{motion.peak_acceleration / STANDARD_GRAVITY:.3g} g")
+    expect(page.locator("#answer")).to_be_hidden()
+    page.locator("#ask").click()
+    expect(page.locator(".verdict")).to_have_text("It rocks and comes to rest.")
+    assert stated_rotation(page) == pytest.approx(np.degrees(expected.rotation), rel=0.02)
+
+    command = shlex.split(page.locator("#command").inner_text())
+    command = [str(tmp_path / word) if word == name else word for word in command[1:]]
+    printed = CliRunner().invoke(app, [*command, "--format=json"])
+    expect(page.locator("#answer .margin")).to_have_text(f"I{json.loads(printed.stdout)['margin'][1:]}.")
+
+    page.goto(page.url)
+    expect(page.locator("#preview-status")).to_contain_text("choose the file")
+    page.locator("#file").set_input_files(tmp_path / name)
+    expect(page.locator("#preview-caption")).to_contain_text(f"{motion.samples} samples")
+    for field, value in choices.items():
+        assert page.locator(f"[name={field}][form=record]").input_value() == value
+
+
+def test_what_is_unusual_is_a_question(open_page, motion):
+    page = open_page("/records?unit=m/s2&time_step=0.005")
+    content = "\n".join(f"{value:.5f}" for value in 100.0 * motion.acceleration).encode()
+    page.locator("#file").set_input_files({"name": "plain.txt", "mimeType": "text/plain", "buffer": content})
+    state(page, "acceleration", "1")
+    expect(page.locator("#allow_unusual-problem")).to_contain_text("expected at most 5 g")
+    expect(page.locator("#preview-chart canvas")).to_be_visible()
+    page.locator("#ask").click()
+    expect(page.locator("#allow_unusual")).to_be_focused()
+    expect(page.locator("#answer")).to_be_hidden()
+    page.locator("#allow_unusual").check()
+    expect(page.locator("#allow_unusual-problem")).to_be_empty()
+    page.locator("#ask").click()
+    expect(page.locator(".verdict")).to_have_text("It overturns.")
+    page.locator("#clear").click()
+    expect(page.locator("#unit-problem")).to_be_visible()
+    assert page.evaluate("location.search") == ""
 
 
 @pytest.mark.long
-def test_a_bad_file_is_explained_and_what_it_lacks_can_be_stated(open_page, content, motion):
+def test_a_block_that_a_weaker_record_overturns_is_not_shown_as_surviving(open_page, content, motion):
     page = open_page("/records")
-    choose_record(page, "plain.txt", "\n".join(map(repr, (motion.acceleration / STANDARD_GRAVITY).tolist())).encode())
-    expect(page.locator("#file-problem")).to_contain_text("the field “Unit of the samples”")
-    expect(page.locator("#file-problem")).to_contain_text("the field “Time step [s]”")
-    expect(page.locator("#answer")).to_be_hidden()
-    page.locator("#unit").select_option("g")
-    page.locator("#acceleration").fill("1")
-    page.locator("#ask").click()
-    expect(page.locator("#file-problem")).to_contain_text("the field “Time step [s]”")
-    page.locator("#time_step").fill(repr(motion.time_step))
-    page.locator("#ask").click()
-    expect(page.locator("#answer")).to_have_attribute("data-shown", re.compile("plain.txt"))
-    expect(page.locator(".verdict")).to_be_visible()
-    expect(page.locator("#file-problem")).to_be_hidden()
-
-    # a block that a weaker record overturns is not shown as surviving
     changes = rocking.Block(0.2, 1.0).thresholds(motion).value
     factor = (changes[1] * changes[2]) ** 0.5
     for name, value in (("width", "0.2"), ("height", "1"), ("scale", f"{factor:.5f}")):
@@ -153,9 +242,14 @@ def test_does_it_overturn_with_the_other_components(open_page, tmp_path):
         ).encode()
         for name, one in values.items()
     }
-    choose_files(page, Keyboard(page), files)
+    hand = Keyboard(page)
+    page.locator("#more summary").click()
+    fields = {"NAPA_090.AT2": "#file", "NAPA_000.AT2": "#second_file", "NAPA_UP.AT2": "#vertical_file"}
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
+        choose_file(page, hand, name, content, fields[name])
+    expect(page.locator("#preview-caption")).to_contain_text("Vertical:")
+    hand.press("#ask")
     first, second = (
         BLOCK.response(rocking.read_record(tmp_path / f"NAPA_{end}.AT2", vertical=tmp_path / "NAPA_UP.AT2"))
         for end in ("090", "000")

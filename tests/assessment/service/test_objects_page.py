@@ -129,9 +129,34 @@ def test_an_error_names_its_field(client):
     assert (page.status_code, page.headers["content-type"]) == (422, "text/html; charset=utf-8")
 
 
-def test_files_are_read_as_text(client):
-    url = "/objects/text?name=old.csv"
-    assert client.post(url, content="Büste;3".encode("cp1252")).text == "Büste;3"
+def test_a_preview_shows_what_would_be_read(client):
+    table = "List of 2026\nName;Breite (cm);Höhe;Material\nvase;22,5;55 cm;clay\njug;wide;40 cm;clay\n"
+    found = client.post("/objects/preview", data={"table": table, **SITE}).json()
+    assert (found["objects"], found["missing"]) == (0, ["width or diameter", "height or mass_height"])
+    stated = {"skip": "1", "decimal": ",", "columns": "Breite (cm)=width [cm]\nHöhe=height", "table_name": "a b.csv"}
+    found = client.post("/objects/preview", data={"table": table, **SITE, **stated}).json()
+    assert found["labels"] == ["Name", "Breite (cm)", "Höhe", "Material"]
+    assert (found["named"], found["units"]["Breite (cm)"]) == ({"Name": "name"}, {"m": "cm"})
+    assert [line["number"] for line in found["lines"]] == [1, 2, 3, 4]
+    assert (found["names_line"], found["missing"], found["problem"]) == (2, [], None)
+    assert found["first"] == [{"name": "vase", "bases": {"width": 0.225}, "height": 0.55}]
+    assert (found["objects"], found["bad_rows"], found["skipped"]) == (1, 1, ["Material"])
+    words = ["--columns", "Breite (cm)=width [cm]", "--columns", "Höhe=height", "--decimal", ",", "--skip", "1"]
+    assert found["command"] == ["rocking", "assess", "a b.csv", "--pga", "0.3g", "--pgv", "30cm/s", *words]
+    unclosed = client.post("/objects/preview", data={"table": 'name;width [cm];height [cm]\n"vase;2;3', **SITE}).json()
+    assert unclosed["problem"]["line"] == 2
+    assert unclosed["lines"][1] == {"number": 2, "text": '"vase;2;3', "cells": []}
+    assert_problem(client.post("/objects/preview", data={"table": table, "skip": "many"}), 422, "skip")
+
+
+def test_a_sheet_is_text_with_the_decimal_sign(client):
+    content = xlsx_bytes([["name", "height"], ["2,5", 2.5]])
+    url = "/objects/text?name=a.xlsx"
+    assert client.post(url, content=content).text == 'name,height\n"2,5",2.5\n'
+    assert client.post(f"{url}&decimal=,", content=content).text == 'name,height\n"2,5","2,5"\n'
+    problem = assert_problem(client.post(f"{url}&sheet=b", content=content), 422, "table")
+    assert problem["allowed"] == "the argument `sheet`, one of: a"
+    assert_problem(client.post("/objects/text?name=a.csv", content=b"a"), 415, "table")
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("xl/workbook.xml", bytes(33 * 1024 * 1024))

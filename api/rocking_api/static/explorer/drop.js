@@ -2,7 +2,7 @@
 
 const field = document.getElementById("file");
 
-/** Call `take(file, files)` with the first of the files that are dropped, and all; the field shows their names. */
+/** Call `take(file)` with the first of the files that are dropped; the field shows its name. */
 export function onDrop(take) {
   addEventListener("dragover", (event) => {
     event.preventDefault();
@@ -15,6 +15,6 @@ export function onDrop(take) {
     const [dropped] = event.dataTransfer.files;
     if (!dropped) return;
     field.files = event.dataTransfer.files;
-    take(dropped, field.files);
+    take(dropped);
   });
 }

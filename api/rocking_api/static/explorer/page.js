@@ -46,19 +46,22 @@ export function markField(place, words) {
 
 /** Show an error beside the field of a form that it names; returns whether there is one. */
 function showFieldError({ parameter, value, allowed, message }, form) {
-  const place = form.querySelector(`[data-problem="${CSS.escape(parameter ?? "")}"]`);
+  const place = document.querySelector(`[data-problem="${CSS.escape(parameter ?? "")}"]`);
   if (!place) return false;
   const name = parameter.replaceAll("_", " ");
-  if (parameter === "record") markField(place, inTermsOf(form, message));
-  else markField(place, value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`);
+  const words = value === undefined ? `${name} is missing` : `${name} is ${value}; allowed: ${allowed}`;
+  markField(place, inTermsOf(form, parameter === "record" ? message : words));
   return true;
 }
 
-/** The message of a reader, which names arguments, with the labels of the fields of the form. */
-function inTermsOf(form, message) {
-  return message.replace(/(?:the argument )?`(\w+)`/g, (words, name) => {
-    const label = form.elements[name]?.labels?.[0]?.textContent;
-    return label ? `the field “${label}”` : words;
+/** The message of a reader, which names arguments and perhaps their values, with the labels of the fields of a form. */
+export function inTermsOf(form, message) {
+  return message.replace(/(?:the argument )?`(\w+)(?:=("?)([^`]*)\2)?`/g, (words, name, _, value) => {
+    const field = form.elements[name === "format" ? "file_format" : name];
+    const label = field?.labels?.[0]?.textContent.trim();
+    if (!label) return words;
+    const option = [...(field.options ?? [])].find((one) => one.value === value);
+    return `the field “${label}”${value && field.type !== "checkbox" ? `: ${option?.text ?? value}` : ""}`;
   });
 }
 

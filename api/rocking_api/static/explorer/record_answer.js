@@ -34,10 +34,10 @@ export function marginOf({ margin }) {
 }
 
 /** The outcome under the second horizontal component, and which of the two overturns it first. */
-export function secondOutcome(found, first) {
+export function secondOutcome(found, first, name) {
   const [own, other] = [found, first].map(({ overturning_scale: from }) => from ?? Infinity);
   const order = own < other ? " It is the worse of the two." : own > other ? " It is the milder of the two." : "";
-  return `Under the second component, ${found.query.acceleration}: ${verdict(found)} ${marginOf(found)}${order}`;
+  return `Under the second component, ${name}: ${verdict(found)} ${marginOf(found)}${order}`;
 }
 
 /** That the record does not determine the peak, in a sentence; empty where it does. */

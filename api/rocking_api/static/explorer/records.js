@@ -1,23 +1,25 @@
-// The page of a record: file and block from the form, and from there to every view.
+// The page of a record: what is read from a file is stated and looked at; then file and block go to every view.
 
 import { file as fileOf, send } from "./api.js";
 import { chartsReady } from "./chart.js";
-import { joined } from "./components.js";
 import { onDrop } from "./drop.js";
 import { drawMotion } from "./motion_charts.js";
 import { number } from "./labels.js";
-import { clearErrors, element, setStatus } from "./page.js";
+import { clearErrors, setStatus } from "./page.js";
 import { pane } from "./pane.js";
 import { unload } from "./player.js";
 import { secondOutcome, showRecordAnswer } from "./record_answer.js";
+import { drawPreview, markMissing } from "./record_preview.js";
 import { drawPulse } from "./record_pulse.js";
 import { changes, drawScales, markFactors } from "./record_scales.js";
+import { commandOf, remember, restore, valueOf, wireCopy } from "./stated.js";
 import { onChange, refresh } from "./state.js";
 import { toSI } from "./units.js";
 
 const SAMPLES = 4000;
-const STATED = ["file_format", "acceleration", "vertical", "time", "time_unit", "time_step", "unit", "skip", "delimiter", "decimal", "baseline_order"];
-const FLAGS = ["wrapped", "allow_unusual"];
+const LAYOUT = ["file_format", "acceleration", "unit", "time", "time_unit", "time_step", "skip", "delimiter", "decimal", "wrapped", "vertical", "allow_unusual", "baseline_order"];
+const BLOCK = ["width", "width_unit", "height", "height_unit", "scale", "restitution"];
+const REMEMBERED = [...LAYOUT, "second", ...BLOCK];
 
 const form = document.getElementById("record");
 const input = document.getElementById("file");
@@ -25,10 +27,13 @@ const factor = document.getElementById("factor");
 const report = document.getElementById("open-report");
 
 let file = null;
-let takes = 0; // number of times that files were taken; the last ones count
+let takes = 0; // number of times that files were taken; the last one counts
+let previewed = ""; // file and layout that the page shows
+let confirmed = ""; // those that the reader has looked at and confirmed
 let answer = null; // the response, from which the views take the size of the block
 let margins = "Not computed."; // factors at which the outcome changes, in words
 
+const preview = view("preview", "preview-status", "Reading the file …", (found) => found && drawPreview(found, form, file.name));
 const result = view("answer", "record-status", "Computing …", (found) => {
   answer = found;
   showRecordAnswer(found);
@@ -39,7 +44,7 @@ const motion = view("motion", "motion-status", "Computing the time history …",
   else unload();
 });
 const other = view("second-answer", "second-status", "Computing the second component …", (found) => {
-  document.querySelector("#second-answer p").textContent = found ? secondOutcome(found, answer) : "";
+  document.querySelector("#second-answer p").textContent = found ? secondOutcome(found, answer, nameOfSecond()) : "";
 });
 const scales = view("scales", "scales-status", "Computing other factors …", (found) => {
   margins = found ? changes(found) : "Not computed.";
@@ -57,25 +62,36 @@ function view(id, status, doing, draw) {
 /** Show what the form holds; without `all` only the response and the motion, while the slider of the factor moves. */
 async function show(_, all = true) {
   clearErrors();
+  remember(form, REMEMBERED);
+  document.getElementById("command").textContent = command();
   if (!file) return;
   const power = Math.log10(Number(form.elements.scale.value.replace(",", ".")));
   if (Number.isFinite(power)) factor.value = power;
-  const params = paramsOf();
+  const layout = layoutOf();
   const own = file; // another one may be chosen while this waits; its answers would have the name of this one
-  const key = (more) => JSON.stringify([params, more, own.name, own.size, own.lastModified]);
-  const second = form.elements.second.value.trim();
-  for (const one of [motion, scales, pulse, other]) one.wait();
+  const read = keyOf(layout);
+  for (const one of [result, motion, scales, pulse, other]) one.wait();
+  const held = await preview.show(read, upload("preview", layout, own));
+  if (own !== file) return;
+  previewed = held ? read : "";
+  if (held) markMissing(held, form);
+  if (!held?.record || held.problem || confirmed !== read) {
+    for (const one of [motion, scales, pulse, other]) one.nothing();
+    result.nothing(held?.record && !held.problem ? "Look at the record, then press “Does it overturn?”." : "");
+    return;
+  }
+  const params = { ...layout, ...blockOf() };
+  const key = (more) => JSON.stringify([read, params, more]);
   const found = await result.show(key("response"), upload("response", params, own));
   if (own !== file) return;
   if (!found) {
-    openDetails();
     for (const one of [motion, scales, pulse, other]) one.nothing();
     return;
   }
   const { scale, ...unscaled } = params;
   await motion.show(key("history"), upload("history", { ...params, samples: SAMPLES }, own));
   if (own !== file) return;
-  if (second) await other.show(key(second), upload("response", { ...params, acceleration: second }, own));
+  if (nameOfSecond()) await other.show(key(nameOfSecond()), second(params, own));
   else other.nothing();
   if (!all || own !== file) return;
   await scales.show(key("scales"), upload("scales", { ...unscaled, ...windowOf(found) }, own));
@@ -83,27 +99,83 @@ async function show(_, all = true) {
   await pulse.show(key("pulse"), upload("pulse", params, own));
 }
 
-function upload(route, params, file) {
+/** A load of a route for a file; a vertical component in a file of its own goes with it as JSON. */
+function upload(route, params, chosen) {
   return async function* load(signal) {
     await chartsReady();
-    yield await send(`/v1/records/${route}`, params, file, signal);
+    const upwards = form.elements.vertical_file.files[0];
+    if (!upwards) {
+      yield await send(`/v1/records/${route}`, params, chosen, signal);
+      return;
+    }
+    const stated = Object.fromEntries(Object.entries(params).filter(([, value]) => value !== ""));
+    const body = { ...stated, record: await textOf(chosen), vertical_record: await textOf(upwards) };
+    yield await send(`/v1/records/${route}`, {}, new Blob([JSON.stringify(body)], { type: "application/json" }), signal);
   };
 }
 
-/** Parameters of the routes, in SI units. */
-function paramsOf() {
+/** The text of a file in UTF-8, or else in Latin-1, as the service reads it. */
+async function textOf(chosen) {
+  const content = await chosen.arrayBuffer();
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(content);
+  } catch {
+    return new TextDecoder("latin1").decode(content);
+  }
+}
+
+/** The second horizontal component: a file of its own, or a column. */
+function second(params, chosen) {
+  const own = form.elements.second_file.files[0];
+  return own ? upload("response", params, own) : upload("response", { ...params, acceleration: form.elements.second.value }, chosen);
+}
+
+function nameOfSecond() {
+  return form.elements.second_file.files[0]?.name ?? form.elements.second.value;
+}
+
+/** Parameters that say how the file is read. */
+function layoutOf() {
+  return { name: file.name.slice(0, 200), ...Object.fromEntries(LAYOUT.map((name) => [name, stated(name)])) };
+}
+
+/** What is stated about a file; a decimal comma of the time step is a dot. */
+function stated(name) {
+  const value = valueOf(form.elements[name]);
+  return name === "time_step" ? value.replace(",", ".") : value;
+}
+
+/** The files and how they are read, as text. */
+function keyOf(layout) {
+  const files = [file, form.elements.vertical_file.files[0]].map((one) => one && [one.name, one.size, one.lastModified]);
+  return JSON.stringify([layout, files]);
+}
+
+/** Parameters of the block, in SI units. */
+function blockOf() {
   const text = (name) => form.elements[name].value.trim();
   const quantity = (name) => toSI(name, `${text(name) || "?"} ${form.elements[`${name}_unit`].value}`);
   const [scale, restitution] = ["scale", "restitution"].map((name) => text(name).replace(",", "."));
-  return {
-    name: file.name.slice(0, 200),
-    ...Object.fromEntries(STATED.map((name) => [name, text(name)])),
-    ...Object.fromEntries(FLAGS.filter((name) => form.elements[name].checked).map((name) => [name, "true"])),
-    width: quantity("width"),
-    height: quantity("height"),
-    scale: scale || "?",
-    restitution: restitution.toLowerCase() || "?",
-  };
+  return { width: quantity("width"), height: quantity("height"), scale: scale || "?", restitution: restitution.toLowerCase() || "?" };
+}
+
+/** The command that reads this file in this way. */
+function command() {
+  const words = ["rocking", "record", file?.name ?? "FILE"];
+  const text = (name) => form.elements[name].value.trim().replace(",", ".");
+  for (const name of ["width", "height"]) words.push(`--${name}`, text(name) + form.elements[`${name}_unit`].value);
+  if (text("scale") !== "1") words.push("--scale", text("scale"));
+  if (text("restitution") !== "momentum") words.push("--restitution", text("restitution"));
+  for (const name of LAYOUT) {
+    const value = stated(name);
+    if (!value) continue;
+    words.push(`--${name.replaceAll("_", "-")}`);
+    if (name === "time_step") words.push(`${value}s`);
+    else if (form.elements[name].type !== "checkbox") words.push(value);
+  }
+  const upwards = form.elements.vertical_file.files[0];
+  if (upwards) words.push("--vertical", upwards.name);
+  return commandOf(words);
 }
 
 /** Factors from uplift to ten times that, and to twice the factor of the form. */
@@ -132,51 +204,61 @@ function noteOf(found) {
   return found.rocking_model_applies ? "" : "The rocking model does not apply; held in place:";
 }
 
-/** What the file does not state is stated there. */
-function openDetails() {
-  if (document.getElementById("file-problem").textContent) document.getElementById("more").open = true;
-}
-
-/** Until a file is chosen, a part of a record is shown. */
+/** Until a file is chosen, a part of a record is shown, whose header states everything. */
 async function example() {
   const found = await fileOf("/static/example-record.csv", "South Napa 2014, CE.68150, east, part.csv", new AbortController().signal);
-  if (!takes) take([found]);
+  if (takes) return;
+  take(found);
+  confirmed = keyOf(layoutOf());
 }
 
-async function take(files) {
-  if (!files.length) return;
-  const mine = ++takes;
-  try {
-    const { chosen, columns, file: found } = await joined(files);
-    if (mine !== takes) return;
-    file = found;
-    for (const name of ["acceleration", "second", "vertical"]) form.elements[name].value = chosen[name] ?? "";
-    document.getElementById("columns").replaceChildren(...columns.map((value) => element("option", "", { value })));
-    document.getElementById("more").open ||= files.length > 1;
-    document.getElementById("dropped").textContent = `${file.name}; drop another one anywhere on this page`;
-    refresh();
-  } catch (problem) {
-    setStatus(document.getElementById("record-status"), problem, () => take(files));
+function take(chosen) {
+  if (!chosen) return;
+  takes += 1;
+  file = chosen;
+  document.getElementById("dropped").textContent = `${file.name}; drop another one anywhere on this page`;
+  refresh();
+}
+
+/** Compute what is shown; where something is not stated, go to its field. */
+function confirm() {
+  if (!file) return;
+  if (previewed === keyOf(layoutOf())) confirmed = previewed;
+  const wrong = [...form.elements].find((field) => field.getAttribute("aria-invalid"));
+  if (wrong) wrong.focus();
+  else refresh();
+}
+
+function clear() {
+  for (const name of [...LAYOUT, "second", "second_file", "vertical_file"]) {
+    const field = form.elements[name];
+    if (field.type === "checkbox") field.checked = false;
+    else field.value = "";
   }
+  refresh();
 }
 
-for (const unit of ["g", "m/s2", "cm/s2", "gal", "mm/s2", "mg", "%g", "g/10", "in/s2", "ft/s2"]) form.elements.unit.append(element("option", unit));
-input.addEventListener("change", () => take(input.files));
+input.addEventListener("change", () => take(input.files[0]));
 form.addEventListener("submit", (event) => {
   event.preventDefault();
-  if (file) refresh();
+  confirm();
 });
-onDrop((_, files) => take(files));
+onDrop(take);
 report.addEventListener("click", async () => {
   const { showReport } = await import("./report.js");
   const { recordReport } = await import("./record_report.js");
   showReport(recordReport(answer, margins));
 });
-form.addEventListener("change", ({ target }) => target !== input && target !== factor && refresh());
+document.querySelector("main").addEventListener("change", ({ target }) => target.form === form && target !== input && target !== factor && refresh());
 factor.addEventListener("input", () => {
   form.elements.scale.value = number(10 ** factor.value);
   show(null, false);
 });
 factor.addEventListener("change", refresh);
+document.getElementById("clear").addEventListener("click", clear);
+wireCopy(document.getElementById("copy-command"), document.getElementById("command"), document.getElementById("copied"));
 onChange(show);
-example();
+if (restore(form, REMEMBERED)) {
+  setStatus(document.getElementById("preview-status"), "The address says how a file is read: choose the file.");
+  show();
+} else example();

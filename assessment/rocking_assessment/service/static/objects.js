@@ -1,10 +1,19 @@
 // The page of objects: sends its form and a dropped file to the service, which renders the result; sorts and filters it.
 
-import { page } from "/static/explorer/api.js";
+import { page, Problem } from "/static/explorer/api.js";
 import { onDrop } from "/static/explorer/drop.js";
-import { clearErrors, setStatus } from "/static/explorer/page.js";
+import { length } from "/static/explorer/labels.js";
+import { showLines } from "/static/explorer/lines.js";
+import { clearErrors, element, inTermsOf, markField, setStatus } from "/static/explorer/page.js";
+import { pane } from "/static/explorer/pane.js";
+import { onChange } from "/static/explorer/state.js";
+import { commandOf, remember, restore, wireCopy } from "/static/explorer/stated.js";
+
+import { fillColumns, statedColumns, usesOf } from "./columns.js";
 
 const STEP = 100; // objects that are shown at first, and more with each press of the button
+const LAYOUT = ["columns", "decimal", "delimiter", "skip", "encoding", "sheet", "allow_unusual"];
+const SITE = ["pga", "pga_unit", "pgv", "pgv_unit", "period_min", "period_max", "floor_periods", "floor_participation"];
 
 const form = document.getElementById("objects");
 const file = document.getElementById("file");
@@ -12,6 +21,83 @@ const status = document.getElementById("status");
 const title = document.title;
 
 let control = new AbortController();
+let chosen = null; // the file of the table; null: the example, or text that was typed
+let edits = 0; // changes of the table and of its layout; the last one counts
+let held = null; // what the table holds
+
+const preview = pane({
+  box: document.getElementById("preview"),
+  status: document.getElementById("preview-status"),
+  doing: "Reading the table …",
+  draw: drawPreview,
+  clear: () => {},
+});
+
+/** Show what the table holds and what would be read of it; resolves to that, or to null. */
+async function look() {
+  clearErrors();
+  remember(form, [...LAYOUT, ...SITE]);
+  if (!form.elements.table.value.trim()) return null;
+  const own = edits;
+  const key = JSON.stringify([own, ...SITE.map((name) => form.elements[name].value)]); // the command has the site
+  const found = await preview.show(key, async function* load(signal) {
+    yield JSON.parse(await page("/objects/preview", new URLSearchParams(new FormData(form)), signal));
+  });
+  if (own !== edits) return null;
+  if (found) mark(found);
+  return found;
+}
+
+/** The table or its layout is another one: its result is not shown any more. */
+function changed() {
+  control.abort();
+  edits += 1;
+  setStatus(status, "");
+  document.getElementById("result").classList.add("stale");
+  return look();
+}
+
+function drawPreview(found) {
+  held = found;
+  const text = form.elements.columns.value;
+  fillColumns(found, text);
+  document.getElementById("preview-title").textContent = `${chosen?.name ?? "The table"}: the first lines`;
+  showLines(document.getElementById("lines"), found.lines, found.names_line, usesOf(found, text));
+  const unread = found.bad_rows ? `, ${found.bad_rows} not` : "";
+  const [caption, list] = ["preview-caption", "preview-list"].map((id) => document.getElementById(id));
+  caption.textContent = found.problem ? "" : `${found.objects} row${found.objects === 1 ? "" : "s"} would be read${unread}.`;
+  const kept = found.skipped.length && !found.problem ? [`Kept as they stand: ${found.skipped.join(", ")}`] : [];
+  list.replaceChildren(...[...found.first.map(sentenceOf), ...found.reasons.map((reason) => inTermsOf(form, reason)), ...found.remarks, ...kept].map((line) => element("li", line)));
+  document.getElementById("command").textContent = commandOf(found.command);
+  const isOther = !["", "windows-1252"].includes(form.elements.encoding.value);
+  document.getElementById("command-note").textContent = isOther ? "The command reads text in UTF-8: save the table in this encoding first." : "";
+}
+
+function sentenceOf({ name, bases, height }) {
+  const sides = Object.entries(bases).map(([direction, base]) => `${direction === "any" ? "diameter" : direction} ${length(base)}`);
+  return `${name}: ${sides.join(", ")}, height ${length(height)}`;
+}
+
+/** Mark what is missing, or say what is wrong; what is unusual is a question. */
+function mark({ missing, problem, reasons }) {
+  const asks = reasons.some((reason) => reason.includes("allow_unusual"));
+  document.getElementById("unusual").hidden = !asks && !form.elements.allow_unusual.checked;
+  for (const group of missing) {
+    const [name] = group.split(" or ");
+    markField(document.getElementById(`column-${name}-problem`), `The header does not say: choose ${group}.`);
+  }
+  if (!problem || missing.length) return;
+  const start = problem.line === null ? "Found" : `Line ${problem.line}: found`;
+  markField(document.getElementById("file-problem"), inTermsOf(form, `${start} ${problem.was}; expected ${problem.expected}`));
+}
+
+/** Assess what would be read; where something is not stated, go to its field. */
+async function ask() {
+  const found = await look();
+  const wrong = document.querySelector("#your-table [aria-invalid]");
+  if (wrong) wrong.focus();
+  else if (found || !form.elements.table.value.trim()) show();
+}
 
 /** Show the page that the service makes of the form. */
 async function show() {
@@ -28,7 +114,7 @@ async function show() {
   try {
     const text = await page("/objects", new URLSearchParams(new FormData(form)), signal);
     const found = new DOMParser().parseFromString(text, "text/html");
-    form.elements.table.value = found.getElementById("table").value;
+    mend(found.getElementById("table").value);
     result.replaceWith(found.getElementById("result"));
     setStatus(status, "");
     wireResult();
@@ -39,17 +125,80 @@ async function show() {
   }
 }
 
-/** Take the table of a file. */
-async function take(chosen) {
-  setStatus(status, `Reading ${chosen.name} …`);
+/** The table with the cells that were corrected in its result. */
+function mend(text) {
+  if (text === form.elements.table.value) return;
+  form.elements.table.value = text;
+  edits += 1;
+  look();
+}
+
+/** Take the table of a file; it is assessed when its reading has been looked at. */
+async function take(next) {
+  chosen = next;
+  form.elements.table_name.value = chosen.name;
+  document.getElementById("dropped").textContent = `${chosen.name}; drop another one anywhere on this page`;
   document.getElementById("result").replaceChildren(); // that of another table, with the rows that are corrected
+  await read();
+}
+
+/** Read the file that was chosen, as its encoding, its sheet and the decimal sign say. */
+async function read() {
+  control.abort();
+  control = new AbortController();
+  clearErrors();
+  remember(form, [...LAYOUT, ...SITE]);
+  setStatus(status, `Reading ${chosen.name} …`);
+  const own = chosen;
   try {
-    form.elements.table.value = await page(`/objects/text?name=${encodeURIComponent(chosen.name)}`, chosen, control.signal);
+    const text = isWorkbook() ? await sheetText() : await decoded();
+    if (own !== chosen) return;
+    form.elements.table.value = text;
     document.title = `${chosen.name}: ${title}`;
-    await show();
+    setStatus(status, "");
+    const found = await changed();
+    if (found && !found.problem) setStatus(status, "Look at the table, then press “Which overturn?”.");
   } catch (problem) {
-    setStatus(status, problem, () => take(chosen));
+    form.elements.table.value = "";
+    preview.nothing();
+    if (problem instanceof Problem && problem.parameter === "encoding") markField(document.getElementById("encoding-problem"), problem.message);
+    else setStatus(status, problem, read);
   }
+}
+
+function isWorkbook() {
+  return /\.(xlsx|ods)$/i.test(chosen.name);
+}
+
+function sheetText() {
+  const stated = new URLSearchParams({ name: chosen.name, sheet: form.elements.sheet.value.trim(), decimal: form.elements.decimal.value });
+  return page(`/objects/text?${stated}`, chosen, control.signal);
+}
+
+/** The text of the file: UTF-16 by its mark, else UTF-8, else as stated. */
+async function decoded() {
+  const content = new Uint8Array(await chosen.arrayBuffer());
+  const mark = content[0] + 256 * content[1];
+  const marked = { 0xfeff: "utf-16le", 0xfffe: "utf-16be" }[mark];
+  if (!marked && content.includes(0)) {
+    throw new Problem({ parameter: "table", value: "binary content", allowed: "text, or a workbook whose name ends in .xlsx or .ods" });
+  }
+  const stated = form.elements.encoding.value;
+  try {
+    return new TextDecoder(marked ?? (stated || "utf-8"), { fatal: true }).decode(content);
+  } catch {
+    throw new Problem({ parameter: "encoding", detail: stated ? "The text is not in this encoding: choose another one." : "The text is not in UTF-8: choose its encoding." });
+  }
+}
+
+function clear() {
+  for (const name of LAYOUT) {
+    const field = form.elements[name];
+    if (field.type === "checkbox") field.checked = false;
+    else field.value = "";
+  }
+  if (chosen) read();
+  else changed();
 }
 
 /** Filter, sort and show by steps the rows of the result. */
@@ -102,8 +251,24 @@ form.addEventListener("submit", (event) => {
     return;
   }
   event.preventDefault();
-  show();
+  ask();
 });
-file.addEventListener("change", () => file.files[0] && take(file.files[0]));
+document.getElementById("your-table").addEventListener("change", ({ target }) => {
+  const { column, unit } = target.dataset;
+  if (column || unit) form.elements.columns.value = statedColumns(held, target);
+  const isOfFile = target.name === "encoding" || ["sheet", "decimal"].includes(target.name) && chosen && isWorkbook();
+  if (target === file) {
+    if (file.files[0]) take(file.files[0]);
+  } else if (chosen && isOfFile) read();
+  else changed();
+});
+form.addEventListener("change", look);
+document.getElementById("clear").addEventListener("click", clear);
+wireCopy(document.getElementById("copy-command"), document.getElementById("command"), document.getElementById("copied"));
 onDrop(take);
-if (form.elements.table.value) show();
+onChange(look);
+restore(form, SITE);
+if (restore(form, LAYOUT)) {
+  form.elements.table.value = "";
+  setStatus(document.getElementById("preview-status"), "The address says how a table is read: choose the file.");
+} else ask();

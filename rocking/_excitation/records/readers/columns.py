@@ -395,7 +395,7 @@ class Table:
         return call | dict.fromkeys(missing, ...) if skip or missing else None
 
     def _lines_above(self, missing: list[str]) -> tuple[int, list[str]]:
-        """Return the number of lines above the names or the rows, 0 for what is stated, and what is missing beside it."""
+        """Return the number of lines above the names or rows, 0 for what is stated, and what is missing beside it."""
         head = self.file.head
         for skip in range(1, len(head) - 1) if self.layout.skip == 0 else ():
             with suppress(RecordFileError):

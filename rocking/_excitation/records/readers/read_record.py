@@ -33,19 +33,20 @@ MAX_USUAL_PGV = 10.0  # peak velocity above which it asks [m/s]
 
 
 class TextFormat(NamedTuple):
-    """A format of text: whether its signature is in a file, and its reader."""
+    """A format of text: whether its signature is in a file, its reader, and the names of channels if it has several."""
 
     recognises: Callable[[TextFile], bool]
     read: Callable[[TextFile, Layout], Samples]
+    channels: Callable[[TextFile], list[str]] | None = None
 
 
 TEXT_FORMATS = {
     "AT2": TextFormat(at2.is_at2, at2.read),
     "ESM": TextFormat(esm.is_esm, esm.read),
     "K-NET": TextFormat(knet.is_knet, knet.read),
-    "COSMOS": TextFormat(volumes.is_cosmos, volumes.read_cosmos),
-    "GeoNet": TextFormat(volumes.is_geonet, volumes.read_geonet),
-    "CSMIP": TextFormat(volumes.is_csmip, volumes.read_csmip),
+    "COSMOS": TextFormat(volumes.is_cosmos, volumes.read_cosmos, volumes.channel_names),
+    "GeoNet": TextFormat(volumes.is_geonet, volumes.read_geonet, volumes.component_names),
+    "CSMIP": TextFormat(volumes.is_csmip, volumes.read_csmip, volumes.channel_names),
 }
 """In the order in which their signatures are looked for: GeoNet is a CSMIP whose first line names its maker."""
 
@@ -149,7 +150,7 @@ def read_record(
     if isinstance(vertical, PathLike) or (isinstance(vertical, str) and Path(vertical).is_file()):
         record = parse_record(content, name, **arguments)
         upwards = parse_record(read_content("vertical", vertical), Path(vertical).name, **arguments)
-        return _with_vertical(record, upwards)
+        return with_vertical(record, upwards)
     return parse_record(content, name, **arguments, vertical=vertical)
 
 
@@ -183,7 +184,7 @@ def parse_record(
     if vertical is not None:
         upwards = stated_layout(FORMATS, **{**arguments, "acceleration": vertical})
         try:
-            record = _with_vertical(record, _record(content, name, upwards, stop))
+            record = with_vertical(record, _record(content, name, upwards, stop))
         except RecordFileError as error:
             raise InvalidArgumentError("vertical", vertical, f"a file, or a column of {name} ({error})") from None
     if not allow_unusual:
@@ -200,16 +201,21 @@ def _record(content: bytes, name: str, layout: Layout, stop: StopFlag | None) ->
             layout.refuse_columns(file, kind, channels=True)
             return _as_record(seismic.read(content, name, layout, kind))
     file = TextFile(name, content, stop)
-    if kind is None:
-        kind = next((name for name, form in TEXT_FORMATS.items() if form.recognises(file)), "columns")
-        start = file.head[0].lstrip().upper()
-        if kind == "columns":
-            refused = next((text for prefix, text in REFUSED.items() if start.startswith(prefix)), None)
-            if refused:
-                raise file.error(0, refused, f"one of {', '.join(FORMATS)}: convert it")
+    kind = kind or text_format_of(file)
     with file.guarded(kind):
         reader = columns.read if kind == "columns" else TEXT_FORMATS[kind].read
         return _as_record(reader(file, layout))
+
+
+def text_format_of(file: TextFile) -> str:
+    """The format whose signature a file of text has, else "columns"; others that are known are refused by name."""
+    kind = next((name for name, form in TEXT_FORMATS.items() if form.recognises(file)), "columns")
+    start = file.head[0].lstrip().upper()
+    if kind == "columns":
+        refused = next((text for prefix, text in REFUSED.items() if start.startswith(prefix)), None)
+        if refused:
+            raise file.error(0, refused, f"one of {', '.join(FORMATS)}: convert it")
+    return kind
 
 
 def _as_record(samples: Samples) -> Record:
@@ -236,8 +242,8 @@ def _check_usual(record: Record, name: str) -> None:
             raise RecordFileError(name, None, description, expected)
 
 
-def _with_vertical(record: Record, upwards: Record) -> Record:
-    """Return a record with another one as its vertical component."""
+def with_vertical(record: Record, upwards: Record) -> Record:
+    """Add another record as the vertical component; raise `InvalidArgumentError` if step or length differ."""
     shift = abs(upwards.time_step / record.time_step - 1.0) * min(record.samples, upwards.samples)
     if shift > MAX_SHIFT:
         allowed = f"a component with the step of the horizontal one, {record.time_step:g} s"

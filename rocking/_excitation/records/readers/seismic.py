@@ -33,8 +33,8 @@ def format_of(content: bytes) -> str | None:
     return None
 
 
-def read(content: bytes, name: str, layout: Layout, kind: str) -> Samples:
-    """Read one trace of accelerations."""
+def traces_of(content: bytes, name: str, kind: str) -> list[Any]:
+    """The traces of a file, as ObsPy has them."""
     if kind in ("TSPAIR", "SLIST"):  # before ObsPy: some of the units of counts it does not read
         title = content[:500].partition(b"\n")[0].decode(errors="replace")
         _check_unit(name, title.rpartition(",")[2].strip())
@@ -47,10 +47,14 @@ def read(content: bytes, name: str, layout: Layout, kind: str) -> Samples:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", UserWarning)  # obspy warns where it reads a part of a damaged file
-            stream = obspy.read(io.BytesIO(content), format=NAMES[kind]).merge()
+            return list(obspy.read(io.BytesIO(content), format=NAMES[kind]).merge())
     except Exception as error:  # noqa: BLE001  # obspy raises many kinds for damaged files
         raise RecordFileError(name, None, str(error) or type(error).__name__, f"a file of {kind}") from None
-    trace = _chosen(name, layout, list(stream))
+
+
+def read(content: bytes, name: str, layout: Layout, kind: str) -> Samples:
+    """Read one trace of accelerations."""
+    trace = _chosen(name, layout, traces_of(content, name, kind))
     if np.ma.is_masked(trace.data):
         raise RecordFileError(name, None, "a gap in the trace", "samples without gaps")
     text = trace.stats.get("ascii", {}).get("unit", "")

@@ -40,19 +40,22 @@ OTHER_QUANTITIES |= {"spectrum", "spectra", "spectral"}
 class TextFile:
     """A text file in UTF-8, in UTF-16 with its byte order mark, or in Latin-1, with any ends of lines.
 
-    Lines are numbered from 0 in arguments and from 1 in messages. `line` is the line that was read last.
+    Lines are numbered from 0 in arguments and from 1 in messages. `line` is the line that was read last, `encoding` how
+    the text is encoded.
     """
 
     def __init__(self, name: str, content: bytes, stop: StopFlag | None = None) -> None:
         self.name = name
         self.stop = stop
         self.line = 0
+        self.encoding = "UTF-8"
         self.content = self._in_utf8(content)
 
     def _in_utf8(self, content: bytes) -> bytes:
         if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             try:
                 content = content.decode("utf-16").encode()
+                self.encoding = "UTF-16"
             except UnicodeDecodeError as error:
                 raise self.error(None, f"UTF-16 with {error.reason}", "text") from None
         content = content.removeprefix(codecs.BOM_UTF8)
@@ -61,6 +64,7 @@ class TextFile:
                 content.decode()
             except UnicodeDecodeError:
                 content = content.decode("latin-1").encode()
+                self.encoding = "Latin-1"
         if b"\r" in content:
             content = content.replace(b"\r\r\n", b"\n").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
         content = content.rstrip(b"\x1a \t\n")  # the end of a DOS file

@@ -69,6 +69,16 @@ def read_geonet(file: TextFile, layout: Layout) -> Samples:
     return _read(file, layout, "GeoNet", _geonet)
 
 
+def channel_names(file: TextFile) -> list[str]:
+    """Names of the channels of a COSMOS or CSMIP file, which `acceleration` may have."""
+    return [channel.name for channel in _blocks(file, file.lines(0))]
+
+
+def component_names(file: TextFile) -> list[str]:
+    """Names of the components of a GeoNet file, which `acceleration` may have."""
+    return [channel.name for channel in _geonet(file, file.lines(0))]
+
+
 def _read(
     file: TextFile, layout: Layout, kind: str, channels_of: Callable[[TextFile, Lines], Iterator[Channel]]
 ) -> Samples:
