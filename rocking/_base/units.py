@@ -47,7 +47,7 @@ UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.pi / 180.0, "mrad": 0.001},
     "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180.0},
     "-": {"-": 1.0, "%": 0.01},
-    "N": {"N": 1.0, "kN": 1000.0, "MN": 1e6},
+    "N": {"N": 1.0, "kN": 1000.0},
     "N/m": {"N/m": 1.0, "N/mm": 1000.0, "kN/m": 1000.0, "MN/m": 1e6},
     "N s/m": {"N s/m": 1.0, "kN s/m": 1000.0, "MN s/m": 1e6},
     "kg": {

@@ -148,10 +148,14 @@ def sample_steps(
         steps.limit[0] = flight.length - elapsed
         take_step(steps)
         h = steps.h[0]
-        until = end if elapsed + h >= flight.length else start + (elapsed + h)
+        # by rounding the phase can reach the end of the pulse before the time does: then no step is left
+        ends = elapsed + h >= flight.length or elapsed + h == elapsed
+        until = end if ends else start + (elapsed + h)
         filled = sample_step(steps, flight.sign, start + elapsed, until, history, filled)
         elapsed += h
         z, w = steps.z1[0], steps.w1[0]
+        if ends:
+            break
         steps.z0[0], steps.w0[0], steps.starts_at_uplift[0] = z, w, 0.0
         steps.phase[0] += flight.omega * h
     return filled, z, w

@@ -136,18 +136,21 @@ def expand_free(state: Record, z0: float, w0: float) -> float:
         s[0], c[0] = math.sin(alpha * (1.0 - z0)) / sine, math.cos(alpha * (1.0 - z0)) / cosine
         d[0] = math.cos(0.5 * alpha * z0)
     for n in range(FREE_ORDER - 1):
-        falling, rising = 0.0, 0.0
-        for j in range(n + 1):
-            falling += rate[j, 0] * c[n - j]
-            rising += rate[j, 0] * s[n - j]
         force = scale * (s[n] + sigma * d[n]) + state.spring * scale * cosine * (c[n] - s[n])
         rate[n + 1, 0] = -(force + 2.0 * state.damping * rate[n, 0]) / (n + 1.0)
         z[n + 2, 0] = rate[n + 1, 0] / (n + 2.0)
         if alpha == 0.0:
             s[n + 1], c[n + 1], d[n + 1] = -z[n + 1, 0], 0.0, 0.0
             continue
+        falling, rising = 0.0, 0.0
+        for j in range(n + 1):
+            falling += rate[j, 0] * c[n - j]
+            rising += rate[j, 0] * s[n - j]
         s[n + 1] = -alpha * cosine / sine * falling / (n + 1.0)
         c[n + 1] = alpha * sine / cosine * rising / (n + 1.0)
+        d[n + 1] = 0.0
+        if sigma == 0.0:
+            continue
         left = 0.5 * (sine * sine * s[n + 1] + cosine * cosine * c[n + 1])  # 2 D^2 = 1 + cos(alpha z)
         for j in range(1, n + 1):
             left -= d[j] * d[n + 1 - j]

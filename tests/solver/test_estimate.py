@@ -14,7 +14,7 @@ from tests.suites.motions import noise
 
 def bodies(size: int, seed: int, **changed: float) -> np.ndarray:
     rng = np.random.default_rng(seed)
-    cells = np.empty(size, BODY_CELL)
+    cells = np.zeros(size, BODY_CELL)
     cells["rate"], cells["alpha"] = rng.uniform(0.02, 0.2, size), rng.uniform(0.05, 0.4, size)
     cells["ratio"] = cells["stiffness"] = 1.0
     cells["vertical"] = 0.0

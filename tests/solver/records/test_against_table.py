@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import rocking
+from rocking._solver.bodies import solve_with_bound
+from rocking._solver.records.record_response import check_record_groups
+from rocking._solver.state import block_cells
 from rocking.suites import record_amplification
 from tests.solver.records.tables import Row, record, rows
 
@@ -23,6 +26,27 @@ def test_outcome_and_peak_of_each_case(row: Row) -> None:
     else:
         allowed = 1000 * ROUNDING * max(1.0, row.amplification)
         assert float(response.peak_rotation) == pytest.approx(row.peak_rotation, rel=allowed)
+
+
+def test_the_error_of_each_peak_is_within_its_bound() -> None:
+    """The bound of `BodyResponse.error_bound`, on the cells of the table."""
+    errors = []
+    for row in ROWS:
+        if row.overturned:
+            continue
+        arguments = {"alpha": None, "vertical_scale": None} | row.groups
+        groups = {name: np.atleast_1d(value) for name, value in check_record_groups(row.motion, **arguments).items()}
+        cells = block_cells(
+            groups["frequency_parameter"] * row.motion.time_step,
+            groups["slenderness"],
+            groups["restitution"],
+            groups["alpha"],
+            groups["vertical_scale"],
+        )
+        records, _, bound = solve_with_bound(row.motion, cells, None, None)
+        errors.append(abs(records["peak_rotation"][0] - row.peak_rotation) - bound[0])
+    assert len(errors) > 100
+    assert max(errors) <= 0.0
 
 
 SENSITIVE = [row for row in ROWS if 0.1 < row.amplification < 1e2]
