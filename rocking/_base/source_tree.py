@@ -32,7 +32,7 @@ class SourceTree:
 
     def package(self) -> list[Path]:
         """Return all files of the package, sorted."""
-        return sorted(_package(self.root))
+        return sorted((self.root / "rocking").rglob("*.py"))
 
     def files(self, *paths: Path) -> list[Path]:
         """Return these files and all files of `packages` that they import, directly or indirectly; sorted.
@@ -101,10 +101,6 @@ def imported_names(syntax: ast.Module) -> Iterable[tuple[str, str | None, int]]:
                 yield alias.name, node.module or "", node.level
         for block in _BLOCKS:  # expressions, nine tenths of the nodes, hold no import
             waiting += getattr(node, block, ())
-
-
-def _package(root: Path) -> Iterable[Path]:
-    return (root / "rocking").rglob("*.py")
 
 
 def _absolute_names(path: Path, syntax: ast.Module) -> Iterable[tuple[str, str]]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-from itertools import chain
 from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
@@ -141,7 +140,15 @@ def _plain(text: str) -> str:
     return re.sub(r"sec(?:ond)?s?", "s", plain).rstrip(".")
 
 
-_NAMES = {unit: {form.lower(): name for name in names for form in _forms(name)} for unit, names in UNITS.items()}
+def _names(unit: str) -> dict[str, str]:
+    """Return the names of the units of a quantity by the ways to write them."""
+    names: dict[str, str] = {}
+    for name in UNITS[unit]:
+        names |= dict.fromkeys(map(str.lower, _forms(name)), name)
+    return names
+
+
+_NAMES = {unit: _names(unit) for unit in UNITS}
 _NAMES["kg"] |= dict.fromkeys(("gram", "grams", "gramme", "grammes", "gramm"), "g")
 
 
@@ -152,13 +159,10 @@ def unit_name(text: str, unit: str) -> str | None:
 
 def quantities_of(text: str) -> frozenset[str]:
     """Return the SI units of the quantities that have a unit such as "M/S^2"."""
-    return _QUANTITIES.get(_plain(text), frozenset()) if len(text) <= MAX_LENGTH else frozenset()
-
-
-_QUANTITIES = {
-    form: frozenset(unit for unit, names in _NAMES.items() if form in names)
-    for form in {*chain.from_iterable(_NAMES.values())}
-}
+    if len(text) > MAX_LENGTH:
+        return frozenset()
+    form = _plain(text)
+    return frozenset(unit for unit, names in _NAMES.items() if form in names)
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:

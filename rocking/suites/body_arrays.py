@@ -108,11 +108,11 @@ def as_blocks(bodies: Sequence[AbstractBody]) -> tuple[AbstractBlock, ...] | Rig
     if len(rigid) < len(converted) or len(sides) > 1:
         allowed = "bodies with equal edges, or rigid ones that all rock about both edges, or about the same one"
         raise InvalidArgumentError("blocks", [body.description for body in converted], allowed)
-    columns = {name: [body.parameters[name] for body in rigid] for name in ("left", "right")}
-    columns |= {
-        name: [getattr(body, name) for body in rigid] for name in ("height", "gyration", "gravity", "top_height")
-    }
-    columns |= {"inclination": [body.tilt for body in rigid]}
+    columns: dict[str, list[Any]] = {"inclination": [body.tilt for body in rigid]}
+    for name in ("left", "right"):
+        columns[name] = [body.parameters[name] for body in rigid]
+    for name in ("height", "gyration", "gravity", "top_height"):
+        columns[name] = [getattr(body, name) for body in rigid]
     if sides != {"both"}:
         columns |= {"rebound": [body.right.restitution for body in rigid]}
     return RigidBody(**columns, sides=rigid[0].sides)
